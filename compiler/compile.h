@@ -1,0 +1,33 @@
+// The compiler's one function: scene text to CompiledScene. compile.cpp reads as the list of passes.
+// Tested by: tests/compiler/compile_test.cpp
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/syntax.h"
+#include "compiler/graph.h"
+
+namespace fathom::compiler {
+
+struct CompileOptions {
+  // Stop optimising after the pass of this name; "graph" stands for "before the first pass".
+  std::optional<std::string> stop_after;
+  // Called with the distance graph before the first pass (as "graph") and after each pass.
+  std::function<void(std::string_view pass, const Scene& scene)> on_pass;
+  // Called with what the front end read.
+  std::function<void(const syntax::File& file)> on_syntax;
+};
+
+// nullopt exactly when `diagnostics` has errors afterwards.
+std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options = {});
+
+// Names of the passes, in order.
+std::vector<std::string_view> pass_names();
+
+}  // namespace fathom::compiler

@@ -1,0 +1,56 @@
+// What the user did wrong, and where: errors and warnings with a place in the source, collected over a whole file.
+//
+//     error[E0102]: unknown property `fvo` in `camera`
+//       --> toy.json:2:42
+//        |
+//      2 |   "camera": {"position": [0, 1.5,-4e0 ], "fvo": 45},
+//        |                                          ^^^^^ not a camera property
+//        = help: did you mean `fov`? known: aperture, fov, position, target, up
+//
+// Tested by: tests/golden (diagnostics)
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/source.h"
+
+namespace fathom::compiler {
+
+enum class Severity { Error, Warning };
+
+struct Diagnostic {
+  Severity severity;
+  std::string code;     // e.g. E0102; each code has one meaning
+  std::string message;  // one line, no full stop
+  Span span;
+  std::string label;              // beside the carets; may be empty
+  std::vector<std::string> help;  // each a line after "= help:"
+};
+
+enum class ErrorFormat { Text, Short, Json };
+
+class Diagnostics {
+ public:
+  void error(std::string code, Span span, std::string message, std::string label = "", std::vector<std::string> help = {});
+  void warning(std::string code, Span span, std::string message, std::string label = "",
+               std::vector<std::string> help = {});
+
+  bool has_errors() const { return errors_ > 0; }
+  std::size_t errors() const { return errors_; }
+  const std::vector<Diagnostic>& all() const { return all_; }
+
+  // Every diagnostic in source order (the first 20 errors, then how many more there are).
+  std::string print(const Source& source, ErrorFormat format, bool color = false) const;
+
+ private:
+  std::vector<Diagnostic> all_;
+  std::size_t errors_ = 0;
+};
+
+// The candidate nearest to `word` by edit distance, or empty when none is near enough to be a typing error.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,29 @@
+// From a scene as written to a scene that means something: names resolved, parameters checked, the DAG built.
+// Tested by: tests/golden (diagnostics), tests/compiler/elaborate_test.cpp
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/syntax.h"
+#include "compiler/graph.h"
+
+namespace fathom::compiler {
+
+// The scene with its tables; `scene.root` is the union of the objects, each in a Paint node with its surface.
+struct Elaborated {
+  Scene scene;
+  std::vector<Surface> surfaces;
+  std::vector<Material> materials;
+  Camera camera;
+  Film film;
+  RenderSettings settings;
+  Background background;
+};
+
+// Reports every semantic error of the file; nullopt when there was any.
+std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler

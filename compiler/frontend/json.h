@@ -1,0 +1,15 @@
+// JSON scenes, with // and /* */ comments, to syntax.h. nlohmann/json tokenises; the spans are ours.
+// Tested by: tests/compiler/json_test.cpp
+#pragma once
+
+#include <optional>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/syntax.h"
+
+namespace fathom::compiler {
+
+// nullopt after a syntax error, which ends the reading; duplicate keys are errors too, and all of them are reported.
+std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,45 @@
+// What a front end makes of a scene file: the scene as written, with a span for everything, and nothing resolved.
+// Independent of JSON, so that another notation can produce the same.
+//
+// A record is a bag of properties with values; which properties exist and what they must be is elaborate.cpp's
+// business, by the tables. Nodes are records too: {"type": "sphere", "radius": 1, "translate": [0, 1, 0]} has the
+// properties type, radius and translate; `{"use": "ball"}` has the property use.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compiler/source.h"
+
+namespace fathom::compiler::syntax {
+
+struct Value;
+
+struct Property {
+  std::string name;
+  Span name_span;
+  std::unique_ptr<Value> value;
+};
+
+struct Record {
+  std::vector<Property> properties;  // in file order, names unique
+  const Property* find(std::string_view name) const;
+};
+
+using List = std::vector<Value>;
+
+struct Value {
+  Span span;
+  std::variant<std::monostate, bool, double, std::string, List, Record> data;  // monostate: null
+};
+
+// The whole file: one record with the properties camera, film, objects, ...
+struct File {
+  Value root;
+};
+
+std::string print_syntax(const File& file);
+
+}  // namespace fathom::compiler::syntax

@@ -1,0 +1,78 @@
+// The scene's DAG: hash-consed nodes, each a kind, its parameters and its children.
+//
+// add() is the only way to make a node and returns the existing one when an equal one is there, so equal subtrees are
+// one node whatever names the scene gave them. Children are always made before their parents: a loop over ids in
+// ascending order sees every child first, and no pass needs recursion.
+//
+// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three).
+// Tested by: tests/compiler/graph_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "compiler/source.h"
+
+namespace fathom::compiler {
+
+enum class Kind : std::uint8_t {
+  // primitives
+  Sphere, Box, RoundBox, Torus, Plane, Cylinder, RoundedCylinder, Cone, RoundCone, Triangle, Quad, Mandelbulb,
+  // alterations of one child
+  Round, Onion,
+  // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
+  // distance is multiplied by. Written in files as the properties scale, rotate and translate.
+  Transform,
+  // combinators; n children, smooth ones fold from the left
+  Union, Intersection, Subtraction, SmoothUnion, SmoothIntersection, SmoothSubtraction,
+  // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless painted further in.
+  Paint,
+};
+
+using NodeId = std::uint32_t;
+
+// Where a node was first written, and the name the scene gave it ("" when none).
+struct Origin {
+  Span span;
+  std::string name;
+};
+
+class Graph {
+ public:
+  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const Origin& origin = {});
+
+  std::size_t size() const { return nodes_.size(); }
+  Kind kind(NodeId id) const { return nodes_[id].kind; }
+  std::span<const double> params(NodeId id) const;      // valid until the next add()
+  std::span<const NodeId> children(NodeId id) const;    // valid until the next add()
+  const Origin& origin(NodeId id) const { return nodes_[id].origin; }
+
+ private:
+  struct Node {
+    Kind kind;
+    std::uint32_t first_param, param_count, first_child, child_count;
+    Origin origin;
+  };
+  bool equal(NodeId id, Kind kind, std::span<const double> params, std::span<const NodeId> children) const;
+
+  std::vector<Node> nodes_;
+  std::vector<double> params_;
+  std::vector<NodeId> children_;
+  std::unordered_multimap<std::uint64_t, NodeId> by_hash_;
+};
+
+// A graph and the node that stands for the whole scene.
+struct Scene {
+  Graph graph;
+  NodeId root = 0;
+};
+
+// One line a node, children before parents, only what the root reaches:
+//     %0 = sphere radius=0.5              ; "ball" scene.json:6:5
+//     %1 = union %0 %3
+std::string print_graph(const Scene& scene, const Source& source);
+
+}  // namespace fathom::compiler

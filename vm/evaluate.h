@@ -1,0 +1,85 @@
+// The public door of the machine: distances, gradients, surfaces and ranges of a verified program.
+//
+// Same bits for every instruction set, block position and count: each point's result depends on that point alone.
+//
+//     vm::Workspace workspace;                       // one per thread
+//     vm::evaluate_distance(program, {x, y, z}, count, distance, workspace);
+//
+// Tested by: tests/vm/evaluate_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "vm/verify.h"
+
+namespace fathom::vm {
+
+// Coordinates of a batch of points, scene units; three arrays of the same length.
+struct Points {
+  const float* x;  // [point]
+  const float* y;
+  const float* z;
+};
+
+// Scratch memory for the stacks; grows to the largest program it has seen. Not to be shared between threads.
+class Workspace {
+ public:
+  // At least `bytes` bytes, aligned to 64; what they held before is lost.
+  void* reserve(std::size_t bytes);
+
+ private:
+  struct Free {
+    void operator()(void* memory) const;
+  };
+  std::unique_ptr<void, Free> memory_;
+  std::size_t size_ = 0;
+};
+
+// distance[i] = f(points[i]), float32, for i in [0, count).
+void evaluate_distance(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+                       Workspace& workspace);
+
+// What is known of a batch of points beside the distance; five arrays of at least `count` entries.
+struct SurfaceValues {
+  float* distance;
+  float* gradient_x;  // df/dx of the winning branch; not normalised; zero where undefined, never NaN on finite input
+  float* gradient_y;
+  float* gradient_z;
+  std::uint32_t* surface;  // the number of the `tag` that won, 0 in a program without tags
+};
+void evaluate_surface(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+                      Workspace& workspace);
+
+struct SurfaceValue {
+  double distance;
+  glm::dvec3 gradient;
+  std::uint32_t surface;
+};
+
+// The same in double, one point at a time, with the program's unrounded constants.
+double evaluate_distance(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace);
+SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace);
+
+struct Range {
+  double lo, hi;
+};
+
+// An interval that contains f(p) for every p in the box [lo, hi], rounded outwards. Source: Moore, "Interval
+// Analysis", 1966.
+Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
+
+// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best first.
+// The environment variable FATHOM_ISA forces one.
+std::string_view isa_name();
+std::vector<std::string_view> available_isas();
+
+// Uses `name` from here on; false (and no change) when this machine cannot run it. Not thread safe: call it before
+// evaluation starts.
+bool force_isa(std::string_view name);
+
+}  // namespace fathom::vm

@@ -1,0 +1,66 @@
+#include "vm/opcode.h"
+
+#include <array>
+
+namespace fathom::vm {
+namespace {
+
+constexpr StackEffect effect_of(Opcode opcode, Form form) {
+  switch (form) {
+    case Form::Point: return {0, 0, 1, +1};
+    case Form::Shape: return {0, +1, 1, 0};
+    case Form::Unary: return {1, 0, 0, 0};
+    case Form::Binary: return {2, -1, 0, 0};
+    case Form::Machine: break;
+  }
+  switch (opcode) {
+    case Opcode::Drop: return {0, 0, 2, -1};  // the first point is the caller's and stays
+    case Opcode::Load: return {0, +1, 0, 0};
+    default: return {1, 0, 0, 0};  // Tee, Tag
+  }
+}
+
+constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning)                              \
+  {Opcode::Name, mnemonic, Form::form, immediates, count_names(immediates), Choice::choice, cost, \
+   effect_of(Opcode::Name, Form::form),                                                          \
+   Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag},
+#include "vm/opcodes.def"
+#undef OP
+}};
+
+// The i-th blank-separated word of `names`.
+std::string_view nth_name(std::string_view names, int index) {
+  for (;;) {
+    const std::size_t start = names.find_first_not_of(' ');
+    if (start == names.npos) return {};
+    names.remove_prefix(start);
+    const std::string_view name = names.substr(0, names.find(' '));
+    if (index-- == 0) return name;
+    names.remove_prefix(name.size());
+  }
+}
+
+}  // namespace
+
+const OpcodeInfo& info(Opcode opcode) { return kTable[static_cast<std::size_t>(opcode)]; }
+
+const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
+
+const OpcodeInfo* find_mnemonic(std::string_view mnemonic) {
+  for (const OpcodeInfo& row : kTable) {
+    if (row.mnemonic == mnemonic) return &row;
+  }
+  return nullptr;
+}
+
+bool is_integer_immediate(const OpcodeInfo& opcode, int index) {
+  return nth_name(opcode.immediate_names, index).ends_with(":i");
+}
+
+std::string_view immediate_name(const OpcodeInfo& opcode, int index) {
+  const std::string_view name = nth_name(opcode.immediate_names, index);
+  return name.substr(0, name.find(':'));
+}
+
+}  // namespace fathom::vm

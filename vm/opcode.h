@@ -1,0 +1,70 @@
+// Opcodes and what is known of each, generated from vm/opcodes.def.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace fathom::vm {
+
+enum class Opcode : std::uint8_t {
+#define OP(Name, ...) Name,
+#include "vm/opcodes.def"
+#undef OP
+};
+
+inline constexpr int kOpcodeCount = 0
+#define OP(...) +1
+#include "vm/opcodes.def"
+#undef OP
+    ;
+
+enum class Form : std::uint8_t { Point, Shape, Unary, Binary, Machine };
+enum class Choice : std::uint8_t { None, Lesser, Greater, Carve };
+
+// How an instruction changes the heights of the two stacks. `needs` is the height that must be there before.
+struct StackEffect {
+  int values_needed, values_change;
+  int points_needed, points_change;
+};
+
+// Counts blank-separated names.
+constexpr int count_names(std::string_view names) {
+  int count = 0;
+  bool inside = false;
+  for (char c : names) {
+    if (c != ' ' && !inside) ++count;
+    inside = c != ' ';
+  }
+  return count;
+}
+
+struct OpcodeInfo {
+  Opcode opcode;
+  std::string_view mnemonic;
+  Form form;
+  std::string_view immediate_names;  // blank separated, ":i" marks an integer
+  int immediates;                    // words after the opcode word
+  Choice choice;
+  int cost;  // multiply-adds per point
+  StackEffect effect;
+  bool has_operand;  // the opcode word's high 24 bits mean something
+};
+
+const OpcodeInfo& info(Opcode opcode);
+
+// The i-th row, or nullptr when `byte` names no opcode.
+const OpcodeInfo* find_opcode(std::uint32_t byte);
+const OpcodeInfo* find_mnemonic(std::string_view mnemonic);
+
+// Whether immediate `index` of `opcode` is an unsigned integer rather than a float.
+bool is_integer_immediate(const OpcodeInfo& opcode, int index);
+std::string_view immediate_name(const OpcodeInfo& opcode, int index);
+
+inline constexpr std::uint32_t opcode_word(Opcode opcode, std::uint32_t operand = 0) {
+  return static_cast<std::uint32_t>(opcode) | operand << 8;
+}
+inline constexpr std::uint32_t operand_of(std::uint32_t word) { return word >> 8; }
+inline constexpr std::uint32_t kMaxOperand = (1u << 24) - 1;
+
+}  // namespace fathom::vm

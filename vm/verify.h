@@ -1,0 +1,50 @@
+// The verifier: one linear pass that turns an untrusted Program into a VerifiedProgram, which evaluators run unchecked.
+//
+// Proved: every opcode exists; no instruction is cut off; both stacks always hold what an instruction needs; the
+// program ends with exactly one value and the caller's point; locals are written before they are read and are below the
+// declared count; float immediates are finite; integer immediates and sizes are within the limits below. There are no
+// jumps, so every program ends.
+// Tested by: tests/vm/verify_test.cpp
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "vm/program.h"
+
+namespace fathom::vm {
+
+// Sizes a program may not exceed. They bound memory and time before anything is allocated.
+struct Limits {
+  std::uint32_t words = 16u << 20;
+  std::uint32_t stack = 4096;       // values, and points
+  std::uint32_t locals = 65536;
+  std::uint32_t loop_count = 4096;  // of an integer immediate
+};
+
+struct VerifyError {
+  std::uint32_t offset;  // of the opcode word at fault, or the program's size
+  std::string reason;
+};
+
+// A program that passed, and the stack heights it reaches.
+class VerifiedProgram {
+ public:
+  const Program& program() const { return program_; }
+  std::uint32_t max_values() const { return max_values_; }
+  std::uint32_t max_points() const { return max_points_; }
+  std::uint32_t instructions() const { return instructions_; }
+  std::uint32_t cost() const { return cost_; }  // multiply-adds per point, by the table's estimate
+
+ private:
+  friend std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits& limits);
+  VerifiedProgram() = default;
+
+  Program program_;
+  std::uint32_t max_values_ = 0, max_points_ = 0, instructions_ = 0, cost_ = 0;
+};
+
+[[nodiscard]] std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits& limits = {});
+
+}  // namespace fathom::vm
