@@ -1,0 +1,31 @@
+// What the compiler knows of every node: where it can be solid, how fast its distance changes, how far to trust it.
+// Tested by: tests/compiler/shapes_test.cpp
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/box.h"
+#include "compiler/graph.h"
+#include "compiler/shapes/node_table.h"
+
+namespace fathom::compiler {
+
+struct Knowledge {
+  Box box;               // the distance is positive outside it
+  double lipschitz = 1;  // |f(p) - f(q)| <= lipschitz |p - q|, where certified
+  Exactness outside = Exactness::Exact, inside = Exactness::Exact;
+  bool certified = true;
+  // f(p) >= reach_max * (largest per-axis distance from the box) and f(p) >= reach * (Euclidean distance from the box):
+  // how far an offset by r can move the surface out of the box, r / reach_max. Per-axis distances survive
+  // intersection, Euclidean ones rotation; reach <= reach_max <= sqrt 3 reach whenever both are known.
+  double reach_max = 1, reach = 1;
+};
+
+// One entry per node id, children first.
+std::vector<Knowledge> analyse(const Graph& graph);
+
+// e.g. "bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
+std::string describe(const Knowledge& knowledge);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,113 @@
+#include "compiler/compile.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "compiler/bounds.h"
+#include "compiler/frontend/elaborate.h"
+#include "compiler/frontend/json.h"
+#include "compiler/lower.h"
+#include "compiler/passes/passes.h"
+#include "compiler/passes/rewrite.h"
+#include "vm/check.h"
+
+namespace fathom::compiler {
+namespace {
+
+struct Pass {
+  std::string_view name;
+  Scene (*run)(const Scene&);
+};
+
+// What is done to the distance, in order. The surface program keeps its Paint and takes the others.
+constexpr Pass kPasses[] = {
+    {"unpaint", unpaint},
+    {"fold", fold},
+    {"affine", affine},
+    {"flatten", flatten},
+    {"share", share},
+};
+
+constexpr std::size_t kMaxInstructions = 1'000'000;
+
+using OnPass = std::function<void(std::string_view, const Scene&)>;
+
+Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
+  if (on_pass) on_pass("graph", scene);
+  if (options.stop_after == "graph") return scene;
+  for (const Pass& pass : kPasses) {
+    if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
+    if (on_pass) on_pass(pass.name, scene);
+    if (options.stop_after == pass.name) break;
+  }
+  return scene;
+}
+
+std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, Diagnostics& diagnostics) {
+  std::optional<vm::Program> program = lower(scene, source, kMaxInstructions);
+  if (!program) {
+    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
+                      fmt::format("the scene needs more than {} instructions", kMaxInstructions),
+                      "", {"a node used under different transforms is evaluated once for each; use it less often"});
+    return std::nullopt;
+  }
+  auto verified = vm::verify(std::move(*program));
+  if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
+    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
+                      fmt::format("the scene's program exceeds a limit of the machine: {}", error->reason));
+    return std::nullopt;
+  }
+  return std::get<vm::VerifiedProgram>(std::move(verified));
+}
+
+std::size_t count_nodes(const Scene& scene) {
+  std::size_t count = 0;
+  for (bool reached : reachable(scene)) count += reached;
+  return count;
+}
+
+}  // namespace
+
+std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
+  const std::optional<syntax::File> file = read_json(source, diagnostics);
+  if (!file) return std::nullopt;
+  if (options.on_syntax) options.on_syntax(*file);
+  std::optional<Elaborated> elaborated = elaborate(*file, diagnostics);
+  if (!elaborated) return std::nullopt;
+
+  const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
+  std::optional<vm::VerifiedProgram> distance = assemble(field, source, diagnostics);
+  if (!distance) return std::nullopt;
+  std::optional<vm::VerifiedProgram> surface = distance;
+  if (elaborated->surfaces.size() > 1) {
+    surface = assemble(optimise(elaborated->scene, true, options, nullptr), source, diagnostics);
+    if (!surface) return std::nullopt;
+  }
+
+  const Knowledge known = analyse(field.graph)[field.root];
+  CompiledScene result{.source = std::move(source),
+                       .distance = std::move(*distance),
+                       .surface = std::move(*surface),
+                       .surfaces = std::move(elaborated->surfaces),
+                       .materials = std::move(elaborated->materials),
+                       .camera = elaborated->camera,
+                       .film = elaborated->film,
+                       .settings = elaborated->settings,
+                       .background = elaborated->background,
+                       .bound = known.box,
+                       .lipschitz = known.lipschitz,
+                       .certified = known.certified,
+                       .node_count = count_nodes(field),
+                       .summary = ""};
+  result.summary = fmt::format("{} nodes, {}", result.node_count, describe(known));
+  return result;
+}
+
+std::vector<std::string_view> pass_names() {
+  std::vector<std::string_view> names;
+  for (const Pass& pass : kPasses) names.push_back(pass.name);
+  return names;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,186 @@
+#include "compiler/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace fathom::compiler {
+namespace {
+
+constexpr std::size_t kMostPrinted = 20;  // of errors, and of warnings; what a person reads in one go
+constexpr std::size_t kWidest = 140;      // columns of a quoted line; longer ones are cut around the carets
+constexpr std::size_t kLead = 50;         // columns kept before the carets of a cut line
+constexpr std::size_t kTabWidth = 4;
+
+struct Style {
+  const char *error = "", *warning = "", *gutter = "", *strong = "", *off = "";
+};
+
+Style style(bool color) {
+  if (!color) return {};
+  return {"\x1b[1;31m", "\x1b[1;33m", "\x1b[1;34m", "\x1b[1m", "\x1b[0m"};
+}
+
+const char* word(Severity severity) { return severity == Severity::Error ? "error" : "warning"; }
+
+bool nowhere(Span span) { return span.begin == 0 && span.end == 0; }
+
+// The bytes of the UTF-8 sequence that starts `text`; 0 when it is not one. Overlong forms and surrogates pass: this
+// only decides what a terminal is sent.
+std::size_t sequence_length(std::string_view text) {
+  const auto byte = static_cast<unsigned char>(text[0]);
+  const std::size_t length = byte < 0x80 ? 1 : (byte >> 5) == 6 ? 2 : (byte >> 4) == 14 ? 3 : (byte >> 3) == 30 ? 4 : 0;
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
+  }
+  return length;
+}
+
+// A source line as it is shown: cells of one column each, tabs as blanks, what a terminal must not see replaced.
+struct Shown {
+  std::vector<std::string_view> cells;
+  std::vector<std::uint32_t> bytes;  // where in the line each cell's character begins
+
+  explicit Shown(std::string_view line) {
+    for (std::size_t at = 0; at < line.size();) {
+      const std::size_t length = sequence_length(line.substr(at));
+      const bool control = static_cast<unsigned char>(line[at]) < 0x20 || line[at] == 0x7F;
+      const std::string_view cell = line[at] == '\t'         ? std::string_view(" ")
+                                    : length == 0 || control ? std::string_view("\uFFFD")
+                                                             : line.substr(at, length);
+      const std::size_t columns = line[at] == '\t' ? kTabWidth : 1;
+      cells.insert(cells.end(), columns, cell);
+      bytes.insert(bytes.end(), columns, static_cast<std::uint32_t>(at));
+      at += std::max<std::size_t>(length, 1);
+    }
+  }
+
+  // The first column at or after a byte of the line.
+  std::size_t column(std::uint32_t byte) const {
+    return static_cast<std::size_t>(std::lower_bound(bytes.begin(), bytes.end(), byte) - bytes.begin());
+  }
+  std::string text(std::size_t first, std::size_t last) const {
+    std::string out;
+    for (std::size_t i = first; i < last; ++i) out += cells[i];
+    return out;
+  }
+};
+
+// The quoted line and the carets under it, without gutter; both cut to kWidest columns around the carets.
+std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t line_start, Span span) {
+  const Shown shown(line);
+  const std::size_t begin = shown.column(span.begin - line_start);
+  const std::size_t end = std::max(begin + 1, shown.column(std::max(span.end, span.begin) - line_start));
+  if (shown.cells.size() <= kWidest) {
+    const std::size_t last = std::max(begin + 1, std::min(end, shown.cells.size()));
+    return {shown.text(0, shown.cells.size()), std::string(begin, ' ') + std::string(last - begin, '^')};
+  }
+  const std::size_t first = std::min(begin > kLead ? begin - kLead : 0, shown.cells.size() - kWidest);
+  const std::size_t last = first + kWidest;
+  const std::string before = first > 0 ? "..." : "", after = last < shown.cells.size() ? "..." : "";
+  const std::size_t carets = std::max(begin + 1, std::min(end, last)) - begin;
+  return {before + shown.text(first, last) + after,
+          std::string(before.size() + begin - first, ' ') + std::string(carets, '^')};
+}
+
+std::string print_text(const Diagnostic& d, const Source& source, const Style& s) {
+  std::string out = fmt::format("{}{}[{}]{}{}: {}{}\n", d.severity == Severity::Error ? s.error : s.warning,
+                                word(d.severity), d.code, s.off, s.strong, d.message, s.off);
+  std::string margin = "  ";  // as wide as the gutter: the line number and a blank on either side
+  if (nowhere(d.span)) {
+    out += fmt::format("{}{}-->{} {}\n", margin, s.gutter, s.off, source.name());
+    margin += ' ';
+  } else {
+    const Position at = source.locate(d.span.begin);
+    const std::uint32_t start = static_cast<std::uint32_t>(source.line(at.line).data() - source.text().data());
+    const auto [line, carets] = quote(source.line(at.line), start, d.span);
+    const std::string number = std::to_string(at.line);
+    margin = std::string(number.size() + 2, ' ');
+    const std::string_view severity = d.severity == Severity::Error ? s.error : s.warning;
+    out += fmt::format("{}{}-->{} {}:{}:{}\n", margin.substr(1), s.gutter, s.off, source.name(), at.line, at.column);
+    out += fmt::format("{}{}|{}\n", margin, s.gutter, s.off);
+    out += fmt::format("{} {} |{}{}{}\n", s.gutter, number, s.off, line.empty() ? "" : " ", line);
+    out += fmt::format("{}{}|{} {}{}{}{}{}\n", margin, s.gutter, s.off, severity, carets, d.label.empty() ? "" : " ",
+                       d.label, s.off);
+  }
+  for (const std::string& help : d.help) {
+    out += fmt::format("{}{}={} {}help{}: {}\n", margin, s.gutter, s.off, s.strong, s.off, help);
+  }
+  return out;
+}
+
+std::string print_short(const Diagnostic& d, const Source& source) {
+  if (nowhere(d.span)) return fmt::format("{}: {}: {} [{}]\n", source.name(), word(d.severity), d.message, d.code);
+  const Position at = source.locate(d.span.begin);
+  return fmt::format("{}:{}:{}: {}: {} [{}]\n", source.name(), at.line, at.column, word(d.severity), d.message,
+                     d.code);
+}
+
+std::string json_line(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string print_json(const Diagnostic& d, const Source& source) {
+  nlohmann::ordered_json json = {
+      {"severity", word(d.severity)}, {"code", d.code}, {"message", d.message}, {"file", source.name()}};
+  if (!nowhere(d.span)) {
+    const Position begin = source.locate(d.span.begin), end = source.locate(d.span.end);
+    json["line"] = begin.line;
+    json["column"] = begin.column;
+    json["end_line"] = end.line;
+    json["end_column"] = end.column;
+    json["begin_byte"] = d.span.begin;
+    json["end_byte"] = d.span.end;
+  }
+  json["label"] = d.label;
+  json["help"] = d.help;
+  return json_line(json);
+}
+
+std::string print_rest(std::size_t count, const Source& source, ErrorFormat format) {
+  const std::string message = fmt::format("and {} more error{}", count, count == 1 ? "" : "s");
+  switch (format) {
+    case ErrorFormat::Text: return "\n" + message + "\n";
+    case ErrorFormat::Short: return fmt::format("{}: {}\n", source.name(), message);
+    case ErrorFormat::Json: break;
+  }
+  return json_line({{"severity", "note"}, {"message", message}, {"file", source.name()}});
+}
+
+}  // namespace
+
+void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
+                        std::vector<std::string> help) {
+  ++errors_;
+  all_.push_back({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
+}
+
+void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
+                          std::vector<std::string> help) {
+  all_.push_back({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
+}
+
+std::string Diagnostics::print(const Source& source, ErrorFormat format, bool color) const {
+  std::vector<const Diagnostic*> sorted;
+  for (const Diagnostic& d : all_) sorted.push_back(&d);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Diagnostic* a, const Diagnostic* b) { return a->span.begin < b->span.begin; });
+  std::string out;
+  std::size_t printed_errors = 0, printed_warnings = 0;
+  for (const Diagnostic* d : sorted) {
+    std::size_t& printed = d->severity == Severity::Error ? printed_errors : printed_warnings;
+    if (printed == kMostPrinted) continue;
+    ++printed;
+    if (format == ErrorFormat::Text && !out.empty()) out += "\n";
+    if (format == ErrorFormat::Text) out += print_text(*d, source, style(color));
+    if (format == ErrorFormat::Short) out += print_short(*d, source);
+    if (format == ErrorFormat::Json) out += print_json(*d, source);
+  }
+  if (errors_ > printed_errors) out += print_rest(errors_ - printed_errors, source, format);
+  return out;
+}
+
+}  // namespace fathom::compiler

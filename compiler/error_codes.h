@@ -1,0 +1,50 @@
+// Every code a diagnostic can have; each has one meaning and keeps it for good.
+// Tested by: tests/compiler/diagnostics_test.cpp (every code has a file in tests/golden/diagnostics)
+#pragma once
+
+#include <string_view>
+
+namespace fathom::compiler {
+
+struct ErrorCode {
+  std::string_view code;
+  std::string_view meaning;
+};
+
+inline constexpr ErrorCode kErrorCodes[] = {
+    // E00xx: the text is not JSON
+    {"E0001", "something else was expected here"},
+    {"E0002", "the file ends too early"},
+    {"E0003", "malformed string"},
+    {"E0004", "malformed number"},
+    {"E0005", "a word or character that JSON does not have"},
+    {"E0006", "malformed comment"},
+    {"E0007", "the file is not UTF-8 text"},
+    {"E0008", "the file goes beyond a limit of the reader"},
+    {"E0009", "the number is too large for any float"},
+    {"E0010", "the same property twice"},
+    // E01xx: properties and values
+    {"E0101", "a value of the wrong type"},
+    {"E0102", "unknown property"},
+    {"E0103", "missing property"},
+    {"E0104", "a value out of range"},
+    {"E0105", "unknown version of the scene format"},
+    {"E0106", "properties that exclude each other"},
+    {"E0107", "an empty list"},
+    {"E0108", "not one of the choices"},
+    // E02xx: names
+    {"E0201", "unknown type of node"},
+    {"E0202", "unknown material"},
+    {"E0203", "unknown named node"},
+    {"E0204", "a named node within itself"},
+    // E03xx: geometry
+    {"E0301", "a degenerate parameter"},
+    {"E0302", "parameters that do not fit together"},
+    {"E0303", "the camera looks at its own position"},
+    {"E0304", "the camera's up is its direction of view"},
+    // W04xx: warnings
+    {"W0401", "unused material"},
+    {"W0402", "unused named node"},
+};
+
+}  // namespace fathom::compiler

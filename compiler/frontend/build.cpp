@@ -1,0 +1,126 @@
+#include "compiler/frontend/build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "vm/check.h"
+
+namespace fathom::compiler {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+bool gives_material(const CheckedNode& node) {
+  return node.material || std::any_of(node.children.begin(), node.children.end(), gives_material);
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
+                           const std::vector<std::uint32_t>& order, std::vector<Material>& materials)
+    : named_(named), uses_(uses), materials_(materials), has_paint_(named.size(), false) {
+  for (const std::uint32_t name : order) {
+    has_paint_[name] = gives_material(named[name]) ||
+                       std::any_of(uses[name].begin(), uses[name].end(), [&](const Use& u) { return has_paint_[u.target]; });
+  }
+}
+
+void SceneBuilder::add_object(const CheckedNode& node) {
+  const auto object = static_cast<std::uint32_t>(object_names_.size());
+  object_names_.push_back(unique_name(node));
+  for (const Use& use : uses_of(node)) build_named(use.target, {object, use.material});
+  const Context context{object, node.material};
+  const Built built = build(node, {object, std::nullopt});
+  objects_.push_back(built.painted ? built.id : paint(built.id, context, {node.span, node.name}));
+}
+
+Scene SceneBuilder::finish() {
+  CHECK(!objects_.empty(), "a scene has objects");
+  scene_.root = objects_.size() == 1 ? objects_[0] : scene_.graph.add(Kind::Union, {}, objects_);
+  return std::move(scene_);
+}
+
+SceneBuilder::Key SceneBuilder::key(std::uint32_t name, Context context) const {
+  // Without paint within, a named node is the same in every object.
+  if (!has_paint_[name]) return {name, kNone, kNone};
+  return {name, context.object, context.material.value_or(kNone)};
+}
+
+void SceneBuilder::build_named(std::uint32_t name, Context context) {
+  // A stack of its own: names can use each other in a chain as long as the file.
+  struct Pending {
+    std::uint32_t name;
+    Context context;
+    std::size_t next_use;
+  };
+  std::vector<Pending> stack = {{name, context, 0}};
+  while (!stack.empty()) {
+    Pending& top = stack.back();
+    const Key top_key = key(top.name, top.context);
+    if (built_.contains(top_key)) {
+      stack.pop_back();
+    } else if (top.next_use < uses_[top.name].size()) {
+      const Use& use = uses_[top.name][top.next_use++];
+      const Context inner{top.context.object, use.material ? use.material : top.context.material};
+      if (!built_.contains(key(use.target, inner))) stack.push_back({use.target, inner, 0});
+    } else {
+      const Pending ready = top;
+      stack.pop_back();
+      built_.emplace(top_key, build(named_[ready.name], ready.context));
+    }
+  }
+}
+
+SceneBuilder::Built SceneBuilder::build(const CheckedNode& node, Context context) {
+  const bool own_paint = node.material && node.material != context.material;
+  if (node.material) context.material = node.material;
+  const Origin origin{node.span, node.name};
+  Built built{0, false};
+  if (node.use) {
+    built = built_.at(key(*node.use, context));
+  } else {
+    std::vector<NodeId> children;
+    built.painted = !node.children.empty();
+    for (const CheckedNode& child : node.children) {
+      const Built inner = build(child, context);
+      children.push_back(inner.id);
+      built.painted = built.painted && inner.painted;
+    }
+    built.id = scene_.graph.add(node.kind, node.params, children, origin);
+  }
+  if (node.transform) {
+    const NodeId child[] = {built.id};
+    built.id = scene_.graph.add(Kind::Transform, *node.transform, child, origin);
+  }
+  if (own_paint && !built.painted) built = {paint(built.id, context, origin), true};
+  return built;
+}
+
+NodeId SceneBuilder::paint(NodeId child, Context context, const Origin& origin) {
+  if (!context.material) {
+    if (!default_material_) {
+      default_material_ = static_cast<std::uint32_t>(materials_.size());
+      materials_.emplace_back().name = "default";
+    }
+    context.material = default_material_;
+  }
+  const auto number = static_cast<std::uint32_t>(surfaces_.size());
+  const auto [found, is_new] = surface_numbers_.emplace(std::pair(context.object, *context.material), number);
+  if (is_new) surfaces_.push_back({object_names_[context.object], *context.material});
+  const double params[] = {static_cast<double>(found->second)};
+  const NodeId children[] = {child};
+  return scene_.graph.add(Kind::Paint, params, children, origin);
+}
+
+std::string SceneBuilder::unique_name(const CheckedNode& node) {
+  const std::string wanted = node.name.empty() ? node.word : node.name;
+  std::string name = wanted;
+  int& count = name_counts_[wanted];
+  do {
+    if (++count > 1) name = fmt::format("{} {}", wanted, count);
+  } while (!taken_names_.insert(name).second);
+  return name;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,69 @@
+// From checked nodes to the graph, each object painted with its surface.
+//
+// A node without a material of its own is painted by what it lies in. A Paint is left out where every point below it
+// is painted further in already.
+// Tested by: tests/compiler/elaborate_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/frontend/checked_node.h"
+#include "compiler/frontend/name_order.h"
+#include "compiler/graph.h"
+
+namespace fathom::compiler {
+
+class SceneBuilder {
+ public:
+  // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
+  // material is added to `materials` when an object needs it. All must outlive the builder.
+  SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials);
+
+  void add_object(const CheckedNode& node);
+
+  // The union of the objects; the builder is empty afterwards.
+  Scene finish();
+  std::vector<Surface> take_surfaces() { return std::move(surfaces_); }
+
+ private:
+  // What a node becomes depends on the object it is in and the material it inherits.
+  struct Context {
+    std::uint32_t object;
+    std::optional<std::uint32_t> material;
+  };
+  struct Built {
+    NodeId id;
+    bool painted;  // every point has a surface
+  };
+  using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // named node, object, material
+
+  Key key(std::uint32_t name, Context context) const;
+  void build_named(std::uint32_t name, Context context);
+  Built build(const CheckedNode& node, Context context);
+  NodeId paint(NodeId child, Context context, const Origin& origin);
+  std::string unique_name(const CheckedNode& node);
+
+  const std::vector<CheckedNode>& named_;
+  const std::vector<std::vector<Use>>& uses_;
+  std::vector<Material>& materials_;
+  std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
+  Scene scene_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::string> object_names_;
+  std::vector<NodeId> objects_;
+  std::set<std::string> taken_names_;
+  std::map<std::string, int> name_counts_;  // how many objects wanted each name
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> surface_numbers_;  // of object and material
+  std::optional<std::uint32_t> default_material_;
+  std::map<Key, Built> built_;
+};
+
+}  // namespace fathom::compiler

@@ -1,0 +1,174 @@
+#include "compiler/frontend/check_node.h"
+
+#include <fmt/format.h>
+
+#include "compiler/frontend/placement.h"
+#include "compiler/frontend/record_reader.h"
+#include "compiler/frontend/suggest.h"
+
+namespace fathom::compiler {
+namespace {
+
+const std::string* text(const syntax::Value* value) {
+  return value ? std::get_if<std::string>(&value->data) : nullptr;
+}
+
+std::vector<std::string_view> node_types() {
+  std::vector<std::string_view> names;
+  for (const NodeSpec& row : node_table()) {
+    if (row.category != Category::Internal) names.push_back(row.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void Names::add(const syntax::Property& property) {
+  numbers_.emplace(property.name, static_cast<std::uint32_t>(names_.size()));
+  names_.push_back(property.name);
+  spans_.push_back(property.name_span);
+  used_.push_back(false);
+}
+
+std::optional<std::uint32_t> Names::resolve(std::string_view name, std::string_view what, const char* code, Span span,
+                                            Diagnostics& diagnostics) {
+  const auto found = numbers_.find(name);
+  if (found != numbers_.end()) {
+    used_[found->second] = true;
+    return found->second;
+  }
+  std::string help = did_you_mean(name, names_);
+  if (help.empty()) help = fmt::format("the scene has no `{0}`; add \"{0}\": {{\"{1}\": {{...}}}}",
+                                       code == std::string_view("E0202") ? "materials" : "nodes", name);
+  diagnostics.error(code, span, fmt::format("unknown {} `{}`", what, name), "", {std::move(help)});
+  return std::nullopt;
+}
+
+CheckedNode NodeChecker::check(const syntax::Value& value) {
+  CheckedNode node;
+  node.span = value.span;
+  const auto* record = std::get_if<syntax::Record>(&value.data);
+  if (record == nullptr) {
+    std::vector<std::string> help = {"such as {\"type\": \"sphere\", \"radius\": 1}"};
+    if (const std::string* name = text(&value)) {
+      const bool type = find_node(*name) != nullptr;
+      help = {type ? fmt::format("write {{\"type\": \"{}\", ...}}", *name)
+                   : fmt::format("write {{\"use\": \"{}\"}} to refer to a named node", *name)};
+    }
+    diagnostics_.error("E0101", value.span, fmt::format("a node must be an object {{...}}, not {}", describe(value)), "",
+                       std::move(help));
+    return node;
+  }
+  const syntax::Property* type = record->find("type");
+  const syntax::Property* use = record->find("use");
+  if (type && use) {
+    diagnostics_.error("E0106", use->name_span, "a node has either `type` or `use`, not both", "",
+                       {"keep `use` to place a named node, or `type` to make a new one"});
+  }
+  if (type) {
+    check_type(*record, *type, node);
+  } else if (use) {
+    check_use(*record, *use, node);
+  } else {
+    std::string help = "such as {\"type\": \"sphere\", \"radius\": 1} or {\"use\": \"a name from `nodes`\"}";
+    for (const syntax::Property& property : record->properties) {
+      const std::string_view meant = suggest(property.name, {"type", "use"});
+      if (!meant.empty()) help = fmt::format("write \"{}\" in place of \"{}\"", meant, property.name);
+    }
+    diagnostics_.error("E0103", opening(value.span), "a node needs a `type` or a `use`", "", {help});
+  }
+  return node;
+}
+
+std::vector<CheckedNode> NodeChecker::check_list(const syntax::Value& value, std::string_view whose) {
+  const auto& list = std::get<syntax::List>(value.data);
+  if (list.empty()) {
+    diagnostics_.error("E0107", value.span, fmt::format("{} is empty", whose), "needs at least one node",
+                       {"such as [{\"type\": \"sphere\", \"radius\": 1}]"});
+  }
+  std::vector<CheckedNode> nodes;
+  nodes.reserve(list.size());
+  for (const syntax::Value& item : list) nodes.push_back(check(item));
+  return nodes;
+}
+
+void NodeChecker::check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node) {
+  const RecordReader reader(use_record(), record, use.name_span, diagnostics_, "E0301");
+  if (const std::string* name = text(reader.value("use"))) {
+    node.word = *name;
+    node.use = nodes_.resolve(*name, "named node", "E0203", use.value->span, diagnostics_);
+  }
+  check_common(reader, node);
+}
+
+void NodeChecker::check_type(const syntax::Record& record, const syntax::Property& type, CheckedNode& node) {
+  const std::string* name = text(type.value.get());
+  const NodeSpec* row = name ? find_node(*name) : nullptr;
+  if (name == nullptr) {
+    diagnostics_.error("E0101", type.value->span, fmt::format("`type` must be a string, not {}", describe(*type.value)),
+                       "", {fmt::format("known: {}", fmt::join(node_types(), ", "))});
+    return;
+  }
+  if (row == nullptr) return report_unknown_type(record, type, *name, node);
+  node.word = *name;
+  node.kind = row->kind;
+  // `use` beside `type` has been reported as such.
+  const RecordReader reader(node_record(row->kind), record, type.value->span, diagnostics_, "E0301");
+  for (const ParamSpec& param : row->params) {
+    const std::vector<double> numbers = reader.numbers(param.name);
+    node.params.insert(node.params.end(), numbers.begin(), numbers.end());
+  }
+  if (const syntax::Value* of = reader.value("of")) check_children(*of, *row, node);
+  check_common(reader, node);
+  if (!reader.good() || row->check == nullptr) return;
+  if (const std::optional<std::string> problem = row->check(node.params)) {
+    diagnostics_.error("E0302", type.value->span, *problem, "", {fmt::format("`{}`: {}", row->name, row->doc)});
+  }
+}
+
+void NodeChecker::check_children(const syntax::Value& of, const NodeSpec& row, CheckedNode& node) {
+  if (row.category == Category::Combinator) {
+    node.children = check_list(of, fmt::format("`of` of `{}`", row.name));
+  } else {
+    node.children.push_back(check(of));
+  }
+}
+
+void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
+  if (const std::string* name = text(reader.value("name"))) node.name = *name;
+  if (const syntax::Value* material = reader.value("material")) {
+    node.material = materials_.resolve(*text(material), "material", "E0202", material->span, diagnostics_);
+  }
+  const syntax::Value* scale = reader.value("scale");
+  const syntax::Value* rotate = reader.value("rotate");
+  const syntax::Value* translate = reader.value("translate");
+  glm::dmat3 rotation(1);
+  if (rotate) {
+    if (const auto* record = std::get_if<syntax::Record>(&rotate->data)) {
+      const RecordReader turn(rotation_record(), *record, opening(rotate->span), diagnostics_, "E0301");
+      if (turn.good()) rotation = rotation_about(turn.vec3("axis"), turn.number("angle"));
+    } else {
+      rotation = rotation_xyz(*three_numbers(*rotate));
+    }
+  }
+  if (!scale && !rotate && !translate) return;
+  const glm::dvec3 factors = scale ? *three_numbers(*scale) : glm::dvec3(1);
+  node.transform = transform_params(factors, rotation, reader.vec3("translate"));
+}
+
+void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax::Property& type, std::string_view name,
+                                      CheckedNode& node) {
+  diagnostics_.error("E0201", type.value->span, fmt::format("unknown type of node `{}`", name), "",
+                     {did_you_mean(name, node_types())});
+  // What it is made of and where it stands can be checked all the same.
+  if (const syntax::Property* of = record.find("of")) {
+    if (std::holds_alternative<syntax::List>(of->value->data)) node.children = check_list(*of->value, "`of`");
+    if (std::holds_alternative<syntax::Record>(of->value->data)) node.children.push_back(check(*of->value));
+  }
+  const syntax::Property* material = record.find("material");
+  if (const std::string* wanted = material ? text(material->value.get()) : nullptr) {
+    materials_.resolve(*wanted, "material", "E0202", material->value->span, diagnostics_);
+  }
+}
+
+}  // namespace fathom::compiler

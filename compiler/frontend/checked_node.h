@@ -1,0 +1,27 @@
+// A node of a scene file after checking: parameters in the node table's order, names replaced by numbers. Between
+// check_node.h, which makes them, and build.h, which makes the graph of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/graph.h"
+
+namespace fathom::compiler {
+
+struct CheckedNode {
+  Span span;                  // of the whole record
+  std::string name;           // its `name`, or what it is called under `nodes`; "" when neither
+  std::string word;           // its `use` or else its `type`
+  Kind kind = Kind::Union;    // of no meaning when `use` is there
+  std::optional<std::uint32_t> use;       // which of the named nodes
+  std::vector<double> params;
+  std::vector<CheckedNode> children;
+  std::optional<std::array<double, 13>> transform;  // see Kind::Transform
+  std::optional<std::uint32_t> material;            // its own
+};
+
+}  // namespace fathom::compiler

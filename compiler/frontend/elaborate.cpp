@@ -1,0 +1,124 @@
+#include "compiler/frontend/elaborate.h"
+
+#include <fmt/format.h>
+
+#include "compiler/frontend/build.h"
+#include "compiler/frontend/check_node.h"
+#include "compiler/frontend/name_order.h"
+#include "compiler/frontend/record_reader.h"
+#include "compiler/frontend/settings.h"
+
+namespace fathom::compiler {
+namespace {
+
+// The nodes of a scene, checked, and what is known about their names.
+struct CheckedScene {
+  Names material_names, node_names;
+  std::vector<CheckedNode> named, objects;
+  std::vector<std::vector<Use>> uses;  // of each of `named`
+  std::vector<std::uint32_t> order;    // of `named`, as order_names() says
+};
+
+void check_version(const RecordReader& reader, Diagnostics& diagnostics) {
+  const syntax::Value* version = reader.value("version");
+  if (version == nullptr || std::get<double>(version->data) == 1) return;
+  diagnostics.error("E0105", version->span, fmt::format("unknown `version` {}", describe(*version)), "",
+                    {"this program reads \"version\": 1"});
+}
+
+// Whether each named node is reached from the objects.
+std::vector<bool> reached(const CheckedScene& scene) {
+  std::vector<bool> out(scene.named.size(), false);
+  std::vector<std::uint32_t> pending;
+  const auto reach = [&](const std::vector<Use>& uses) {
+    for (const Use& use : uses) {
+      if (out[use.target]) continue;
+      out[use.target] = true;
+      pending.push_back(use.target);
+    }
+  };
+  for (const CheckedNode& object : scene.objects) reach(uses_of(object));
+  while (!pending.empty()) {
+    const std::uint32_t name = pending.back();
+    pending.pop_back();
+    reach(scene.uses[name]);
+  }
+  return out;
+}
+
+void warn_of_unused(const CheckedScene& scene, Diagnostics& diagnostics) {
+  for (std::uint32_t i = 0; i < scene.material_names.size(); ++i) {
+    if (scene.material_names.used(i)) continue;
+    diagnostics.warning("W0401", scene.material_names.span(i),
+                        fmt::format("unused material `{}`", scene.material_names.name(i)), "no node has it",
+                        {fmt::format("give it to a node with \"material\": \"{}\", or remove it", scene.material_names.name(i))});
+  }
+  const std::vector<bool> in_scene = reached(scene);
+  for (std::uint32_t i = 0; i < scene.node_names.size(); ++i) {
+    if (in_scene[i]) continue;
+    const bool elsewhere = scene.node_names.used(i);
+    diagnostics.warning("W0402", scene.node_names.span(i), fmt::format("unused node `{}`", scene.node_names.name(i)),
+                        elsewhere ? "only unused nodes use it" : "nothing uses it",
+                        {fmt::format("place it with {{\"use\": \"{}\"}}, or remove it", scene.node_names.name(i))});
+  }
+}
+
+CheckedScene check_nodes(const RecordReader& reader, Diagnostics& diagnostics) {
+  CheckedScene scene;
+  const auto add_names = [&](const char* property, Names& names) {
+    const syntax::Value* value = reader.value(property);
+    if (value == nullptr) return;
+    for (const syntax::Property& named : std::get<syntax::Record>(value->data).properties) names.add(named);
+  };
+  add_names("materials", scene.material_names);
+  add_names("nodes", scene.node_names);
+  NodeChecker checker(scene.material_names, scene.node_names, diagnostics);
+  if (const syntax::Value* nodes = reader.value("nodes")) {
+    for (const syntax::Property& named : std::get<syntax::Record>(nodes->data).properties) {
+      CheckedNode& node = scene.named.emplace_back(checker.check(*named.value));
+      if (node.name.empty()) node.name = named.name;
+      scene.uses.push_back(uses_of(node));
+    }
+  }
+  if (const syntax::Value* objects = reader.value("objects")) scene.objects = checker.check_list(*objects, "`objects`");
+  scene.order = order_names(scene.uses, scene.node_names, diagnostics);
+  return scene;
+}
+
+Elaborated read_settings(const RecordReader& reader, Diagnostics& diagnostics) {
+  Elaborated out;
+  if (const syntax::Value* camera = reader.value("camera")) out.camera = read_camera(*camera, diagnostics);
+  if (const syntax::Value* film = reader.value("film")) out.film = read_film(*film, diagnostics);
+  if (const syntax::Value* render = reader.value("render")) out.settings = read_render(*render, diagnostics);
+  if (const syntax::Value* background = reader.value("background")) {
+    out.background = read_background(*background, diagnostics);
+  }
+  if (const syntax::Value* materials = reader.value("materials")) out.materials = read_materials(*materials, diagnostics);
+  return out;
+}
+
+}  // namespace
+
+std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics) {
+  const auto* record = std::get_if<syntax::Record>(&file.root.data);
+  if (record == nullptr) {
+    diagnostics.error("E0101", file.root.span, fmt::format("a scene must be an object {{...}}, not {}", describe(file.root)),
+                      "", {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
+    return std::nullopt;
+  }
+  const RecordReader reader(scene_record(), *record, opening(file.root.span), diagnostics);
+  check_version(reader, diagnostics);
+  Elaborated out = read_settings(reader, diagnostics);
+  const CheckedScene scene = check_nodes(reader, diagnostics);
+  // With errors about, what seems unused may be meant by a misspelt name.
+  if (diagnostics.has_errors()) return std::nullopt;
+  warn_of_unused(scene, diagnostics);
+
+  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials);
+  for (const CheckedNode& object : scene.objects) builder.add_object(object);
+  out.scene = builder.finish();
+  out.surfaces = builder.take_surfaces();
+  return out;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,63 @@
+#include "compiler/frontend/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace fathom::compiler {
+namespace {
+
+struct SineCosine {
+  double sine, cosine;
+};
+
+// With exact zeros and ones at whole quarter turns, where the library's functions are off by 1e-16.
+SineCosine sine_cosine(double degrees) {
+  const double turned = std::fmod(degrees, 360.0);
+  const double quarters = turned / 90.0;
+  if (quarters == std::floor(quarters)) {
+    constexpr SineCosine kExact[4] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}};
+    return kExact[(static_cast<int>(quarters) + 4) % 4];
+  }
+  const double angle = turned * (std::numbers::pi / 180);
+  return {std::sin(angle), std::cos(angle)};
+}
+
+}  // namespace
+
+glm::dmat3 rotation_about(glm::dvec3 axis, double degrees) {
+  // Divided by the largest part first, so that no square overflows or vanishes.
+  axis /= std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+  const glm::dvec3 u = axis / glm::length(axis);
+  const auto [s, c] = sine_cosine(degrees);
+  // Rodrigues' formula: R v = c v + s (u x v) + (1 - c) u (u . v); column j is R e_j.
+  glm::dmat3 r;
+  for (int j = 0; j < 3; ++j) {
+    glm::dvec3 e(0);
+    e[j] = 1;
+    r[j] = c * e + s * glm::cross(u, e) + (1 - c) * u[j] * u;
+  }
+  return r;
+}
+
+glm::dmat3 rotation_xyz(glm::dvec3 degrees) {
+  return rotation_about({0, 0, 1}, degrees.z) * rotation_about({0, 1, 0}, degrees.y) *
+         rotation_about({1, 0, 0}, degrees.x);
+}
+
+std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rotation, glm::dvec3 translation) {
+  // p = R S q + t, so q = S^-1 R^T (p - t): row i is column i of R over the i-th scale.
+  std::array<double, 13> params{};
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 row = rotation[i] / scale[i];
+    const auto at = static_cast<std::size_t>(4 * i);
+    for (int j = 0; j < 3; ++j) params[at + static_cast<std::size_t>(j)] = row[j];
+    params[at + 3] = -glm::dot(row, translation);
+  }
+  params[12] = std::min({scale.x, scale.y, scale.z});
+  return params;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,21 @@
+// A node's scale, rotate and translate as the parameters of a Transform node (compiler/graph.h).
+// Tested by: tests/compiler/elaborate_test.cpp
+#pragma once
+
+#include <array>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace fathom::compiler {
+
+// The rotation by degrees about an axis of any length but zero; exact for multiples of 90 degrees about x, y or z.
+glm::dmat3 rotation_about(glm::dvec3 axis, double degrees);
+
+// The rotation by degrees about the fixed x, then y, then z axis.
+glm::dmat3 rotation_xyz(glm::dvec3 degrees);
+
+// Rows of the map from the parent's space to the node's, then the factor of its distances. The node is scaled by
+// `scale` (each > 0), then rotated, then moved.
+std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rotation, glm::dvec3 translation);
+
+}  // namespace fathom::compiler

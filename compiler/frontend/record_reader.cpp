@@ -1,0 +1,212 @@
+#include "compiler/frontend/record_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/frontend/suggest.h"
+#include "vm/check.h"
+
+namespace fathom::compiler {
+namespace {
+
+using syntax::Value;
+
+std::string_view expected(ValueType type) {
+  switch (type) {
+    case ValueType::Number: return "a number";
+    case ValueType::Integer: return "a whole number";
+    case ValueType::Vec3: return "three numbers [x, y, z]";
+    case ValueType::Color: return "three numbers [red, green, blue]";
+    case ValueType::Text:
+    case ValueType::Choice: return "a string";
+    case ValueType::Record: return "an object {...}";
+    case ValueType::Named: return "an object {\"name\": {...}, ...}";
+    case ValueType::Node: return "a node {...}";
+    case ValueType::Nodes: return "a list of nodes [{...}, ...]";
+    case ValueType::Scale: return "a number or three numbers [x, y, z]";
+    case ValueType::Rotation: return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
+    case ValueType::Gradient: return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}";
+    case ValueType::Anything: break;
+  }
+  return "anything";
+}
+
+bool has_type(const Value& value, ValueType type) {
+  const double* number = std::get_if<double>(&value.data);
+  const bool record = std::holds_alternative<syntax::Record>(value.data);
+  const bool three = number == nullptr && three_numbers(value).has_value();
+  switch (type) {
+    case ValueType::Number: return number != nullptr;
+    case ValueType::Integer: return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));
+    case ValueType::Vec3:
+    case ValueType::Color: return three;
+    case ValueType::Text:
+    case ValueType::Choice: return std::holds_alternative<std::string>(value.data);
+    case ValueType::Record:
+    case ValueType::Named:
+    case ValueType::Node: return record;
+    case ValueType::Nodes: return std::holds_alternative<syntax::List>(value.data);
+    case ValueType::Scale: return number != nullptr || three;
+    case ValueType::Rotation:
+    case ValueType::Gradient: return record || three;
+    case ValueType::Anything: break;
+  }
+  return true;
+}
+
+// What the number does not satisfy, as in "must be ..."; empty when nothing.
+std::string broken_rule(double number, const PropertySpec& spec) {
+  const Range& range = spec.range;
+  if (!std::isfinite(number)) return "finite";
+  if (spec.rule == Rule::Positive && !(number > 0)) return "positive";
+  if (spec.rule == Rule::NotNegative && !(number >= 0)) return "zero or positive";
+  const bool inside = range.open ? number > range.least && number < range.most
+                                 : number >= range.least && number <= range.most;
+  if (inside) return "";
+  if (range.most == kLargest && range.least == -kLargest) return fmt::format("at most {} in magnitude", kLargest);
+  if (range.open) return fmt::format("greater than {} and less than {}", range.least, range.most);
+  return fmt::format("between {} and {}", range.least, range.most);
+}
+
+struct Broken {
+  std::string rule;
+  Span span;
+};
+
+// The first number of the value that breaks a rule of its property.
+std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec) {
+  if (const double* number = std::get_if<double>(&value.data)) {
+    const std::string rule = broken_rule(*number, spec);
+    return rule.empty() ? std::nullopt : std::optional(Broken{rule, value.span});
+  }
+  const auto* list = std::get_if<syntax::List>(&value.data);
+  if (list == nullptr) return std::nullopt;
+  bool all_zero = true;
+  for (const Value& item : *list) {
+    const double* number = std::get_if<double>(&item.data);
+    if (number == nullptr) continue;
+    const std::string rule = broken_rule(*number, spec);
+    if (!rule.empty()) return Broken{rule, item.span};
+    all_zero = all_zero && *number == 0;
+  }
+  if (spec.rule == Rule::NotZero && all_zero) return Broken{"a direction, not the zero vector", value.span};
+  return std::nullopt;
+}
+
+std::vector<std::string> about(const PropertySpec& spec) {
+  return {fmt::format("`{}`: {}", spec.name, spec.doc)};
+}
+
+// The other row of the same family that has the property: "`ior` is a property of transparent materials".
+std::string owner(const RecordSpec& spec, std::string_view property) {
+  for (const auto* family : {&camera_records(), &material_records()}) {
+    const auto same = [&](const RecordSpec& row) { return &row == &spec; };
+    if (std::none_of(family->begin(), family->end(), same)) continue;
+    for (const RecordSpec& row : *family) {
+      if (row.find(property)) return fmt::format("`{}` goes with \"type\": \"{}\"", property, row.name);
+    }
+  }
+  return "";
+}
+
+bool is_numeric(ValueType type) {
+  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec3 || type == ValueType::Color;
+}
+
+}  // namespace
+
+std::string describe(const Value& value) {
+  struct Describer {
+    std::string operator()(std::monostate) const { return "null"; }
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(const std::string&) const { return "a string"; }
+    std::string operator()(const syntax::List& list) const {
+      if (list.empty()) return "an empty list";
+      const auto number = [](const Value& item) { return std::holds_alternative<double>(item.data); };
+      const bool numbers = std::all_of(list.begin(), list.end(), number);
+      if (list.size() == 1) return numbers ? "a list of one number" : "a list";
+      return numbers ? fmt::format("a list of {} numbers", list.size()) : "a list";
+    }
+    std::string operator()(const syntax::Record&) const { return "an object"; }
+  };
+  return std::visit(Describer{}, value.data);
+}
+
+std::optional<glm::dvec3> three_numbers(const Value& value) {
+  if (const double* number = std::get_if<double>(&value.data)) return glm::dvec3(*number);
+  const auto* list = std::get_if<syntax::List>(&value.data);
+  if (list == nullptr || list->size() != 3) return std::nullopt;
+  glm::dvec3 out;
+  for (int i = 0; i < 3; ++i) {
+    const double* number = std::get_if<double>(&(*list)[static_cast<std::size_t>(i)].data);
+    if (number == nullptr) return std::nullopt;
+    out[i] = *number;
+  }
+  return out;
+}
+
+RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, Diagnostics& diagnostics,
+                           const char* range_code)
+    : spec_(spec), diagnostics_(diagnostics), range_code_(range_code) {
+  const std::size_t before = diagnostics.errors();
+  for (const syntax::Property& property : record.properties) check(property);
+  for (const PropertySpec& row : spec.properties) {
+    if (!row.required || record.find(row.name)) continue;
+    diagnostics.error("E0103", place, fmt::format("`{}` has no `{}`", spec.name, row.name),
+                      fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
+  }
+  good_ = diagnostics.errors() == before;
+}
+
+void RecordReader::check(const syntax::Property& property) {
+  const PropertySpec* row = spec_.find(property.name);
+  const Value& value = *property.value;
+  if (row == nullptr) {
+    std::vector<std::string_view> known;
+    for (const PropertySpec& other : spec_.properties) {
+      if (other.name[0] != '$') known.push_back(other.name);
+    }
+    std::vector<std::string> help = {did_you_mean(property.name, known)};
+    const std::string elsewhere = owner(spec_, property.name);
+    if (!elsewhere.empty()) help.insert(help.begin(), elsewhere);
+    diagnostics_.error("E0102", property.name_span, fmt::format("unknown property `{}` in `{}`", property.name, spec_.name),
+                       fmt::format("not a {} property", spec_.noun), std::move(help));
+  } else if (!has_type(value, row->type)) {
+    diagnostics_.error("E0101", value.span,
+                       fmt::format("`{}` must be {}, not {}", row->name, expected(row->type), describe(value)), "",
+                       about(*row));
+  } else if (const std::optional<Broken> broken = first_broken(value, *row)) {
+    diagnostics_.error(range_code_, broken->span, fmt::format("`{}` must be {}", row->name, broken->rule), "",
+                       about(*row));
+  } else {
+    fit_.push_back(&property);
+  }
+}
+
+const Value* RecordReader::value(std::string_view name) const {
+  for (const syntax::Property* property : fit_) {
+    if (property->name == name) return property->value.get();
+  }
+  return nullptr;
+}
+
+std::vector<double> RecordReader::numbers(std::string_view name) const {
+  const PropertySpec* row = spec_.find(name);
+  CHECK(row != nullptr && is_numeric(row->type), "a property of the table, with numbers");
+  const Value* given = value(name);
+  const bool single = row->type == ValueType::Number || row->type == ValueType::Integer;
+  if (given == nullptr) return !row->fallback.empty() ? row->fallback : std::vector<double>(single ? 1 : 3, 0.0);
+  if (single) return {std::get<double>(given->data)};
+  const glm::dvec3 v = *three_numbers(*given);
+  return {v.x, v.y, v.z};
+}
+
+glm::dvec3 RecordReader::vec3(std::string_view name) const {
+  const std::vector<double> v = numbers(name);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,74 @@
+// The tables of properties: what each record of a scene file may hold. Checking, "did you mean", the defaults and the
+// JSON schema read them; the parameters of nodes come from compiler/shapes/node_table.h.
+// Tested by: tests/compiler/elaborate_test.cpp
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/shapes/node_table.h"
+
+namespace fathom::compiler {
+
+enum class ValueType {
+  Number,
+  Integer,
+  Vec3,      // three numbers
+  Color,     // three numbers
+  Text,
+  Choice,    // one of PropertySpec::choices
+  Record,    // a record with a table of its own
+  Named,     // a record whose properties are names of the scene's choosing
+  Node,
+  Nodes,     // a list of nodes, not empty
+  Scale,     // a number or three
+  Rotation,  // three numbers or a record by rotation_record()
+  Gradient,  // a colour or a record by gradient_record()
+  Anything,
+};
+
+// The machine computes in 32-bit floats: three squares of this magnitude still add up to less than their largest.
+inline constexpr double kLargest = 1e18;
+
+// Numbers (each of three, for a vector) lie in [least, most]; in (least, most) when open.
+struct Range {
+  double least = -kLargest;
+  double most = kLargest;
+  bool open = false;
+};
+
+struct PropertySpec {
+  std::string_view name;
+  ValueType type;
+  std::string_view doc;
+  std::vector<double> fallback = {};  // numbers and vectors: used when the property is absent; empty when there is none
+  bool required = false;
+  Rule rule = Rule::Any;
+  Range range = {};
+  std::vector<std::string_view> choices = {};  // the first is used when the property is absent
+};
+
+struct RecordSpec {
+  std::string name;  // "camera", "sphere", "diffuse": what `type` says, when there is one
+  std::string noun;  // "camera", "sphere", "diffuse material"
+  std::vector<PropertySpec> properties;
+
+  const PropertySpec* find(std::string_view property) const;
+};
+
+const RecordSpec& scene_record();
+const RecordSpec& film_record();
+const RecordSpec& render_record();
+const RecordSpec& gradient_record();  // of the background
+const RecordSpec& rotation_record();  // of a node
+
+// One row for each value of `type`; the first is used when `type` is absent and not required.
+const std::vector<RecordSpec>& camera_records();
+const std::vector<RecordSpec>& material_records();
+
+const RecordSpec& node_record(Kind kind);  // its parameters and what every node may have
+const RecordSpec& use_record();            // {"use": "name"} and what every node may have
+
+}  // namespace fathom::compiler

@@ -1,0 +1,22 @@
+// The parts of a scene that are not nodes: camera, film, render settings, background, materials.
+// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304)
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/syntax.h"
+
+namespace fathom::compiler {
+
+// Each reads the value of the scene's property of that name and reports what is wrong with it; the result is of no
+// use when anything was.
+Camera read_camera(const syntax::Value& value, Diagnostics& diagnostics);
+Film read_film(const syntax::Value& value, Diagnostics& diagnostics);
+RenderSettings read_render(const syntax::Value& value, Diagnostics& diagnostics);
+Background read_background(const syntax::Value& value, Diagnostics& diagnostics);
+std::vector<Material> read_materials(const syntax::Value& value, Diagnostics& diagnostics);  // in file order
+
+}  // namespace fathom::compiler

@@ -1,0 +1,63 @@
+#include <array>
+
+#include "compiler/affine.h"
+#include "compiler/passes/passes.h"
+#include "compiler/passes/rewrite.h"
+
+namespace fathom::compiler {
+namespace {
+
+bool is_identity(std::span<const double> transform) {
+  constexpr std::array<double, 13> kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1};
+  return std::equal(kIdentity.begin(), kIdentity.end(), transform.begin());
+}
+
+// An offset of `child` by `radius`.
+NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId child) {
+  if (radius == 0) return child;
+  const Origin& origin = in.graph.origin(id);
+  if (out.kind(child) == Kind::Sphere || out.kind(child) == Kind::Round) {
+    const Kind kind = out.kind(child);
+    const std::array<double, 1> sum = {out.params(child)[0] + radius};
+    const std::vector<NodeId> grandchildren(out.children(child).begin(), out.children(child).end());
+    return out.add(kind, sum, grandchildren, origin);
+  }
+  return out.add(Kind::Round, std::array<double, 1>{radius}, std::array<NodeId, 1>{child}, origin);
+}
+
+Kind hard(Kind smooth) {
+  switch (smooth) {
+    case Kind::SmoothUnion: return Kind::Union;
+    case Kind::SmoothIntersection: return Kind::Intersection;
+    default: return Kind::Subtraction;
+  }
+}
+
+}  // namespace
+
+Scene fold(const Scene& scene) {
+  return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
+    const auto params = scene.graph.params(id);
+    switch (scene.graph.kind(id)) {
+      case Kind::Round: return fold_round(scene, out, id, params[0], children[0]);
+      case Kind::Transform:
+        if (is_identity(params)) return children[0];
+        break;
+      case Kind::Union:
+      case Kind::Intersection:
+      case Kind::Subtraction:
+        if (children.size() == 1) return children[0];
+        break;
+      case Kind::SmoothUnion:
+      case Kind::SmoothIntersection:
+      case Kind::SmoothSubtraction:
+        if (children.size() == 1) return children[0];
+        if (params[0] == 0) return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
+        break;
+      default: break;
+    }
+    return keep(scene, out, id, children);
+  });
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,23 @@
+#include <algorithm>
+
+#include "compiler/passes/passes.h"
+#include "compiler/passes/rewrite.h"
+
+namespace fathom::compiler {
+
+Scene share(const Scene& scene) {
+  return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
+    const Kind kind = scene.graph.kind(id);
+    if (kind != Kind::Union && kind != Kind::Intersection && kind != Kind::Subtraction) {
+      return keep(scene, out, id, children);
+    }
+    std::vector<NodeId> operands = children;
+    const auto first = operands.begin() + (kind == Kind::Subtraction ? 1 : 0);
+    std::sort(first, operands.end());
+    operands.erase(std::unique(first, operands.end()), operands.end());
+    if (operands.size() == 1) return operands[0];
+    return out.add(kind, {}, operands, scene.graph.origin(id));
+  });
+}
+
+}  // namespace fathom::compiler

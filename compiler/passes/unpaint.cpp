@@ -1,0 +1,12 @@
+#include "compiler/passes/passes.h"
+#include "compiler/passes/rewrite.h"
+
+namespace fathom::compiler {
+
+Scene unpaint(const Scene& scene) {
+  return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
+    return scene.graph.kind(id) == Kind::Paint ? children[0] : keep(scene, out, id, children);
+  });
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,204 @@
+#include "compiler/shapes/primitives.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace fathom::compiler {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+dvec3 vec3_at(Params p, std::size_t i) { return {p[i], p[i + 1], p[i + 2]}; }
+
+// Corners of a triangle or quad; its last parameter is the thickness.
+std::vector<dvec3> corners(Params p) {
+  std::vector<dvec3> result;
+  for (std::size_t i = 0; i + 3 <= p.size(); i += 3) result.push_back(vec3_at(p, i));
+  return result;
+}
+
+double longest_side(const std::vector<dvec3>& v) {
+  double longest = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) longest = std::max(longest, glm::length(v[(i + 1) % v.size()] - v[i]));
+  return longest;
+}
+
+// Twice the polygon's area as a vector along its normal (Newell's method).
+dvec3 area_vector(const std::vector<dvec3>& v) {
+  dvec3 sum(0.0);
+  for (std::size_t i = 0; i < v.size(); ++i) sum += glm::cross(v[i] - v[0], v[(i + 1) % v.size()] - v[0]);
+  return sum;
+}
+
+constexpr const char* kCornerNames = "abcd";
+
+Complaint check_sheet(const std::vector<dvec3>& v) {
+  const double scale = longest_side(v);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    for (std::size_t j = i + 1; j < v.size(); ++j) {
+      if (glm::length(v[i] - v[j]) <= 1e-9 * scale) {
+        return fmt::format("corners `{}` and `{}` coincide; give distinct corners", kCornerNames[i], kCornerNames[j]);
+      }
+    }
+  }
+  if (glm::length(area_vector(v)) <= 1e-9 * scale * scale) {
+    return "the corners lie on one line; move one off it";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Complaint check_round_box(Params p) {
+  const double smallest = std::min({p[0], p[1], p[2]});
+  if (p[3] <= smallest) return std::nullopt;
+  return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size", p[3],
+                     smallest);
+}
+
+Complaint check_rounded_cylinder(Params p) {
+  const double smallest = std::min(p[0], p[1]);
+  if (p[2] <= smallest) return std::nullopt;
+  return fmt::format("`rounding` {} is larger than {}, the smaller of `radius` and `half_height`; it is part of both",
+                     p[2], smallest);
+}
+
+Complaint check_cone(Params p) {
+  if (p[0] > 0 || p[1] > 0) return std::nullopt;
+  return "both radii are 0; one of `bottom_radius` and `top_radius` must be positive";
+}
+
+Complaint check_round_cone(Params p) {
+  if (std::abs(p[0] - p[1]) <= p[2]) return std::nullopt;
+  return fmt::format("the radii differ by {}, more than `height` {}: one ball holds the other; use a sphere",
+                     std::abs(p[0] - p[1]), p[2]);
+}
+
+Complaint check_triangle(Params p) { return check_sheet(corners(p)); }
+
+Complaint check_quad(Params p) {
+  const std::vector<dvec3> v = corners(p);
+  if (Complaint complaint = check_sheet(v)) return complaint;
+  const dvec3 normal = glm::normalize(area_vector(v));
+  const double scale = longest_side(v);
+  const double out = std::abs(glm::dot(v[3] - v[0], glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]))));
+  if (!(out <= 1e-6 * scale)) {
+    return fmt::format("corner `d` is {:.3g} off the plane of `a`, `b` and `c`; use two triangles", out);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const dvec3 before = v[i] - v[(i + 3) % 4], after = v[(i + 1) % 4] - v[i];
+    if (glm::dot(glm::cross(before, after), normal) <= 0) {
+      return fmt::format("the corner at `{}` is not convex; give the corners in order around a convex shape, or use two "
+                         "triangles", kCornerNames[i]);
+    }
+  }
+  return std::nullopt;
+}
+
+Complaint check_mandelbulb(Params p) {
+  if (p[0] < 2 || p[0] > 24) return fmt::format("`power` is {}; it must be a whole number from 2 to 24", p[0]);
+  if (p[1] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[1]);
+  // |w|^2 after the escaping iteration is about bailout^(2 power) and must be a float.
+  const double largest = std::floor(std::pow(10.0, 18 / p[0]));
+  if (p[2] < 2 || p[2] > largest) {
+    return fmt::format("`bailout` is {}; for power {} it must be between 2 and {}", p[2], p[0], largest);
+  }
+  return std::nullopt;
+}
+
+std::vector<double> same_immediates(Params p) { return {p.begin(), p.end()}; }
+
+std::vector<double> mandelbulb_immediates(Params p) { return {p[0], p[1], p[2], mandelbulb_bound(p).hi.x}; }
+
+std::vector<double> round_box_immediates(Params p) { return {p[0] - p[3], p[1] - p[3], p[2] - p[3], p[3]}; }
+
+std::vector<double> plane_immediates(Params p) {
+  // Scaling first keeps normals of any length, 1e-200 or 1e200, from under- or overflowing.
+  const dvec3 given = vec3_at(p, 0);
+  const double largest = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
+  const dvec3 n = glm::normalize(given / largest);
+  return {n.x, n.y, n.z, p[3]};
+}
+
+std::vector<double> rounded_cylinder_immediates(Params p) { return {p[0] - p[2], p[1] - p[2], p[2]}; }
+
+// The side's outward normal in the half-plane (distance from the axis, y), and its length.
+std::vector<double> cone_immediates(Params p) {
+  const double bottom = p[0], top = p[1], half_height = p[2];
+  const double slant = std::hypot(2 * half_height, bottom - top);
+  return {half_height, bottom, top, 2 * half_height / slant, (bottom - top) / slant, slant};
+}
+
+// The side touches both balls: its outward normal in the half-plane is (sqrt(1 - b^2), b), b = (r1 - r2) / h.
+std::vector<double> round_cone_immediates(Params p) {
+  const double b = (p[0] - p[1]) / p[2];
+  // Balls that touch from within (b = +-1) have no side; a normal of not quite 0 keeps its cases apart on the axis.
+  return {p[0], p[1], p[2], std::max(1e-30, std::sqrt((1 - b) * (1 + b))), b};
+}
+
+// A frame with the first corner at its origin, the first edge along x and the normal along z; then for each edge its
+// start, its direction and its length in that frame's xy plane; then the thickness.
+std::vector<double> sheet_immediates(Params p) {
+  const std::vector<dvec3> v = corners(p);
+  const dvec3 z = glm::normalize(area_vector(v));
+  const dvec3 x = glm::normalize(v[1] - v[0]);
+  const dvec3 y = glm::cross(z, x);
+  std::vector<double> result;
+  for (const dvec3& axis : {x, y, z}) {
+    result.insert(result.end(), {axis.x, axis.y, axis.z, -glm::dot(axis, v[0])});
+  }
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const dvec3 start = v[i] - v[0], edge = v[(i + 1) % v.size()] - v[i];
+    const double length = glm::length(edge);
+    result.insert(result.end(), {glm::dot(start, x), glm::dot(start, y), glm::dot(edge, x) / length,
+                                 glm::dot(edge, y) / length, length});
+  }
+  result.push_back(p.back());
+  return result;
+}
+
+Box sphere_bound(Params p) { return Box::centred(dvec3(p[0])); }
+Box half_size_bound(Params p) { return Box::centred(vec3_at(p, 0)); }
+Box torus_bound(Params p) { return Box::centred({p[0] + p[1], p[1], p[0] + p[1]}); }
+
+// A half space is bounded on one side when its normal is along an axis.
+Box plane_bound(Params p) {
+  Box box = Box::everything();
+  const std::vector<double> plane = plane_immediates(p);
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    if (plane[axis] == 1) box.hi[i] = plane[3];
+    if (plane[axis] == -1) box.lo[i] = -plane[3];
+  }
+  return box;
+}
+
+Box cylinder_bound(Params p) { return Box::centred({p[0], p[1], p[0]}); }
+
+Box cone_bound(Params p) {
+  const double radius = std::max(p[0], p[1]);
+  return Box::centred({radius, p[2], radius});
+}
+
+Box round_cone_bound(Params p) {
+  const double radius = std::max(p[0], p[1]);
+  return {{-radius, std::min(-p[0], p[2] - p[1]), -radius}, {radius, std::max(p[0], p[2] + p[1]), radius}};
+}
+
+Box sheet_bound(Params p) {
+  Box box;
+  for (const dvec3& corner : corners(p)) box = unite(box, {corner, corner});
+  return box.grown(p.back());
+}
+
+// Beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p escapes (|w| grows), so the set lies within.
+// The estimate is positive there: after any number of iterations |w| >= |p| > 1.
+Box mandelbulb_bound(Params p) { return Box::centred(dvec3(std::pow(2.0, 1.0 / (p[0] - 1)))); }
+
+}  // namespace fathom::compiler

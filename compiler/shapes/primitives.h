@@ -1,0 +1,44 @@
+// What the compiler knows of each primitive beside its opcode: which parameters fit together, the immediates its opcode
+// takes, and a box around it. All take the parameters in the order of the node table.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/box.h"
+
+namespace fathom::compiler {
+
+using Params = std::span<const double>;
+using Complaint = std::optional<std::string>;
+
+Complaint check_round_box(Params p);
+Complaint check_rounded_cylinder(Params p);
+Complaint check_cone(Params p);
+Complaint check_round_cone(Params p);
+Complaint check_triangle(Params p);
+Complaint check_quad(Params p);
+Complaint check_mandelbulb(Params p);
+
+std::vector<double> same_immediates(Params p);
+std::vector<double> mandelbulb_immediates(Params p);
+std::vector<double> round_box_immediates(Params p);
+std::vector<double> plane_immediates(Params p);
+std::vector<double> rounded_cylinder_immediates(Params p);
+std::vector<double> cone_immediates(Params p);
+std::vector<double> round_cone_immediates(Params p);
+std::vector<double> sheet_immediates(Params p);  // triangle, quad
+
+Box sphere_bound(Params p);
+Box half_size_bound(Params p);
+Box torus_bound(Params p);
+Box plane_bound(Params p);
+Box cylinder_bound(Params p);
+Box cone_bound(Params p);
+Box round_cone_bound(Params p);
+Box sheet_bound(Params p);
+Box mandelbulb_bound(Params p);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,35 @@
+#include "compiler/source.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fathom::compiler {
+
+Source::Source(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
+  line_starts_.push_back(0);
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
+  }
+}
+
+Position Source::locate(std::uint32_t offset) const {
+  if (line_starts_.empty()) return {1, 1};
+  offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
+  const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+  const std::uint32_t start = *(after - 1);
+  // Every byte but a UTF-8 continuation byte begins a code point.
+  const auto points = std::count_if(text_.begin() + start, text_.begin() + offset,
+                                    [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+  return {static_cast<std::uint32_t>(after - line_starts_.begin()), static_cast<std::uint32_t>(points) + 1};
+}
+
+std::string_view Source::line(std::uint32_t number) const {
+  if (number == 0 || number > line_starts_.size()) return {};
+  const std::size_t begin = line_starts_[number - 1];
+  const std::size_t end = number < line_starts_.size() ? line_starts_[number] - 1 : text_.size();
+  std::string_view line(text_.data() + begin, end - begin);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,124 @@
+#include "runtime/cli/arguments.h"
+
+#include <fmt/format.h>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <ostream>
+
+#include "compiler/diagnostics.h"
+
+namespace fathom::cli {
+namespace {
+
+std::string longest_name(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
+}
+
+// CLI11 leaves two blank lines between groups of options.
+std::string without_double_blanks(std::string text) {
+  for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
+// What CLI11 says, in our words; it knows the option's name only as the start of its message.
+std::string explain(const CLI::ParseError& error) {
+  const std::string what = error.what();
+  const std::string name = what.substr(0, what.find_first_of(": "));
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return "the " + name + " is missing";
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return name + ": its value is missing";
+  return what;
+}
+
+std::string indent(std::string_view lines) {
+  std::string indented = "  ";
+  for (char c : lines) {
+    indented += c;
+    if (c == '\n') indented += "  ";
+  }
+  return indented;
+}
+
+}  // namespace
+
+Arguments::Arguments(const std::string& verb, const std::string& description, const std::string& examples)
+    : app_(description, "fathom " + verb), verb_(verb), group_("Options") {
+  app_.allow_extras();
+  app_.set_help_flag("-h,--help", "Print this help and exit");
+  app_.footer("Examples:\n" + indent(examples));
+  app_.get_formatter()->column_width(32);
+  app_.get_formatter()->label("REQUIRED", "");
+}
+
+void Arguments::positional(const std::string& name, const std::string& doc, std::string& target) {
+  app_.add_option(name, target, doc)->required()->type_name("FILE");
+}
+
+void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {
+  app_.add_flag_callback(
+          names, [&target] { target = true; }, doc)
+      ->group(group_);
+}
+
+void Arguments::counter(const std::string& names, const std::string& doc, int& target) {
+  app_.add_flag_function(
+          names, [&target](std::int64_t count) { target = static_cast<int>(count); }, doc)
+      ->group(group_);
+}
+
+void Arguments::option(const std::string& names, const std::string& value, const std::string& doc, Setter setter) {
+  Option& option = options_.emplace_back(Option{nullptr, {}, std::move(setter)});
+  option.option = app_.add_option(names, option.texts, doc);
+  option.option->type_name(value)->type_size(1)->expected(1)->group(group_);
+  option.option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+}
+
+std::optional<int> Arguments::parse(std::span<const std::string> args, const Streams& streams) {
+  try {
+    app_.parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
+  } catch (const CLI::CallForHelp&) {
+    streams.out << without_double_blanks(app_.help());
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    const auto remaining = app_.remaining();
+    if (!remaining.empty()) return report_unknown(remaining, streams);
+    return report_usage(streams, explain(error));
+  }
+  const auto remaining = app_.remaining();
+  if (!remaining.empty()) return report_unknown(remaining, streams);
+  for (const Option& option : options_) {
+    for (const std::string& text : option.texts) {
+      const bool swallowed = text.starts_with("--") && app_.get_option_no_throw(text) != nullptr;
+      const Verdict verdict = swallowed ? Complaint{"its value is missing", ""} : option.setter(text);
+      if (!verdict) continue;
+      return report_usage(streams, longest_name(*option.option) + ": " + verdict->problem,
+                          verdict->help.empty() ? Help{} : Help{verdict->help});
+    }
+  }
+  return std::nullopt;
+}
+
+int Arguments::report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const {
+  const auto unknown = std::find_if(remaining.begin(), remaining.end(), [](const std::string& text) {
+    return text.size() > 1 && text[0] == '-' && text != "--";
+  });
+  if (unknown == remaining.end()) {
+    return report_usage(streams, fmt::format("unexpected argument `{}`", remaining.front()));
+  }
+  const std::string word = unknown->substr(0, unknown->find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app_.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::string_view near = compiler::nearest(word, {names.begin(), names.end()});
+  return report_usage(streams, fmt::format("unknown option `{}`", word),
+                      near.empty() ? Help{} : Help{fmt::format("did you mean `{}`?", near)});
+}
+
+int Arguments::report_usage(const Streams& streams, const std::string& message, Help help) const {
+  help.push_back(fmt::format("`fathom {} --help` lists the options", verb_));
+  return fail(streams, kUsage, message, help);
+}
+
+}  // namespace fathom::cli

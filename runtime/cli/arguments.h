@@ -1,0 +1,54 @@
+// A verb's command line: CLI11 splits it, the messages and exit codes are ours.
+//
+//     Arguments arguments("eval", "Prints distances at points.", "fathom eval ball.json --at 0,1,0");
+//     arguments.positional("scene", "The scene file, - for stdin", scene);
+//     arguments.option("--at", "X,Y,Z", "A point; may be repeated", append_to(read_point, points));
+//     if (auto code = arguments.parse(args, streams)) return *code;
+//
+// An option that is given twice calls its setter twice: a plain one keeps the last value, a list grows.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <CLI/App.hpp>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/cli/streams.h"
+#include "runtime/cli/values.h"
+
+namespace fathom::cli {
+
+class Arguments {
+ public:
+  Arguments(const std::string& verb, const std::string& description, const std::string& examples);
+
+  // The heading in --help of what is added after it.
+  void group(std::string heading) { group_ = std::move(heading); }
+
+  // Names as CLI11 takes them: "-s,--spp".
+  void positional(const std::string& name, const std::string& doc, std::string& target);
+  void flag(const std::string& names, const std::string& doc, bool& target);
+  void counter(const std::string& names, const std::string& doc, int& target);  // how often the flag was given
+  void option(const std::string& names, const std::string& value, const std::string& doc, Setter setter);
+
+  // nullopt to go on; otherwise help or an error was printed and the verb ends with that code.
+  std::optional<int> parse(std::span<const std::string> args, const Streams& streams);
+
+ private:
+  struct Option {
+    CLI::Option* option;
+    std::vector<std::string> texts;
+    Setter setter;
+  };
+  int report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const;
+  int report_usage(const Streams& streams, const std::string& message, Help help = {}) const;
+
+  CLI::App app_;
+  std::string verb_, group_;
+  std::deque<Option> options_;  // addresses are stable
+};
+
+}  // namespace fathom::cli

@@ -1,0 +1,48 @@
+// fathom check: every error and warning of a scene, and a short report of what it compiles to. No pixels.
+// Tested by: tests/runtime/cli_test.cpp
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/verbs.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom check scene.json\n"
+    "fathom check --error-format short scene.json   # one line an error, for editors";
+
+std::string describe(std::string_view name, const vm::VerifiedProgram& program) {
+  return fmt::format(
+      "  {} program: {} instructions, {} words, stacks of {} values and {} points, about {} "
+      "multiply-adds a point\n",
+      name, program.instructions(), program.program().words.size(), program.max_values(), program.max_points(),
+      program.cost());
+}
+
+std::string report(const compiler::CompiledScene& scene) {
+  return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
+         describe("distance", scene.distance) + describe("surface", scene.surface) +
+         fmt::format("  materials: {}, surfaces: {}\n", scene.materials.size(), scene.surfaces.size());
+}
+
+}  // namespace
+
+int run_check(std::span<const std::string> args, const Streams& streams) {
+  SceneArguments scene_arguments;
+  Arguments arguments("check", "Prints every error and warning of a scene and a short report; renders nothing.",
+                      kExamples);
+  add_scene_arguments(arguments, scene_arguments);
+  if (const auto code = arguments.parse(args, streams)) return *code;
+
+  auto source = read_scene(scene_arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  const auto scene = compile_scene(std::get<compiler::Source>(std::move(source)), scene_arguments, streams);
+  if (!scene) return kFoundProblems;
+  streams.out << report(*scene);
+  return kDone;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,34 @@
+// What the program's exit status means: the one list, printed by `fathom --help`. The codes above 2 are those of
+// sysexits.h, so that a script can tell what to do next.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace fathom::cli {
+
+enum ExitCode : int {
+  kDone = 0,
+  kFoundProblems = 1,
+  kUsage = 2,
+  kBadScene = 65,
+  kInternal = 70,
+  kIo = 74,
+};
+
+struct ExitCodeInfo {
+  ExitCode code;
+  std::string_view meaning;
+};
+
+inline constexpr std::array kExitCodes = {
+    ExitCodeInfo{kDone, "done"},
+    ExitCodeInfo{kFoundProblems, "`check` found errors in the scene (warnings do not count)"},
+    ExitCodeInfo{kUsage, "the command line makes no sense"},
+    ExitCodeInfo{kBadScene, "the scene, or a list of points, has errors; trying again will not help"},
+    ExitCodeInfo{kInternal, "a defect of fathom, or not enough memory"},
+    ExitCodeInfo{kIo, "a file could not be read or written; trying again may help"},
+};
+
+}  // namespace fathom::cli

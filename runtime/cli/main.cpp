@@ -1,0 +1,99 @@
+// fathom: finds the verb and runs it; `help`, `--help` and `--version` are its own.
+// Tested by: tests/runtime/cli_test.cpp
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+#include "compiler/diagnostics.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/cli/version.h"
+
+namespace fathom::cli {
+namespace {
+
+const Verb* find_verb(std::string_view name) {
+  const auto found = std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& verb) { return verb.name == name; });
+  return found == kVerbs.end() ? nullptr : &*found;
+}
+
+std::string overview() {
+  std::string text = "Fathom renders scenes made of signed distance fields.\n\nUsage:\n";
+  for (const Verb& verb : kVerbs) {
+    text += fmt::format("  {:36}{}\n", fmt::format("fathom {} {}", verb.name, verb.arguments), verb.summary);
+  }
+  text += "  fathom help VERB                    the options of a verb\n";
+  text += "  fathom --version\n\nExit status:\n";
+  for (const ExitCodeInfo& row : kExitCodes) text += fmt::format("  {:<3} {}\n", int{row.code}, row.meaning);
+  return text;
+}
+
+int unknown_verb(const std::string& word, const Streams& streams) {
+  std::vector<std::string_view> names = {"help", "--help", "--version"};
+  for (const Verb& verb : kVerbs) names.push_back(verb.name);
+  Help help;
+  std::error_code ignored;
+  if (const std::string_view near = compiler::nearest(word, names); !near.empty()) {
+    help.push_back(fmt::format("did you mean `fathom {}`?", near));
+  } else if (word.ends_with(".json") || std::filesystem::exists(word, ignored)) {
+    help.push_back(fmt::format("did you mean `fathom render {}`?", word));
+  }
+  help.push_back("`fathom --help` lists the verbs");
+  return fail(streams, kUsage, fmt::format("unknown {} `{}`", word.starts_with('-') ? "option" : "verb", word), help);
+}
+
+int run(std::span<const std::string> args, const Streams& streams) {
+  if (args.empty()) {
+    streams.err << overview();
+    return kUsage;
+  }
+  const std::string& word = args.front();
+  if (word == "--version") {
+    streams.out << "fathom " << kVersion << '\n';
+    return kDone;
+  }
+  const bool help = word == "help" || word == "--help" || word == "-h";
+  if (help && args.size() == 1) {
+    streams.out << overview();
+    return kDone;
+  }
+  const std::string& name = help ? args[1] : word;
+  const Verb* verb = find_verb(name);
+  if (!verb) return unknown_verb(name, streams);
+  const std::string show_help[] = {"--help"};
+  return verb->run(help ? std::span<const std::string>(show_help) : args.subspan(1), streams);
+}
+
+// Runs, and makes sure that the data arrived.
+int run_and_flush(std::span<const std::string> args, const Streams& streams) {
+  const int code = run(args, streams);
+  streams.out.flush();
+  if (!streams.out && code == kDone) return fail(streams, kIo, "cannot write to standard output");
+  return code;
+}
+
+}  // namespace
+}  // namespace fathom::cli
+
+int main(int argc, char** argv) {
+  using namespace fathom::cli;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* term = std::getenv("TERM");
+  const bool dumb = term == nullptr || std::string_view(term) == "dumb";
+  const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
+  std::ios::sync_with_stdio(false);
+  const Streams streams{std::cin, std::cout, std::cerr, terminal && !dumb, color};
+  try {
+    return run_and_flush(std::vector<std::string>(argv + 1, argv + argc), streams);
+  } catch (const std::bad_alloc&) {
+    return fail(streams, kInternal, "not enough memory");
+  } catch (const std::exception& error) {
+    return fail(streams, kInternal, fmt::format("internal error: {}", error.what()));
+  }
+}

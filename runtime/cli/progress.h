@@ -1,0 +1,34 @@
+// How far a render is, for the person who waits: one line that is redrawn on a terminal, else a line now and then.
+//
+//     42 %   3.1 Mray/s   about 12 s left
+//
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <string>
+
+#include "runtime/cli/streams.h"
+#include "runtime/options.h"
+
+namespace fathom::cli {
+
+// "12 s", "3 min 20 s", "1 h 05 min".
+std::string duration(double seconds);
+
+class ProgressLine {
+ public:
+  explicit ProgressLine(const Streams& streams) : streams_(streams) {}
+  ~ProgressLine();  // wipes the line
+
+  void update(const runtime::Progress& progress);
+
+ private:
+  bool due(const runtime::Progress& progress) const;
+
+  const Streams& streams_;
+  double last_seconds_ = 0;   // when a line was last shown
+  double last_fraction_ = 0;  // what it said
+  bool drawn_ = false;
+};
+
+}  // namespace fathom::cli

@@ -1,0 +1,127 @@
+#include "runtime/cli/render_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "runtime/image_io.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom render scene.json -o out.png\n"
+    "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
+    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...";
+
+constexpr double kMaxSide = 65535;            // pixels
+constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes some 100 bytes
+
+Verdict read_output(std::string_view text, std::string& path) {
+  path = text;
+  if (runtime::image_format_of(path)) return std::nullopt;
+  return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
+                   "valid endings: .png, .jpg, .jpeg, .bmp"};
+}
+
+void add_output_options(Arguments& arguments, RenderRequest& request) {
+  arguments.group("Output");
+  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp; may be repeated",
+                   append_to(read_output, request.outputs));
+  arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
+                   whole(request.resolution, 1, static_cast<int>(kMaxSide)));
+  arguments.option("--aspect", "W:H", "Width to height, as 16:9 or 4x3; the width stays",
+                   into(read_aspect, request.aspect));
+  arguments.option("--size", "WxH", "Width and height in pixels, as 1920x1080", into(read_size, request.size));
+  arguments.flag("-a,--albedo", "Write FILE-albedo beside each picture: the surfaces' own colours", request.albedo);
+  arguments.flag("-d,--depth", "Write FILE-depth beside each picture: near is white, far is dark", request.depth);
+  arguments.flag("-n,--normal", "Write FILE-normal beside each picture: the surfaces' directions", request.normal);
+  arguments.option("--stats-json", "FILE", "Write the closing numbers as JSON; - is standard output",
+                   any_text(request.stats_json));
+}
+
+void add_renderer_options(Arguments& arguments, RenderRequest& request) {
+  runtime::RenderOptions& options = request.options;
+  arguments.group("Renderer (what is not given comes from the scene file)");
+  arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
+                   whole(options.spp, 1, 1 << 24));
+  arguments.option("-b,--bounces", "N", "Bounces before a path may end by chance (10)",
+                   whole(options.bounces, 0, 1 << 20));
+  arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
+                   into(read_angle, request.fov));
+  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels (16); never changes the picture",
+                   whole(options.tile, 1, 65536));
+  arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
+  arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
+                   into(read_positive, options.far));
+  arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
+                   whole(request.threads, 1, 4096));
+  arguments.flag("--no-denoise", "Accepted for compatibility; there is no denoiser", request.no_denoise);
+}
+
+std::string default_output(const std::string& scene) {
+  const std::string stem = scene == "-" ? "" : std::filesystem::path(scene).stem().string();
+  return (stem.empty() ? "out" : stem) + ".png";
+}
+
+}  // namespace
+
+std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
+  RenderRequest request;
+  Arguments arguments("render", "Renders a scene to image files.", kExamples);
+  add_scene_arguments(arguments, request.scene);
+  arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
+  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  add_output_options(arguments, request);
+  add_renderer_options(arguments, request);
+  if (const auto code = arguments.parse(args, streams)) return *code;
+
+  if (request.size && (request.resolution || request.aspect)) {
+    return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
+  }
+  if (request.quiet && request.verbosity > 0) return fail(streams, kUsage, "--quiet does not go with --verbose");
+  if (request.outputs.empty()) {
+    request.outputs.push_back(default_output(request.scene.path));
+    request.default_output = true;
+  }
+  request.options.threads = request.threads.value_or(0);
+  return request;
+}
+
+std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
+                                       const Streams& streams) {
+  if (request.fov) {
+    if (scene.camera.projection == compiler::Camera::Projection::Orthographic) {
+      return fail(streams, kUsage, "--fov: the scene's camera is orthographic and has no field of view",
+                  {"its `width` in the scene file says how much it sees"});
+    }
+    scene.camera.fov = *request.fov;
+    scene.camera.vertical_fov.reset();
+  }
+  double width = request.resolution.value_or(scene.film.width), height = scene.film.height;
+  if (request.aspect || request.resolution) {
+    const double aspect = request.aspect.value_or(static_cast<double>(scene.film.width) / scene.film.height);
+    height = std::max(1.0, std::round(width / aspect));
+  }
+  if (request.size) {
+    width = request.size->width;
+    height = request.size->height;
+  }
+  if (height > kMaxSide || width * height > kMaxPixels) {
+    return fail(
+        streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
+        {fmt::format("a side may have {:.0f} pixels, and the whole {} million", kMaxSide, kMaxPixels / 1000000)});
+  }
+  scene.film.width = static_cast<int>(width);
+  scene.film.height = static_cast<int>(height);
+  return std::nullopt;
+}
+
+std::string beside(const std::string& path, const std::string& suffix) {
+  const std::size_t dot = path.rfind('.');
+  return path.substr(0, dot) + "-" + suffix + path.substr(dot);
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,40 @@
+// The command line of `fathom render` as data, and how it changes a scene.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/cli/scene_file.h"
+#include "runtime/options.h"
+
+namespace fathom::cli {
+
+struct RenderRequest {
+  SceneArguments scene;
+  std::vector<std::string> outputs;  // at least one, each with an ending we can write
+  bool default_output = false;       // the name was made from the scene's
+  bool albedo = false, depth = false, normal = false;
+  std::optional<double> aspect, fov;  // width over height; radians
+  std::optional<int> resolution;      // width, pixels
+  std::optional<PixelSize> size;
+  std::optional<int> threads;
+  runtime::RenderOptions options;  // width and height are not set
+  std::optional<std::string> stats_json;
+  int verbosity = 0;
+  bool quiet = false, no_denoise = false;
+};
+
+// The request, or the exit code after help or a message.
+std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
+
+// Puts the request's camera and size over the scene's. An ExitCode, after a message, when they do not fit together.
+std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
+                                       const Streams& streams);
+
+// "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
+std::string beside(const std::string& path, const std::string& suffix);
+
+}  // namespace fathom::cli

@@ -1,0 +1,87 @@
+#include "runtime/cli/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+namespace fathom::cli {
+namespace {
+
+constexpr std::size_t kMaxBytes = 256u << 20;  // of a text file; keeps /dev/zero from filling the memory
+
+std::variant<std::string, Unreadable> read_all(std::istream& in) {
+  std::string text;
+  char block[1 << 16];
+  while (in.read(block, sizeof block) || in.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(in.gcount()));
+    if (text.size() > kMaxBytes) return Unreadable{"larger than 256 MiB"};
+  }
+  if (in.bad()) return Unreadable{std::strerror(errno)};
+  return text;
+}
+
+std::string count_of(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene) {
+  arguments.positional("scene", "The scene, a JSON file; - reads standard input", scene.path);
+  arguments.option("--error-format", "FORMAT", "How to print what is wrong with the scene: text, short or json",
+                   one_of({"text", "short", "json"}, scene.error_format));
+}
+
+std::variant<std::string, Unreadable> read_text(const std::string& path, const Streams& streams) {
+  if (path == "-") return read_all(streams.in);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return Unreadable{"it is a directory"};
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Unreadable{std::strerror(errno)};
+  return read_all(file);
+}
+
+std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
+  auto text = read_text(arguments.path, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    return fail(streams, kIo, fmt::format("cannot read `{}`: {}", arguments.path, unreadable->reason));
+  }
+  return compiler::Source(arguments.path == "-" ? "<stdin>" : arguments.path, std::get<std::string>(std::move(text)));
+}
+
+std::optional<compiler::CompiledScene> compile_scene(compiler::Source source, const SceneArguments& arguments,
+                                                     const Streams& streams,
+                                                     const compiler::CompileOptions& options) {
+  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
+  const compiler::Source copy = source;
+  compiler::Diagnostics diagnostics;
+  auto scene = compiler::compile(std::move(source), diagnostics, options);
+  const std::string printed = diagnostics.print(copy, format, streams.color);
+  streams.err << printed;
+  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.all().size() - errors;
+  if (errors > 0 && format == compiler::ErrorFormat::Text) {
+    streams.err << copy.name() << ": " << count_of(errors, "error")
+                << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
+  }
+  return scene;
+}
+
+Setter pass_name(std::optional<std::string>& target) {
+  std::vector<std::string_view> names = {"graph"};
+  for (const std::string_view name : compiler::pass_names()) names.push_back(name);
+  return [names, &target](std::string_view text) -> Verdict {
+    int index = 0;
+    Verdict verdict = one_of(names, index)(text);
+    if (!verdict) target = text;
+    return verdict;
+  };
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,39 @@
+// The scene every verb starts from: reading its file, compiling it, printing what is wrong with it.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "compiler/compile.h"
+#include "runtime/cli/arguments.h"
+#include "runtime/cli/streams.h"
+
+namespace fathom::cli {
+
+struct SceneArguments {
+  std::string path;      // "-": standard input
+  int error_format = 0;  // a compiler::ErrorFormat
+};
+
+// The positional argument and --error-format.
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene);
+
+// The text of a file, or of standard input for "-"; otherwise the reason, for people.
+struct Unreadable {
+  std::string reason;
+};
+std::variant<std::string, Unreadable> read_text(const std::string& path, const Streams& streams);
+
+// The scene's text, or the exit code after a message.
+std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
+
+// Compiles and prints the diagnostics, warnings too. nullopt when there were errors.
+std::optional<compiler::CompiledScene> compile_scene(compiler::Source source, const SceneArguments& arguments,
+                                                     const Streams& streams,
+                                                     const compiler::CompileOptions& options = {});
+
+// A Setter for the name of a pass, or "graph" for "before the first pass".
+Setter pass_name(std::optional<std::string>& target);
+
+}  // namespace fathom::cli

@@ -1,0 +1,17 @@
+#include "runtime/cli/streams.h"
+
+#include <ostream>
+
+namespace fathom::cli {
+
+ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help) {
+  streams.err << (streams.color ? "\033[1;31merror\033[0m: " : "error: ") << message << '\n';
+  for (const std::string& line : help) streams.err << "  = help: " << line << '\n';
+  return code;
+}
+
+void note(const Streams& streams, std::string_view message) {
+  streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << message << '\n';
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,34 @@
+// Where a verb reads and writes: `out` is for data, `err` for people. Also the form of every message that is not
+// about a place in a scene file:
+//
+//     error: unknown option `--sppp`
+//       = help: did you mean `--spp`?
+//
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/cli/exit_code.h"
+
+namespace fathom::cli {
+
+struct Streams {
+  std::istream& in;
+  std::ostream& out;
+  std::ostream& err;
+  bool terminal = false;  // a person watches `err`: progress may redraw its line
+  bool color = false;     // `err` understands colours and NO_COLOR does not forbid them
+};
+
+using Help = std::vector<std::string>;  // each a line after "= help:"
+
+// Prints the message and returns `code`, so that a verb can end with `return fail(...)`.
+ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help = {});
+
+void note(const Streams& streams, std::string_view message);
+
+}  // namespace fathom::cli

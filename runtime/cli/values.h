@@ -1,0 +1,87 @@
+// Values of flags: text to numbers, sizes, angles and points, with a message that says what would be right.
+//
+// Every reader stores into its last argument and returns nullopt, or leaves it alone and returns what is wrong. A
+// Setter is a reader with its target bound, ready for Arguments::option.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom::cli {
+
+struct Complaint {
+  std::string problem;
+  std::string help;  // may be empty
+};
+using Verdict = std::optional<Complaint>;
+using Setter = std::function<Verdict(std::string_view text)>;
+
+struct PixelSize {
+  int width, height;
+};
+struct PointBox {
+  glm::dvec3 lo, hi;
+};
+
+// The whole text as a finite number, in decimal or scientific notation.
+std::optional<double> to_number(std::string_view text);
+
+// `count` numbers between separators: commas, or blanks when `blanks`. nullopt when that is not what the text is.
+std::optional<std::vector<double>> to_numbers(std::string_view text, std::size_t count, bool blanks);
+
+// "16:9", "4x3", "2.35:1" to width over height.
+Verdict read_aspect(std::string_view text, double& aspect);
+
+// "0.785", "0.785rad" or "45deg" to radians in (0, pi). A bare number above pi was surely meant in degrees: an error
+// that says how to write that.
+Verdict read_angle(std::string_view text, double& radians);
+
+// "1920x1080".
+Verdict read_size(std::string_view text, PixelSize& size);
+
+// "1,2,3".
+Verdict read_point(std::string_view text, glm::dvec3& point);
+
+// "x0,y0,z0,x1,y1,z1", two opposite corners with the smaller coordinates first.
+Verdict read_box(std::string_view text, PointBox& box);
+
+Verdict read_positive(std::string_view text, double& number);
+Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
+Verdict read_seed(std::string_view text, std::uint64_t& seed);
+
+// A whole number in [lo, hi] for `target`.
+Setter whole(std::optional<int>& target, int lo, int hi = std::numeric_limits<int>::max());
+
+// One of `words`, stored as its index; anything else is an error that lists them.
+Setter one_of(std::vector<std::string_view> words, int& target);
+
+Setter any_text(std::optional<std::string>& target);
+
+// Adapts a reader with a plain target to an optional or a list of values.
+template <typename T>
+Setter into(Verdict (*read)(std::string_view, T&), std::optional<T>& target) {
+  return [read, &target](std::string_view text) {
+    T value{};
+    Verdict verdict = read(text, value);
+    if (!verdict) target = value;
+    return verdict;
+  };
+}
+template <typename T>
+Setter append_to(Verdict (*read)(std::string_view, T&), std::vector<T>& target) {
+  return [read, &target](std::string_view text) {
+    T value{};
+    Verdict verdict = read(text, value);
+    if (!verdict) target.push_back(value);
+    return verdict;
+  };
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,33 @@
+// The verbs of the program: the one table that `fathom --help`, the dispatch and did-you-mean read.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "runtime/cli/streams.h"
+
+namespace fathom::cli {
+
+// Each takes what follows the verb on the command line and returns an ExitCode.
+int run_render(std::span<const std::string> args, const Streams& streams);
+int run_check(std::span<const std::string> args, const Streams& streams);
+int run_dump(std::span<const std::string> args, const Streams& streams);
+int run_eval(std::span<const std::string> args, const Streams& streams);
+
+struct Verb {
+  std::string_view name;
+  std::string_view arguments, summary;
+  int (*run)(std::span<const std::string> args, const Streams& streams);
+};
+
+inline constexpr std::array kVerbs = {
+    Verb{"render", "scene.json -o out.png", "renders the scene to image files", run_render},
+    Verb{"check", "scene.json", "prints what is wrong with the scene and how large it is", run_check},
+    Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
+    Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
+};
+
+}  // namespace fathom::cli

@@ -1,0 +1,97 @@
+// Elementary functions in plain additions and multiplications: the same bits on every machine, which glibc's sinf, expf
+// and powf do not give (they take other paths on CPUs with fused multiply-add).
+//
+// Tested by: tests/runtime/elementary_test.cpp (error bounds against libm in double)
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+namespace fathom::runtime {
+
+struct SinCos {
+  float sin, cos;
+};
+
+// Sine and cosine of 2 pi u for u in [0,1]; absolute error <= 2e-7.
+// Reduced to a quarter turn, then Moshier's minimax polynomials on [-pi/4, pi/4] (Cephes library, sinf.c, 1992).
+inline SinCos sincos_turn(float u) {
+  const float quarters = 4 * u;
+  const int quadrant = static_cast<int>(quarters + 0.5f);
+  const float x = (quarters - static_cast<float>(quadrant)) * 1.57079632679489662f;
+  const float z = x * x;
+  const float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * x + x;
+  const float c =
+      ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1;
+  switch (quadrant & 3) {
+    case 0: return {s, c};
+    case 1: return {c, -s};
+    case 2: return {-s, -c};
+    default: return {-c, s};
+  }
+}
+
+// e^x; relative error <= 2e-7. 0 below -87, infinity above 88.
+// x = n ln 2 + r with ln 2 in two parts (Cody and Waite, "Software Manual for the Elementary Functions", 1980), then
+// Moshier's polynomial for e^r (Cephes library, expf.c, 1992).
+inline float exp(float x) {
+  if (!(x >= -87)) return x != x ? x : 0.0f;
+  if (x > 88) return INFINITY;
+  const float n = static_cast<float>(static_cast<int>(x * 1.44269504088896341f + (x < 0 ? -0.5f : 0.5f)));
+  const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f;
+  float y = 1.9875691500e-4f;
+  y = y * r + 1.3981999507e-3f;
+  y = y * r + 8.3334519073e-3f;
+  y = y * r + 4.1665795894e-2f;
+  y = y * r + 1.6666665459e-1f;
+  y = y * r + 5.0000001201e-1f;
+  y = y * r * r + r + 1;
+  // 2^n in two factors, so that n = 127 + 1 and the subnormal end need no special case.
+  const int half = static_cast<int>(n) / 2, rest = static_cast<int>(n) - half;
+  return y * std::bit_cast<float>((half + 127) << 23) * std::bit_cast<float>((rest + 127) << 23);
+}
+
+inline glm::vec3 exp(glm::vec3 v) { return {exp(v.x), exp(v.y), exp(v.z)}; }
+
+// 2^x, exact for whole x; relative error <= 2e-7 for |x| <= 100.
+inline float exp2(float x) {
+  const float n = static_cast<float>(static_cast<int>(x + (x < 0 ? -0.5f : 0.5f)));
+  return exp((x - n) * 0.693147180559945309f) * std::bit_cast<float>((static_cast<int>(n) + 127) << 23);
+}
+
+// tan x for x in [0, pi/2), relative error <= 1e-14: Taylor series of sine and cosine, whose terms fall below 2^-53
+// of the sum after x^26/26! on this interval.
+inline double tangent(double x) {
+  double term = 1, sine = 0, cosine = 0;
+  for (int n = 0; n < 28; n += 2) {
+    cosine += term;
+    term *= x / (n + 1);
+    sine += term;
+    term *= -x / (n + 2);
+  }
+  return sine / cosine;
+}
+
+// x^(1/2.4) for x in (0,1]; relative error <= 1e-13. x^(5/12) is the cube root of the fourth root of x^5; the cube
+// root by Newton's iteration y <- (2y + a/y^2)/3, from y = 1, which lies above it.
+inline double power_5_12(double x) {
+  const double a = std::sqrt(std::sqrt(x * x * x * x * x));
+  double y = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double next = (2 * y + a / (y * y)) / 3;
+    if (next == y) break;
+    y = next;
+  }
+  return y;
+}
+
+// Linear light to the sRGB signal, both clamped to [0,1]. Source: IEC 61966-2-1:1999. NaN becomes 0.
+inline double srgb_encode(double linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 1;
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * power_5_12(linear) - 0.055;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,44 @@
+#include "runtime/field.h"
+
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "vm/check.h"
+
+namespace fathom::runtime {
+namespace {
+
+// The size of what is looked at, scene units: half the bound's diagonal, or how far the camera's target is.
+double extent_of(const compiler::CompiledScene& scene) {
+  if (!scene.bound.empty() && scene.bound.finite()) return glm::length(scene.bound.hi - scene.bound.lo) / 2;
+  const double extent = glm::length(scene.camera.target - scene.camera.position);
+  return extent > 0 ? extent : 1;
+}
+
+}  // namespace
+
+Field make_field(const compiler::CompiledScene& scene, std::optional<double> far) {
+  CHECK(scene.lipschitz > 0, "a field that never changes has no surface to march to");
+  // A crossing is tried within this part of the extent. Smaller: more evaluations near the surface; larger: a chord
+  // shorter than it may be missed beside a surface that is met head-on.
+  constexpr double kBand = 1e-4;
+  // The bound's surface may be the scene's, and a ray must see both sides of it.
+  constexpr double kBoundMargin = 1e-3;
+
+  const double extent = extent_of(scene);
+  Field field{};
+  field.distance = &scene.distance;
+  field.bound = scene.bound.grown(kBoundMargin * extent);
+  field.lipschitz = scene.lipschitz;
+  field.inv_lipschitz = static_cast<float>(1 / scene.lipschitz);
+  field.certified = scene.certified;
+  field.band = static_cast<float>(kBand * extent);
+  // Where the bound does not end a ray, `far` has to: certify() needs an end.
+  constexpr double kFarthest = 1e12;
+  const bool bounded = scene.bound.empty() || scene.bound.finite();
+  field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : kDefaultFar);
+  if (!bounded) field.far = std::min(field.far, kFarthest);
+  return field;
+}
+
+}  // namespace fathom::runtime

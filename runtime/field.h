@@ -1,0 +1,36 @@
+// What marching needs to know of a scene: its distance program and a few constants that hold for every ray.
+// Tested by: tests/runtime/march_test.cpp
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "compiler/compiled_scene.h"
+
+namespace fathom::runtime {
+
+struct Field {
+  const vm::VerifiedProgram* distance;
+  compiler::Box bound;   // the field is positive outside; a little larger than the scene's own
+  double lipschitz;      // |f(p) - f(q)| <= lipschitz * |p - q|
+  bool certified;        // whether that is proved
+  double far;            // rays end here, scene units; may be infinite when the bound is finite
+  float band;            // near the surface: distances at which a crossing is tried, scene units
+  float inv_lipschitz;
+};
+
+// `far` empty: infinite in a bounded scene, else kDefaultFar.
+Field make_field(const compiler::CompiledScene& scene, std::optional<double> far = std::nullopt);
+
+inline constexpr double kDefaultFar = 1e4;  // scene units; the horizon of an unbounded scene
+
+// d_f: how far a float32 distance at p may be from the true one: 8 * 2^-24 * max(1, |p|) (vm/opcodes.def). Twice the
+// largest error measured over all primitives.
+inline constexpr float kDistanceError = 8 * 0x1p-24f;
+
+inline float distance_error(float x, float y, float z) {
+  return kDistanceError * std::max({1.0f, std::abs(x), std::abs(y), std::abs(z)});
+}
+
+}  // namespace fathom::runtime

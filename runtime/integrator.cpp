@@ -1,0 +1,164 @@
+#include "runtime/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/bsdf.h"
+#include "runtime/elementary.h"
+
+namespace fathom::runtime {
+namespace {
+
+// Arrivals are shaded when so many wait: enough for the machine's blocks, few enough to keep the stream full.
+constexpr std::size_t kShadeBatch = 64;
+// A path goes on with at most this probability, so that even a closed white room ends.
+constexpr float kMostSurvival = 0.95f;
+
+float max_component(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
+
+glm::vec3 background_radiance(const compiler::Background& background, glm::dvec3 direction) {
+  const double share = std::clamp((direction.y + 1) / 2, 0.0, 1.0);
+  return glm::vec3(background.bottom * (1 - share) + background.top * share);
+}
+
+bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+Integrator::Integrator(const World& world, Film& film) : world_(world), film_(film), stream_(world.field) {
+  for (std::uint32_t id = Stream::kCapacity; id > 0; --id) free_ids_.push_back(id - 1);
+}
+
+void Integrator::run(const NextPath& next) {
+  bool more = true;
+  while (true) {
+    while (more && !free_ids_.empty()) {
+      const std::optional<PathKey> key = next();
+      more = key.has_value();
+      if (!more) break;
+      const std::uint32_t id = free_ids_.back();
+      free_ids_.pop_back();
+      start(id, *key);
+    }
+    if (stream_.empty() && stream_.arrivals().empty()) return;
+    stream_.advance();
+    if (stream_.arrivals().size() >= kShadeBatch || stream_.empty()) settle_arrivals();
+  }
+}
+
+void Integrator::start(std::uint32_t id, const PathKey& key) {
+  const Settings& settings = world_.settings;
+  Path& path = paths_[id];
+  path.key = key;
+  path.sampler = Sampler(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y), key.sample);
+  // A single sample shows what lies at the pixel's centre.
+  const glm::vec2 place = settings.spp == 1 ? glm::vec2(0.5f) : path.sampler.next2();
+  const CameraRay ray = world_.camera.ray(key.x + static_cast<double>(place.x), key.y + static_cast<double>(place.y));
+  path.origin = ray.origin;
+  path.direction = ray.direction;
+  path.throughput = glm::vec3(1);
+  path.absorption = glm::vec3(0);
+  path.bounces = 0;
+  path.result = {};
+  ++stats_.primary_rays;
+  stream_.add(id, {ray.origin, ray.direction});
+}
+
+void Integrator::settle_arrivals() {
+  hits_.clear();
+  stream_.take_arrivals(settled_);
+  for (const Arrival& arrival : settled_) {
+    if (arrival.status == Arrival::Status::Hit) {
+      hits_.push_back(arrival);
+      continue;
+    }
+    Path& path = paths_[arrival.id];
+    if (arrival.status == Arrival::Status::Miss) {
+      path.result.radiance += path.throughput * background_radiance(world_.scene.background, path.direction);
+    }
+    end(arrival.id);
+  }
+  for (std::size_t first = 0; first < hits_.size(); first += kSurfaceBatch) {
+    shade(std::span(hits_).subspan(first, std::min(kSurfaceBatch, hits_.size() - first)));
+  }
+}
+
+void Integrator::shade(std::span<const Arrival> arrivals) {
+  std::array<Hit, kSurfaceBatch> hits;
+  std::array<SurfacePoint, kSurfaceBatch> points;
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    const Path& path = paths_[arrivals[i].id];
+    hits[i] = {path.origin + arrivals[i].t * path.direction, glm::vec3(-path.direction), arrivals[i].side,
+               arrivals[i].width};
+  }
+  find_surfaces(world_.scene, std::span(hits).first(arrivals.size()), points, stream_.workspace());
+  for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
+}
+
+void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
+  Path& path = paths_[arrival.id];
+  const Material& material = world_.materials[point.material];
+  const bool inside = arrival.side < 0;
+  if (path.bounces == 0) record_first_hit(path, arrival, point, material);
+  // Beer-Lambert law.
+  if (path.absorption != glm::vec3(0)) path.throughput *= exp(-path.absorption * static_cast<float>(arrival.t));
+  path.result.radiance += path.throughput * material.emission;
+
+  const BsdfSample next = sample_bsdf(material, hit.wo, point.normal, inside, path.sampler);
+  path.throughput *= next.weight;
+  ++path.bounces;
+  if (!(max_component(path.throughput) > 0) || !survives_roulette(path)) return end(arrival.id);
+  path.direction = next.wi;
+  if (next.through) path.absorption = inside ? glm::vec3(0) : material.absorption;
+  go_on(arrival.id, arrival, hit, point, next.through);
+}
+
+void Integrator::record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point,
+                                  const Material& material) {
+  ++stats_.primary_hits;
+  path.result.hit = true;
+  path.result.albedo = albedo_of(material);
+  path.result.normal = point.normal;
+  path.result.depth = arrival.t;
+  // The camera stands in a solid: its medium is that of the surface the ray comes out of.
+  if (arrival.side < 0 && material.type == Material::Type::Transparent) path.absorption = material.absorption;
+}
+
+// Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
+bool Integrator::survives_roulette(Path& path) {
+  if (path.bounces < world_.settings.bounces) return true;
+  const float q = std::min(kMostSurvival, max_component(path.throughput));
+  if (path.sampler.next() >= q) return false;
+  path.throughput /= q;
+  return true;
+}
+
+void Integrator::go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit, const SurfacePoint& point,
+                       bool through) {
+  Path& path = paths_[id];
+  path.origin = spawn(hit, point, through);
+  Ray ray{path.origin, path.direction};
+  ray.side = through ? -arrival.side : arrival.side;
+  ray.slope = std::abs(glm::dot(point.normal, glm::vec3(path.direction)));
+  stream_.add(id, ray);
+}
+
+void Integrator::end(std::uint32_t id) {
+  Path& path = paths_[id];
+  if (!finite(path.result.radiance)) {
+    ++stats_.dropped_samples;
+    path.result.radiance = glm::vec3(0);
+  }
+  if (!film_.add(path.key.x, path.key.y, path.result)) ++stats_.saturated;
+  free_ids_.push_back(id);
+}
+
+Stats Integrator::stats() const {
+  Stats stats = stats_;
+  stats.march = stream_.counters();
+  return stats;
+}
+
+}  // namespace fathom::runtime

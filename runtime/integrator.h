@@ -1,0 +1,88 @@
+// The path integrator: camera paths followed from hit to hit until they end.
+//
+// One Integrator per thread keeps a stream of rays full: every ray that arrives is shaded and goes on as the path's next
+// ray, or makes room for a new camera path. Light is found by hitting it.
+//
+//     Integrator integrator(world, film);
+//     integrator.run([&] { return next camera path, or nothing; });
+//
+// Source: Kajiya, "The Rendering Equation", 1986; Russian roulette: Arvo and Kirk, "Particle Transport and Image
+// Synthesis", 1990. Tested by: tests/runtime/render_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/camera.h"
+#include "runtime/field.h"
+#include "runtime/film.h"
+#include "runtime/march.h"
+#include "runtime/material.h"
+#include "runtime/options.h"
+#include "runtime/sampler.h"
+#include "runtime/stats.h"
+#include "runtime/surface.h"
+
+namespace fathom::runtime {
+
+// What every thread reads and none writes.
+struct World {
+  const compiler::CompiledScene& scene;
+  Settings settings;
+  Camera camera;
+  Field field;
+  std::vector<Material> materials;
+};
+
+// One camera path to be followed.
+struct PathKey {
+  int x, y;              // pixel
+  std::uint32_t sample;  // in [0, spp)
+};
+
+class Integrator {
+ public:
+  // Asked for the next path; nothing when there are no more.
+  using NextPath = std::function<std::optional<PathKey>()>;
+
+  Integrator(const World& world, Film& film);
+
+  // Follows all paths `next` gives to their end, and adds them to the film.
+  void run(const NextPath& next);
+  Stats stats() const;
+
+ private:
+  struct Path {
+    PathKey key;
+    Sampler sampler;
+    glm::dvec3 origin;         // of the current ray, scene units
+    glm::dvec3 direction;
+    glm::vec3 throughput;
+    glm::vec3 absorption;      // of the medium the ray travels through, per scene unit
+    int bounces;               // made so far
+    PathSample result;
+  };
+
+  void start(std::uint32_t id, const PathKey& key);
+  void settle_arrivals();
+  void shade(std::span<const Arrival> arrivals);
+  void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
+  void record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point, const Material& material);
+  bool survives_roulette(Path& path);
+  void go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit, const SurfacePoint& point, bool through);
+  void end(std::uint32_t id);
+
+  const World& world_;
+  Film& film_;
+  Stream stream_;
+  std::array<Path, Stream::kCapacity> paths_;  // [id]
+  std::vector<std::uint32_t> free_ids_;
+  std::vector<Arrival> settled_, hits_;  // scratch
+  Stats stats_;
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,47 @@
+// What can be asked of a render beside the scene: every knob with its default.
+//
+// A knob left empty takes the scene file's value; resolve() says which values a render uses.
+// Tested by: tests/runtime/render_test.cpp
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "compiler/compiled_scene.h"
+
+namespace fathom::runtime {
+
+struct Progress {
+  double fraction;     // of the camera paths that are finished, in [0,1]
+  std::uint64_t rays;  // marched so far
+  double seconds;      // since the render began
+};
+
+struct RenderOptions {
+  int threads = 0;  // 0: one per processor
+  std::optional<int> width, height;  // pixels
+  std::optional<int> spp, bounces, tile;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> far;  // scene units
+
+  // Called now and then, by one thread at a time, from the threads that render.
+  std::function<void(const Progress&)> on_progress;
+  // When it becomes true, no new path is started and render() returns what there is.
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+// What a render uses: the scene's values under the options'.
+struct Settings {
+  int width, height;  // pixels
+  int spp, bounces;
+  int tile;  // pixels a side
+  int threads;
+  std::uint64_t seed;
+  std::optional<double> far;
+};
+
+Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);
+
+}  // namespace fathom::runtime

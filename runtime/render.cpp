@@ -1,0 +1,152 @@
+#include "runtime/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "runtime/integrator.h"
+#include "runtime/tiles.h"
+#include "vm/check.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Tells the caller how far all threads together are.
+class ProgressReport {
+ public:
+  ProgressReport(const RenderOptions& options, const Settings& settings)
+      : options_(options),
+        paths_(static_cast<double>(settings.width) * settings.height * settings.spp),
+        start_(Clock::now()) {}
+
+  void add(std::uint64_t paths, std::uint64_t rays) {
+    if (!options_.on_progress) return;
+    const std::lock_guard lock(mutex_);
+    done_ += paths;
+    rays_ += rays;
+    options_.on_progress({static_cast<double>(done_) / paths_, rays_, seconds_since(start_)});
+  }
+
+ private:
+  const RenderOptions& options_;
+  double paths_;
+  Clock::time_point start_;
+  std::mutex mutex_;
+  std::uint64_t done_ = 0, rays_ = 0;
+};
+
+// One thread's work: the paths of one tile after another, pixel by pixel, sample by sample.
+class Worker {
+ public:
+  Worker(const World& world, Tiles& tiles, Film& film, ProgressReport& report, const std::atomic<bool>* cancel)
+      : world_(world), tiles_(tiles), report_(report), cancel_(cancel), integrator_(world, film) {}
+
+  void run() {
+    integrator_.run([this] { return next(); });
+  }
+  Stats stats() const { return integrator_.stats(); }
+
+ private:
+  std::optional<PathKey> next() {
+    if (!tile_ || sample_ == static_cast<std::uint32_t>(world_.settings.spp)) {
+      if (!next_pixel()) return std::nullopt;
+    }
+    return PathKey{x_, y_, sample_++};
+  }
+
+  bool next_pixel() {
+    sample_ = 0;
+    if (tile_ && ++x_ < tile_->x1) return true;
+    if (tile_ && ++y_ < tile_->y1) {
+      x_ = tile_->x0;
+      return true;
+    }
+    return next_tile();
+  }
+
+  bool next_tile() {
+    if (tile_) report_tile();
+    tile_ = cancel_ && cancel_->load(std::memory_order_relaxed) ? std::nullopt : tiles_.take();
+    if (!tile_) return false;
+    x_ = tile_->x0;
+    y_ = tile_->y0;
+    return true;
+  }
+
+  void report_tile() {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(tile_->x1 - tile_->x0) *
+                                 static_cast<std::uint64_t>(tile_->y1 - tile_->y0);
+    const std::uint64_t rays = integrator_.stats().march.rays;
+    report_.add(pixels * static_cast<std::uint64_t>(world_.settings.spp), rays - reported_rays_);
+    reported_rays_ = rays;
+  }
+
+  const World& world_;
+  Tiles& tiles_;
+  ProgressReport& report_;
+  const std::atomic<bool>* cancel_;
+  Integrator integrator_;
+  std::optional<Tile> tile_;
+  int x_ = 0, y_ = 0;
+  std::uint32_t sample_ = 0;
+  std::uint64_t reported_rays_ = 0;
+};
+
+World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
+  return {scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
+          to_materials(scene)};
+}
+
+Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
+  Tiles tiles(world.settings.width, world.settings.height, world.settings.tile);
+  ProgressReport report(options, world.settings);
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (int i = 0; i < world.settings.threads; ++i) {
+    workers.push_back(std::make_unique<Worker>(world, tiles, film, report, options.cancel));
+  }
+  std::vector<std::thread> threads;
+  for (std::size_t i = 1; i < workers.size(); ++i) threads.emplace_back([&, i] { workers[i]->run(); });
+  workers[0]->run();
+  for (std::thread& thread : threads) thread.join();
+  Stats stats;
+  for (const auto& worker : workers) stats.merge(worker->stats());
+  return stats;
+}
+
+}  // namespace
+
+Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options) {
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  Settings settings{};
+  settings.width = options.width.value_or(scene.film.width);
+  settings.height = options.height.value_or(scene.film.height);
+  settings.spp = options.spp.value_or(scene.settings.spp);
+  settings.bounces = options.bounces.value_or(scene.settings.bounces);
+  settings.tile = options.tile.value_or(scene.settings.tile);
+  settings.seed = options.seed.value_or(scene.settings.seed);
+  settings.far = options.far ? options.far : scene.settings.far;
+  settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
+  return settings;
+}
+
+RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options) {
+  const Clock::time_point start = Clock::now();
+  const Settings settings = resolve(scene, options);
+  CHECK(settings.width > 0 && settings.height > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
+  const World world = make_world(scene, settings);
+  RenderResult result{Film(settings.width, settings.height), settings, {}};
+  result.stats = render_tiles(world, result.film, options);
+  result.stats.seconds = seconds_since(start);
+  result.stats.threads = settings.threads;
+  result.stats.cancelled = options.cancel && options.cancel->load();
+  return result;
+}
+
+}  // namespace fathom::runtime

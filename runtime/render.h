@@ -1,0 +1,21 @@
+// The renderer's one function: CompiledScene -> picture.
+// Tested by: tests/runtime/render_test.cpp
+#pragma once
+
+#include "compiler/compiled_scene.h"
+#include "runtime/film.h"
+#include "runtime/options.h"
+#include "runtime/stats.h"
+
+namespace fathom::runtime {
+
+struct RenderResult {
+  Film film;
+  Settings settings;  // those used
+  Stats stats;
+};
+
+// The film's bits depend on the scene and on the settings but for `threads` and `tile`.
+RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options = {});
+
+}  // namespace fathom::runtime

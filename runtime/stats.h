@@ -1,0 +1,42 @@
+// What a render counted, and how to print it.
+// Tested by: tests/runtime/stats_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace fathom::runtime {
+
+// Counts of marching alone; each worker has its own.
+struct MarchCounters {
+  std::uint64_t rays = 0;
+  std::uint64_t hits = 0;
+  std::uint64_t evaluations = 0;            // of the field, float and double
+  std::uint64_t certified = 0;              // rays that double precision decided (runtime/certify.h)
+  std::uint64_t certified_evaluations = 0;  // theirs, part of `evaluations`
+  std::uint64_t contacts = 0;               // misses that came too near to exclude a touch
+  std::uint64_t invalid = 0;                // rays that saw a distance that is not finite, or had no direction
+  std::uint64_t exhausted = 0;              // rays certify() gave up; the field's constant is wrong or an estimate
+
+  void merge(const MarchCounters& other);
+};
+
+struct Stats {
+  MarchCounters march;
+  std::uint64_t primary_rays = 0;     // camera rays
+  std::uint64_t primary_hits = 0;     // those that met a surface
+  std::uint64_t dropped_samples = 0;  // paths whose radiance was not finite; they count as black
+  std::uint64_t saturated = 0;        // paths that overfilled a pixel's sum
+  double seconds = 0;                 // wall clock
+  int threads = 0;
+  bool cancelled = false;
+
+  void merge(const Stats& other);  // the counts; not seconds, threads
+  double evaluations_per_ray() const;
+  double rays_per_second() const;
+};
+
+std::string to_table(const Stats& stats);  // for people; lines end with '\n'
+std::string to_json(const Stats& stats);   // one object; ends with '\n'
+
+}  // namespace fathom::runtime

@@ -1,0 +1,52 @@
+#include "runtime/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "runtime/field.h"
+#include "vm/check.h"
+
+namespace fathom::runtime {
+namespace {
+
+// The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
+constexpr float kLeastCosine = 1e-4f;
+// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side.
+constexpr float kOffsetErrors = 16;
+
+glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
+  const float length = std::sqrt(glm::dot(gradient, gradient));
+  if (!(length > 0 && length < INFINITY)) return hit.wo;
+  const glm::vec3 normal = gradient * (static_cast<float>(hit.side) / length);
+  const float cosine = glm::dot(normal, hit.wo);
+  if (cosine > 0) return normal;
+  // Rounding, or a crease: turned just far enough.
+  const glm::vec3 turned = normal + (kLeastCosine - cosine) * hit.wo;
+  const float squared = glm::dot(turned, turned);
+  return squared > kLeastCosine * kLeastCosine ? turned / std::sqrt(squared) : hit.wo;
+}
+
+}  // namespace
+
+void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hits, std::span<SurfacePoint> points,
+                   vm::Workspace& workspace) {
+  CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
+  alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz;
+  alignas(64) std::array<std::uint32_t, kSurfaceBatch> surface;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    x[i] = static_cast<float>(hits[i].position.x);
+    y[i] = static_cast<float>(hits[i].position.y);
+    z[i] = static_cast<float>(hits[i].position.z);
+  }
+  vm::evaluate_surface(scene.surface, {x.data(), y.data(), z.data()}, hits.size(),
+                       {distance.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
+    points[i].normal = oriented({gx[i], gy[i], gz[i]}, hits[i]);
+    points[i].material = scene.surfaces[surface[i]].material;
+    points[i].offset = std::max(2 * hits[i].width, kOffsetErrors * distance_error(x[i], y[i], z[i]));
+  }
+}
+
+}  // namespace fathom::runtime

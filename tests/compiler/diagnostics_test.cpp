@@ -1,0 +1,176 @@
+// Every diagnostic as the user sees it: tests/golden/diagnostics/*.txt hold a scene and, after the line
+// "----- expected", what is printed for it. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
+#include "compiler/diagnostics.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "compiler/error_codes.h"
+#include "compiler/frontend/elaborate.h"
+#include "compiler/frontend/json.h"
+
+namespace {
+
+using namespace fathom::compiler;
+namespace fs = std::filesystem;
+
+const std::string kSeparator = "----- expected\n";
+const fs::path kGolden = fs::path(FATHOM_SOURCE_DIR) / "tests/golden/diagnostics";
+
+std::string read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+std::vector<fs::path> golden_files() {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(kGolden)) paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+Diagnostics diagnose(const Source& source) {
+  Diagnostics diagnostics;
+  if (const auto file = read_json(source, diagnostics)) elaborate(*file, diagnostics);
+  return diagnostics;
+}
+
+TEST_CASE("golden diagnostics", "[diagnostics]") {
+  const bool update = std::getenv("FATHOM_UPDATE_GOLDEN") != nullptr;
+  for (const fs::path& path : golden_files()) {
+    CAPTURE(path.filename().string());
+    const std::string text = read_file(path);
+    const std::size_t end = text.find(kSeparator);
+    REQUIRE(end != std::string::npos);
+    const Source source("scene.json", text.substr(0, end));
+    const std::string actual = diagnose(source).print(source, ErrorFormat::Text);
+    if (update) std::ofstream(path, std::ios::binary) << source.text() << kSeparator << actual;
+    if (!update) CHECK(actual == text.substr(end + kSeparator.size()));
+  }
+}
+
+TEST_CASE("every code has a golden file and every golden file shows its code", "[diagnostics]") {
+  std::set<std::string> shown;
+  for (const fs::path& path : golden_files()) {
+    const std::string name = path.filename().string(), text = read_file(path);
+    const std::string code = name.substr(0, 5);
+    if (name.starts_with("layout")) continue;
+    CAPTURE(name);
+    CHECK(text.find("[" + code + "]", text.find(kSeparator)) != std::string::npos);
+    shown.insert(code);
+  }
+  for (const ErrorCode& row : kErrorCodes) {
+    CAPTURE(std::string(row.code));
+    CHECK(shown.count(std::string(row.code)) == 1);
+    shown.erase(std::string(row.code));
+  }
+  CHECK(shown.empty());
+}
+
+TEST_CASE("codes are unique, and those in the compiler's sources are in the table", "[diagnostics]") {
+  std::set<std::string> table;
+  for (const ErrorCode& row : kErrorCodes) CHECK(table.insert(std::string(row.code)).second);
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "compiler")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = read_file(entry.path());
+    for (const char* severity : {"\"E0", "\"W0"}) {
+      for (std::size_t at = text.find(severity); at != std::string::npos; at = text.find(severity, at + 1)) {
+        CAPTURE(entry.path().string(), text.substr(at + 1, 5));
+        CHECK(table.count(text.substr(at + 1, 5)) == 1);
+      }
+    }
+  }
+}
+
+TEST_CASE("short and JSON formats", "[diagnostics]") {
+  const Source source("toy.json", "{\"version\": 1,\n \"objects\": [{\"name\": \"ü\", \"type\": \"spehre\"}]}");
+  const Diagnostics diagnostics = diagnose(source);
+  CHECK(diagnostics.print(source, ErrorFormat::Short) ==
+        "toy.json:2:36: error: unknown type of node `spehre` [E0201]\n");
+  const std::string line = diagnostics.print(source, ErrorFormat::Json);
+  CHECK(line.find('\n') == line.size() - 1);
+  const auto json = nlohmann::json::parse(line);
+  CHECK(json["severity"] == "error");
+  CHECK(json["code"] == "E0201");
+  CHECK(json["file"] == "toy.json");
+  CHECK(json["line"] == 2);
+  CHECK(json["column"] == 36);
+  CHECK(json["end_column"] == 44);
+  CHECK(source.text().substr(json["begin_byte"], 8) == "\"spehre\"");
+  CHECK(json["help"][0].get<std::string>().starts_with("did you mean `sphere`?"));
+}
+
+TEST_CASE("colour changes nothing but escape sequences", "[diagnostics]") {
+  const Source source("toy.json", "{\"version\": 3}");
+  const Diagnostics diagnostics = diagnose(source);
+  const std::string colored = diagnostics.print(source, ErrorFormat::Text, true);
+  std::string stripped;
+  for (std::size_t i = 0; i < colored.size(); ++i) {
+    if (colored[i] == '\x1b') {
+      i = colored.find('m', i);
+    } else {
+      stripped += colored[i];
+    }
+  }
+  CHECK(colored != stripped);
+  CHECK(stripped == diagnostics.print(source, ErrorFormat::Text));
+}
+
+TEST_CASE("the gutter is as wide as the line number", "[diagnostics]") {
+  Source source("toy.json", std::string(99, '\n') + "  x");
+  Diagnostics diagnostics;
+  diagnostics.error("E0102", {101, 102}, "message", "label", {"first", "second"});
+  CHECK(diagnostics.print(source, ErrorFormat::Text) ==
+        "error[E0102]: message\n"
+        "   --> toy.json:100:3\n"
+        "     |\n"
+        " 100 |   x\n"
+        "     |   ^ label\n"
+        "     = help: first\n"
+        "     = help: second\n");
+}
+
+TEST_CASE("carets stay on their line; control characters do not reach the terminal", "[diagnostics]") {
+  Source source("toy.json", "ab\x1b[2J\ncd");
+  Diagnostics diagnostics;
+  diagnostics.error("E0102", {1, 9}, "message");
+  const std::string text = diagnostics.print(source, ErrorFormat::Text);
+  CHECK(text.find(" 1 | ab\uFFFD[2J\n   |  ^^^^^\n") != std::string::npos);
+}
+
+TEST_CASE("twenty errors are printed and the rest counted, in every format", "[diagnostics]") {
+  const Source source("toy.json", "x");
+  Diagnostics diagnostics;
+  for (int i = 0; i < 21; ++i) diagnostics.error("E0102", {0, 1}, "message");
+  const std::string text = diagnostics.print(source, ErrorFormat::Text);
+  CHECK(text.ends_with("\nand 1 more error\n"));
+  const std::string lines = diagnostics.print(source, ErrorFormat::Short);
+  CHECK(std::count(lines.begin(), lines.end(), '\n') == 21);
+  CHECK(lines.ends_with("toy.json: and 1 more error\n"));
+  const std::string json = diagnostics.print(source, ErrorFormat::Json);
+  CHECK(std::count(json.begin(), json.end(), '\n') == 21);
+}
+
+TEST_CASE("nearest", "[diagnostics]") {
+  const std::vector<std::string_view> words = {"fov", "position", "target", "up", "k"};
+  CHECK(nearest("fvo", words) == "fov");
+  CHECK(nearest("FOV", words) == "fov");
+  CHECK(nearest("positoin", words) == "position");
+  CHECK(nearest("posision", words) == "position");
+  CHECK(nearest("tagret", words) == "target");
+  CHECK(nearest("pu", words) == "up");
+  CHECK(nearest("wobble", words) == "");
+  CHECK(nearest("x", words) == "");
+  CHECK(nearest("", words) == "");
+  CHECK(nearest("fov", {}) == "");
+}
+
+}  // namespace

@@ -1,0 +1,362 @@
+// What a shape is: the judge against brute force, then the machine against the judge, then what every distance field
+// owes the renderer: a Lipschitz constant, a bounding box, gradients.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "compiler/shapes/node_table.h"
+#include "tests/support/brute_force.h"
+#include "tests/support/judge.h"
+#include "tests/support/plain_lowering.h"
+#include "tests/support/random_scene.h"
+#include "vm/evaluate.h"
+
+namespace fathom::test {
+namespace {
+
+using compiler::Kind;
+using compiler::NodeSpec;
+using glm::dvec3;
+
+constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
+
+struct Sample {
+  std::vector<double> params;
+  compiler::Scene scene;
+  std::string name;
+};
+
+Sample sample(Kind kind, Random& random) {
+  Sample s;
+  s.params = random_params(kind, random);
+  s.scene = single(kind, s.params);
+  s.name = compiler::spec(kind).name;
+  for (double k : s.params) s.name += " " + Catch::StringMaker<double>::convert(k);
+  return s;
+}
+
+// Points in, around and far from a shape of size 1; some on an axis, a coordinate plane or a diagonal.
+dvec3 random_point(Random& random) {
+  const double half[] = {0.5, 1, 2, 2, 16};
+  dvec3 p = random.in_box(half[random.below(5)]);
+  if (random.chance(0.1)) p[random.below(3)] = 0;
+  if (random.chance(0.05)) p = dvec3(0, p.y, 0);
+  if (random.chance(0.03)) p.z = p.x;
+  return p;
+}
+
+double scale_of(dvec3 p) { return std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
+
+vm::SurfaceValue evaluate_float(const vm::VerifiedProgram& program, dvec3 p, vm::Workspace& workspace) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  float distance, gx, gy, gz;
+  std::uint32_t surface;
+  vm::evaluate_surface(program, {&x, &y, &z}, 1, {&distance, &gx, &gy, &gz, &surface}, workspace);
+  return {distance, {gx, gy, gz}, surface};
+}
+
+// Whether the estimate of a Mandelbulb is being judged, for which "distance" means less.
+bool estimated(Kind kind) { return kind == Kind::Mandelbulb; }
+
+// Largest errors of a kind: the machine's double and float evaluators against the judge.
+struct Errors {
+  double wide = 0, narrow = 0;  // relative to scale_of(p): absolute; in units of 2^-24
+  std::string where_wide, where_narrow;
+};
+
+Errors measure(Kind kind, int shapes, int points) {
+  Errors worst;
+  vm::Workspace workspace;
+  for (int seed = 0; seed < shapes; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed) * 1000 + static_cast<std::uint64_t>(kind));
+    const Sample s = sample(kind, random);
+    const vm::VerifiedProgram program = plain_lowering(s.scene);
+    for (int i = 0; i < points; ++i) {
+      const dvec3 p = random_point(random);
+      if (estimated(kind) && glm::length(p) < 1e-6) continue;
+      const double truth = judge_distance(s.scene.graph, s.scene.root, p), scale = scale_of(p);
+      const auto note = [&](double error, double& largest, std::string& where) {
+        if (error <= largest) return;  // a NaN is noted
+        largest = error;
+        where = s.name + " at " + Catch::StringMaker<double>::convert(p.x) + " " +
+                Catch::StringMaker<double>::convert(p.y) + " " + Catch::StringMaker<double>::convert(p.z) + " seed " +
+                std::to_string(seed);
+      };
+      note(std::abs(vm::evaluate_distance(program, p, workspace) - truth) / scale, worst.wide, worst.where_wide);
+      note(std::abs(evaluate_float(program, p, workspace).distance - truth) / (scale * kUnit), worst.narrow,
+           worst.where_narrow);
+    }
+  }
+  return worst;
+}
+
+// Moves p onto the surface along the gradient; false when it does not settle.
+bool to_surface(const vm::VerifiedProgram& program, dvec3& p, vm::Workspace& workspace) {
+  for (int i = 0; i < 60; ++i) {
+    const vm::SurfaceValue v = vm::evaluate_surface(program, p, workspace);
+    if (std::abs(v.distance) < 1e-12) return true;
+    p -= v.distance * v.gradient;
+  }
+  return false;
+}
+
+dvec3 central_difference(const vm::VerifiedProgram& program, dvec3 p, double h, vm::Workspace& workspace) {
+  dvec3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    dvec3 before = p, after = p;
+    before[axis] -= h;
+    after[axis] += h;
+    slope[axis] = (vm::evaluate_distance(program, after, workspace) - vm::evaluate_distance(program, before, workspace)) /
+                  (after[axis] - before[axis]);
+  }
+  return slope;
+}
+
+// A point of the surface on the axis with a whole cone of normals: there the gradient is known by its direction only.
+bool has_tip(Kind kind, const std::vector<double>& k) {
+  return (kind == Kind::Cone && (k[0] == 0 || k[1] == 0)) || (kind == Kind::Torus && k[1] >= k[0]);
+}
+
+bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+template <typename Check>
+void for_each_primitive(const Check& check) {
+  for (const NodeSpec& row : compiler::node_table()) {
+    if (row.category == compiler::Category::Primitive) check(row);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("random shapes are valid", "[shapes]") {
+  for_each_primitive([](const NodeSpec& row) {
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      INFO(s.name << ", seed " << seed);
+      if (row.check) CHECK(row.check(s.params).value_or("") == "");
+    }
+  });
+}
+
+TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judge]") {
+  for_each_primitive([](const NodeSpec& row) {
+    if (estimated(row.kind)) return;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      const BruteForce truth(row.kind, s.params);
+      for (int i = 0; i < 25; ++i) {
+        const dvec3 p = random_point(random);
+        const double judged = judge_distance(s.scene.graph, s.scene.root, p), found = truth.distance(p);
+        INFO(s.name << ", seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z);
+        // Inside a spindle the formula is a lower bound of the depth (the node table says so).
+        if (row.kind == Kind::Torus && s.params[1] > s.params[0] && found < 0) {
+          CHECK(judged >= found - 1e-12);
+          CHECK(judged <= 0);
+        } else {
+          CHECK(std::abs(judged - found) <= 1e-12 * scale_of(p));
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("every primitive in double is the judge's", "[shapes]") {
+  for_each_primitive([](const NodeSpec& row) {
+    const Errors errors = measure(row.kind, 60, 200);
+    INFO(row.name << ": " << errors.where_wide);
+    CHECK(errors.wide <= (estimated(row.kind) ? 1e-9 : 1e-14));
+  });
+}
+
+TEST_CASE("every primitive in float is within 8 units of the judge's", "[shapes]") {
+  for_each_primitive([](const NodeSpec& row) {
+    if (estimated(row.kind)) return;
+    const Errors errors = measure(row.kind, 60, 200);
+    INFO(row.name << ": " << errors.where_narrow);
+    CHECK(errors.narrow <= 8);
+  });
+}
+
+TEST_CASE("table of errors", "[.report]") {
+  for_each_primitive([](const NodeSpec& row) {
+    const Errors errors = measure(row.kind, 1000, 1000);
+    std::printf("%-17s double %9.3g   float %9.3g x 2^-24   (%s)\n", std::string(row.name).c_str(), errors.wide,
+                errors.narrow, errors.where_narrow.c_str());
+  });
+}
+
+TEST_CASE("no field changes faster than its Lipschitz constant of 1", "[shapes]") {
+  vm::Workspace workspace;
+  const auto check = [&](const compiler::Scene& scene, Random& random, int pairs) {
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    for (int i = 0; i < pairs; ++i) {
+      const dvec3 p = random_point(random);
+      const dvec3 q = p + random.direction() * random.length(1e-4, 2);
+      const double apart = glm::length(p - q), allowed = apart * (1 + 1e-6) + 1e-14 * scale_of(p);
+      INFO("at " << p.x << ' ' << p.y << ' ' << p.z << ", " << apart << " apart");
+      const auto judged = [&](dvec3 at) { return judge_distance(scene.graph, scene.root, at); };
+      CHECK(std::abs(judged(p) - judged(q)) <= allowed);
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - vm::evaluate_distance(program, q, workspace)) <=
+            allowed);
+    }
+  };
+  for_each_primitive([&](const NodeSpec& row) {
+    if (estimated(row.kind)) return;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      INFO(s.name << ", seed " << seed);
+      check(s.scene, random, 100);
+    }
+  });
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    Random random(seed);
+    const compiler::Scene scene = random_scene(random);
+    INFO("random graph, seed " << seed);
+    check(scene, random, 30);
+  }
+}
+
+TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
+  for_each_primitive([](const NodeSpec& row) {
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      const compiler::Box box = row.bound(s.params);
+      for (int i = 0; i < 100; ++i) {
+        const dvec3 p = random_point(random);
+        if (box.contains(p)) continue;
+        INFO(s.name << ", seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z);
+        CHECK(judge_distance(s.scene.graph, s.scene.root, p) > -1e-14);
+      }
+    }
+  });
+}
+
+// "Smallest cheap to know": every side of a finite box touches the surface, so that a loose box is noticed.
+TEST_CASE("a primitive's box is tight", "[shapes]") {
+  for_each_primitive([](const NodeSpec& row) {
+    if (estimated(row.kind) || row.kind == Kind::Plane) return;
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      const compiler::Box box = row.bound(s.params);
+      INFO(s.name << ", seed " << seed);
+      CHECK(box.finite());
+      for (int side = 0; side < 6; ++side) {
+        double nearest = 1e9;
+        for (int i = 0; i < 400; ++i) {
+          dvec3 p;
+          for (int axis = 0; axis < 3; ++axis) {
+            p[axis] = i == 0 ? (box.lo[axis] + box.hi[axis]) / 2 : random.uniform(box.lo[axis], box.hi[axis]);
+          }
+          p[side / 2] = side % 2 ? box.hi[side / 2] : box.lo[side / 2];
+          nearest = std::min(nearest, judge_distance(s.scene.graph, s.scene.root, p));
+        }
+        CHECK(nearest <= 0.15 * glm::length(box.hi - box.lo));
+      }
+    }
+  });
+}
+
+TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
+  vm::Workspace workspace;
+  for_each_primitive([&](const NodeSpec& row) {
+    if (estimated(row.kind)) return;
+    int settled = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      const vm::VerifiedProgram program = plain_lowering(s.scene);
+      for (int i = 0; i < 50; ++i) {
+        dvec3 p = random_point(random);
+        if (!to_surface(program, p, workspace)) continue;
+        ++settled;
+        INFO(s.name << ", seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z);
+        if (has_tip(row.kind, s.params) && std::hypot(p.x, p.z) < 1e-6) {
+          const double length = glm::length(vm::evaluate_surface(program, p, workspace).gradient);
+          CHECK(length <= 1 + 1e-9);
+          if (s.params[0] != s.params[1]) CHECK(length > 1e-3);  // a ring without a hole touches itself in the middle
+          continue;
+        }
+        CHECK(std::abs(glm::length(vm::evaluate_surface(program, p, workspace).gradient) - 1) <= 1e-9);
+        const vm::SurfaceValue narrow = evaluate_float(program, p, workspace);
+        CHECK(std::abs(glm::length(narrow.gradient) - 1) <= 1e-6);
+      }
+    }
+    INFO(row.name);
+    CHECK(settled > 2500);
+  });
+}
+
+TEST_CASE("gradients never are NaN: centres, axes, edges, corners", "[shapes][normals]") {
+  vm::Workspace workspace;
+  for_each_primitive([&](const NodeSpec& row) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      const vm::VerifiedProgram program = plain_lowering(s.scene);
+      const compiler::Box box = row.bound(s.params);
+      for (int i = 0; i < 125; ++i) {  // corners, edge and face centres of the box, and points beyond them
+        dvec3 p;
+        const int steps[] = {i % 5, i / 5 % 5, i / 25};
+        for (int axis = 0; axis < 3; ++axis) {
+          const double at[] = {0, box.lo[axis], box.hi[axis], 2 * box.hi[axis], 0.5 * box.lo[axis]};
+          p[axis] = std::clamp(at[steps[axis]], -9.0, 9.0);
+        }
+        INFO(s.name << ", seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z);
+        for (const vm::SurfaceValue& v :
+             {vm::evaluate_surface(program, p, workspace), evaluate_float(program, p, workspace)}) {
+          CHECK(finite(v.gradient));
+          CHECK(std::isfinite(v.distance));
+          if (!estimated(row.kind)) CHECK(glm::length(v.gradient) <= 1 + 1e-6);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("gradients are what differences say, away from creases", "[shapes][normals]") {
+  vm::Workspace workspace;
+  const auto check = [&](const compiler::Scene& scene, Random& random, int points) {
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    int smooth = 0;
+    for (int i = 0; i < points; ++i) {
+      const dvec3 p = random.in_box(2);
+      const dvec3 fine = central_difference(program, p, 1e-5, workspace);
+      const dvec3 coarse = central_difference(program, p, 4e-5, workspace);
+      if (glm::length(fine - coarse) > 1e-7) continue;  // a crease or a strong curvature nearby
+      ++smooth;
+      INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
+      const dvec3 exact = vm::evaluate_surface(program, p, workspace).gradient;
+      CHECK(glm::length(exact - fine) <= 1e-7);
+      CHECK(glm::length(evaluate_float(program, p, workspace).gradient - exact) <= 1e-3);
+    }
+    return smooth;
+  };
+  for_each_primitive([&](const NodeSpec& row) {
+    int smooth = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      INFO(s.name << ", seed " << seed);
+      smooth += check(s.scene, random, 50);
+    }
+    INFO(row.name);
+    if (!estimated(row.kind)) CHECK(smooth > 1000);
+  });
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const compiler::Scene scene = random_scene(random);
+    INFO("random graph, seed " << seed);
+    check(scene, random, 20);
+  }
+}
+
+}  // namespace fathom::test

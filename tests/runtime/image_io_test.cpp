@@ -1,0 +1,90 @@
+#include "runtime/image_io.h"
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace fathom::runtime {
+namespace {
+
+Picture gradient(int width, int height) {
+  Picture picture{width, height, {}};
+  for (int i = 0; i < width * height * 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(i));
+  return picture;
+}
+
+// A folder of its own, gone with the object.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "fathom_image_XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator{}));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
+  CHECK(image_format_of("a.png") == ImageFormat::Png);
+  CHECK(image_format_of("dir.x/a.PNG") == ImageFormat::Png);
+  CHECK(image_format_of("a.b.Jpg") == ImageFormat::Jpeg);
+  CHECK(image_format_of("a.jpeg") == ImageFormat::Jpeg);
+  CHECK(image_format_of("a.BMP") == ImageFormat::Bmp);
+  for (const char* bad : {"a", "a.", "png", "a.gif", "a.png/b", "a.pngx"}) CHECK_FALSE(image_format_of(bad));
+}
+
+TEST_CASE("image_io: each file has its format's header, and the size", "[runtime]") {
+  const Folder folder;
+  const Picture picture = gradient(7, 5);
+  CHECK(write_image(picture, folder.file("a.png")) == std::nullopt);
+  CHECK(write_image(picture, folder.file("a.jpg")) == std::nullopt);
+  CHECK(write_image(picture, folder.file("a.bmp")) == std::nullopt);
+  CHECK(folder.entries() == 3);
+  const std::string png = read(folder.file("a.png")), jpg = read(folder.file("a.jpg")), bmp = read(folder.file("a.bmp"));
+  CHECK(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  CHECK(png[19] == 7);
+  CHECK(png[23] == 5);
+  CHECK(jpg.substr(0, 3) == "\xff\xd8\xff");
+  CHECK(bmp.substr(0, 2) == "BM");
+  CHECK(bmp[18] == 7);
+}
+
+TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtime]") {
+  const Folder folder;
+  CHECK(write_image(gradient(2, 2), folder.file("none/a.png")).has_value());
+  CHECK(write_image(gradient(2, 2), folder.file("a.gif")).has_value());
+  std::filesystem::create_directory(folder.file("b.png"));
+  CHECK(write_image(gradient(2, 2), folder.file("b.png")).has_value());
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
+  const Folder folder;
+  REQUIRE(write_image(gradient(2, 2), folder.file("a.bmp")) == std::nullopt);
+  REQUIRE(write_image(gradient(4, 4), folder.file("a.bmp")) == std::nullopt);
+  CHECK(folder.entries() == 1);
+  CHECK(read(folder.file("a.bmp"))[18] == 4);
+}
+
+TEST_CASE("image_io: a path is refused before rendering, with the reason", "[runtime]") {
+  CHECK(check_image_path("a.tga")->find(".png") != std::string::npos);
+  CHECK(check_image_path("no/such/folder/a.png")->find("no/such/folder") != std::string::npos);
+  CHECK(check_image_path("a.png") == std::nullopt);
+}
+
+}  // namespace
+}  // namespace fathom::runtime

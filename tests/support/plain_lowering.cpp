@@ -1,0 +1,116 @@
+#include "tests/support/plain_lowering.h"
+
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+#include "compiler/shapes/node_table.h"
+#include "tests/support/random_scene.h"
+#include "vm/check.h"
+
+namespace fathom::test {
+namespace {
+
+using compiler::Graph;
+using compiler::Kind;
+using compiler::NodeId;
+using vm::Opcode;
+
+class Lowering {
+ public:
+  explicit Lowering(const Graph& graph) : graph_(graph), uses_(graph.size(), 0) {
+    for (NodeId id = 0; id < graph.size(); ++id) {
+      for (NodeId child : graph.children(id)) ++uses_[child];
+      if (graph.kind(id) == Kind::Paint) painted_ = true;
+    }
+  }
+
+  // Leaves one value on the stack: the node at the top point, which is the frame-th that was ever pushed.
+  void emit(NodeId node, std::uint32_t frame, std::uint32_t paint) {
+    if (graph_.kind(node) == Kind::Paint) {
+      return emit(graph_.children(node)[0], frame, static_cast<std::uint32_t>(graph_.params(node)[0]));
+    }
+    const auto [known, is_new] = locals_.try_emplace({node, frame, paint}, program_.locals);
+    if (!is_new) return append(Opcode::Load, {}, known->second);
+    const bool shared = uses_[node] > 1;
+    const std::uint32_t local = known->second;
+    if (shared) {
+      ++program_.locals;
+    } else {
+      locals_.erase(known);
+    }
+    emit_node(node, frame, paint);
+    if (shared) append(Opcode::Tee, {}, local);
+  }
+
+  vm::Program take() { return std::move(program_); }
+
+ private:
+  void append(Opcode opcode, const std::vector<double>& immediates = {}, std::uint32_t operand = 0) {
+    program_.append(opcode, operand, immediates, {});
+  }
+
+  void emit_node(NodeId node, std::uint32_t frame, std::uint32_t paint) {
+    const Kind kind = graph_.kind(node);
+    const auto params = graph_.params(node);
+    const compiler::NodeSpec& row = compiler::spec(kind);
+    if (row.opcode) {
+      append(*row.opcode, row.immediates(params));
+      if (painted_) append(Opcode::Tag, {}, paint);
+    } else if (kind == Kind::Transform) {
+      append(Opcode::Affine, {params.begin(), params.begin() + 12});
+      emit(graph_.children(node)[0], ++frames_, paint);
+      append(Opcode::Drop);
+      append(Opcode::Scale, {params[12]});
+    } else if (row.category == compiler::Category::Combinator) {
+      combine(node, frame, paint);
+    } else {
+      emit(graph_.children(node)[0], frame, paint);
+      append(kind == Kind::Round ? Opcode::Offset : Opcode::Onion, {params[0]});
+    }
+  }
+
+  void combine(NodeId node, std::uint32_t frame, std::uint32_t paint) {
+    static const Opcode kHard[] = {Opcode::Min, Opcode::Max, Opcode::Subtract};
+    static const Opcode kSmooth[] = {Opcode::SmoothMin, Opcode::SmoothMax, Opcode::SmoothSubtract};
+    const bool smooth = graph_.kind(node) >= Kind::SmoothUnion;
+    const double k = smooth ? graph_.params(node)[0] : 0;
+    const int which = (static_cast<int>(graph_.kind(node)) - static_cast<int>(Kind::Union)) % 3;
+    bool first = true;
+    for (NodeId child : graph_.children(node)) {
+      emit(child, frame, paint);
+      if (!std::exchange(first, false)) {
+        k > 0 ? append(kSmooth[which], {k, 1 / (4 * k)}) : append(kHard[which]);
+      }
+    }
+  }
+
+  const Graph& graph_;
+  std::vector<int> uses_;
+  bool painted_ = false;
+  vm::Program program_;
+  std::uint32_t frames_ = 0;
+  std::map<std::tuple<NodeId, std::uint32_t, std::uint32_t>, std::uint32_t> locals_;
+};
+
+}  // namespace
+
+vm::VerifiedProgram verified(vm::Program program) {
+  auto result = vm::verify(std::move(program));
+  if (const auto* error = std::get_if<vm::VerifyError>(&result)) CHECK(false, error->reason.c_str());
+  return std::get<vm::VerifiedProgram>(std::move(result));
+}
+
+vm::VerifiedProgram plain_lowering(const compiler::Scene& scene) {
+  Lowering lowering(scene.graph);
+  lowering.emit(scene.root, 0, 0);
+  return verified(lowering.take());
+}
+
+vm::VerifiedProgram primitive_program(Kind kind, const std::vector<double>& params) {
+  return plain_lowering(single(kind, params));
+}
+
+}  // namespace fathom::test

@@ -1,0 +1,213 @@
+#include "tests/support/random_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace fathom::test {
+namespace {
+
+using compiler::Graph;
+using compiler::Kind;
+using compiler::NodeId;
+using glm::dvec3;
+
+double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+// Rings from a wire to nearly a ball with a pinhole, and a spindle.
+std::vector<double> torus(Random& random) {
+  const double major = random.length(0.2, 1.5);
+  const double ratio[] = {1.5, 1, 0.999, 0.5, 0.1, 0.01};
+  return {major, rounded(major * ratio[random.below(6)])};
+}
+
+std::vector<double> cone(Random& random) {
+  const double a = random.length(0.05, 1.5), b = random.length(0.05, 1.5), h = random.length(0.05, 1.5);
+  switch (random.below(5)) {
+    case 0: return {a, 0, h};
+    case 1: return {0, b, h};
+    case 2: return {a, a, h};
+    default: return {a, b, h};
+  }
+}
+
+// Among them balls whose reach nearly or just touches: |r1 - r2| = height (1 - tiny).
+std::vector<double> round_cone(Random& random) {
+  const double height = random.length(0.1, 1.5), small = random.length(0.05, 1);
+  const double difference[] = {1, 1 - 1e-6, 0.99, 0.5, 0};
+  double large = rounded(small + height * difference[random.below(5)]);
+  while (large - small > height) large = static_cast<double>(std::nextafter(static_cast<float>(large), 0.f));
+  if (random.chance(0.5)) return {large, small, height};
+  return {small, large, height};
+}
+
+double eighths(Random& random, int reach) { return (random.below(2 * reach + 1) - reach) / 8.0; }
+dvec3 corner(Random& random) { return {eighths(random, 12), eighths(random, 12), eighths(random, 12)}; }
+
+// Corners on a grid of eighths, far enough from collinear; the fourth is a + s u + t v, exactly in the plane and convex
+// for s, t > 0, s + t > 1.
+std::vector<double> sheet(Random& random, bool quad) {
+  dvec3 a, u, v;
+  do {
+    a = corner(random), u = corner(random) - a, v = corner(random) - a;
+  } while (glm::length(glm::cross(u, v)) < 0.25 * glm::length(u) * glm::length(v) || glm::length(glm::cross(u, v)) < 0.2);
+  const double st[4][2] = {{1, 1}, {0.5, 1}, {1, 0.75}, {0.75, 0.75}};
+  const double* w = st[random.below(4)];
+  const dvec3 b = a + u, c = a + w[0] * u + w[1] * v, d = a + v;
+  std::vector<double> params{a.x, a.y, a.z, b.x, b.y, b.z};
+  if (quad) params.insert(params.end(), {c.x, c.y, c.z});
+  params.insert(params.end(), {d.x, d.y, d.z, random.length(0.01, 0.3)});
+  return params;
+}
+
+// Builds nodes bottom up; remembers what it made, to share some of it.
+class Maker {
+ public:
+  Maker(Graph& graph, Random& random, const GraphOptions& options)
+      : graph_(graph), random_(random), options_(options) {}
+
+  NodeId make(int depth) {
+    if (!made_.empty() && random_.chance(0.15)) return made_[static_cast<std::size_t>(random_.below(int(made_.size())))];
+    const NodeId id = depth == 0 || random_.chance(0.1) ? primitive() : operation(depth);
+    made_.push_back(id);
+    return id;
+  }
+
+ private:
+  NodeId add(Kind kind, const std::vector<double>& params, const std::vector<NodeId>& children) {
+    return graph_.add(kind, params, children);
+  }
+
+  NodeId primitive() {
+    const int kinds = static_cast<int>(Kind::Mandelbulb) + (options_.mandelbulbs ? 1 : 0);
+    Kind kind;
+    do {
+      kind = static_cast<Kind>(random_.below(kinds));
+    } while (kind == Kind::Plane && !options_.planes);
+    return add(kind, random_params(kind, random_), {});
+  }
+
+  NodeId operation(int depth) {
+    const int choice = random_.below(8);
+    if (choice >= 5) return combinator(depth);
+    const NodeId child = make(depth - 1);
+    if (choice == 0) return add(Kind::Round, {random_.length(0.01, 0.3)}, {child});
+    if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {child});
+    if (choice == 2 && options_.paints) return add(Kind::Paint, {1.0 + random_.below(6)}, {child});
+    return transform(child);
+  }
+
+  NodeId transform(NodeId child) {
+    dvec3 scale(1);
+    if (random_.chance(0.4)) scale = dvec3(random_.length(0.25, 4));
+    if (options_.squash && random_.chance(0.25)) {
+      scale = {random_.length(0.4, 2.5), random_.length(0.4, 2.5), random_.length(0.4, 2.5)};
+    }
+    const double angle = random_.chance(0.6) ? random_.uniform(-std::numbers::pi, std::numbers::pi) : 0;
+    const dvec3 move = random_.chance(0.8) ? random_.in_box(2) : dvec3(0);
+    return add(Kind::Transform, transform_params(scale, random_.direction(), angle, move), {child});
+  }
+
+  NodeId combinator(int depth) {
+    const Kind kind = static_cast<Kind>(static_cast<int>(Kind::Union) + random_.below(6));
+    std::vector<double> params;
+    if (kind >= Kind::SmoothUnion) params.push_back(random_.chance(0.2) ? 0 : random_.length(0.01, 1));
+    std::vector<NodeId> children;
+    for (int i = 1 + random_.below(4); i > 0; --i) children.push_back(make(depth - 1));
+    return add(kind, params, children);
+  }
+
+  Graph& graph_;
+  Random& random_;
+  const GraphOptions& options_;
+  std::vector<NodeId> made_;
+};
+
+}  // namespace
+
+std::uint64_t Random::bits() {
+  std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return z ^ (z >> 31);
+}
+double Random::uniform(double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(bits() >> 11) * 0x1p-53); }
+double Random::length(double lo, double hi) { return rounded(std::exp(uniform(std::log(lo), std::log(hi)))); }
+int Random::below(int n) { return static_cast<int>(bits() % static_cast<std::uint64_t>(n)); }
+dvec3 Random::in_box(double half) {
+  const double x = rounded(uniform(-half, half)), y = rounded(uniform(-half, half));
+  return {x, y, rounded(uniform(-half, half))};
+}
+dvec3 Random::direction() {
+  for (;;) {
+    const dvec3 v = in_box(1);
+    const double length = glm::length(v);
+    if (length > 0.1 && length <= 1) return v / length;
+  }
+}
+
+std::vector<double> random_params(Kind kind, Random& random) {
+  const auto size = [&] { return random.length(0.05, 1.5); };
+  // A rounding within `outer`, sometimes none and sometimes all of it.
+  const auto rounding = [&](double outer) {
+    const double share[] = {0, 1, 0.5, 0.1};
+    return rounded(outer * share[random.below(4)]);
+  };
+  switch (kind) {
+    case Kind::Sphere: return {size()};
+    case Kind::Box: return {size(), size(), size()};
+    case Kind::RoundBox: {
+      const double x = size(), y = size(), z = size();
+      return {x, y, z, rounding(std::min({x, y, z}))};
+    }
+    case Kind::Torus: return torus(random);
+    case Kind::Plane: {
+      const dvec3 n = random.chance(0.3) ? dvec3(0, random.chance(0.5) ? 2 : -1, 0) : random.in_box(2) + dvec3(0, 3, 0);
+      return {rounded(n.x), rounded(n.y), rounded(n.z), rounded(random.uniform(-1, 1))};
+    }
+    case Kind::Cylinder: return {size(), size()};
+    case Kind::RoundedCylinder: {
+      const double radius = size(), half_height = size();
+      return {radius, half_height, rounding(std::min(radius, half_height))};
+    }
+    case Kind::Cone: return cone(random);
+    case Kind::RoundCone: return round_cone(random);
+    case Kind::Triangle: return sheet(random, false);
+    case Kind::Quad: return sheet(random, true);
+    default: return {2.0 + random.below(8), 1.0 + random.below(10), 2.0 + random.below(15)};
+  }
+}
+
+compiler::Scene random_scene(Random& random, const GraphOptions& options) {
+  compiler::Scene scene;
+  scene.root = Maker(scene.graph, random, options).make(options.depth);
+  return scene;
+}
+
+// child = S^-1 R^T (p - t), with R by Rodrigues' formula R = cos I + (1 - cos) a a^T + sin [a]x.
+std::vector<double> transform_params(dvec3 scale, dvec3 axis, double angle, dvec3 translate) {
+  const dvec3 a = glm::normalize(axis);
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double cross[3][3] = {{0, -a.z, a.y}, {a.z, 0, -a.x}, {-a.y, a.x, 0}};
+  std::vector<double> params;
+  for (int row = 0; row < 3; ++row) {
+    double offset = 0;
+    for (int column = 0; column < 3; ++column) {
+      const double r = (row == column ? c : 0) + (1 - c) * a[column] * a[row] + s * cross[column][row];
+      params.push_back(r / scale[row]);
+      offset -= r / scale[row] * translate[column];
+    }
+    params.push_back(offset);
+  }
+  params.push_back(std::min({scale.x, scale.y, scale.z}));
+  return params;
+}
+
+compiler::Scene single(Kind kind, const std::vector<double>& params) {
+  compiler::Scene scene;
+  scene.root = scene.graph.add(kind, params, {});
+  return scene;
+}
+
+}  // namespace fathom::test

@@ -1,0 +1,50 @@
+// Seeded random shapes, graphs and points: every kind of node, with the extremes that formulas trip over (tips of
+// cones, fat and thin rings, balls of nearly equal reach, blends of width 0, squashed spaces).
+//
+// Parameters of shapes are exact in float, so that a float evaluator is judged on the same solid. One seed gives the
+// same scene everywhere: no distribution of the standard library is used.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "compiler/graph.h"
+
+namespace fathom::test {
+
+// SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits();
+  double uniform(double lo, double hi);       // [lo, hi)
+  double length(double lo, double hi);        // log-uniform, exact in float
+  int below(int n);                           // 0 .. n-1
+  bool chance(double probability) { return uniform(0, 1) < probability; }
+  glm::dvec3 in_box(double half);             // uniform, exact in float
+  glm::dvec3 direction();                     // uniform on the unit sphere
+
+ private:
+  std::uint64_t state_;
+};
+
+// Valid parameters of a primitive of size about 1.
+std::vector<double> random_params(compiler::Kind kind, Random& random);
+
+struct GraphOptions {
+  int depth = 4;
+  bool mandelbulbs = false;
+  bool planes = true;         // unbounded parts
+  bool paints = true;         // surface numbers 1 .. 6
+  bool squash = true;         // three different scales
+};
+compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
+
+// Rows of a Transform: the child is scaled, turned by `angle` (radians) about `axis`, then moved.
+std::vector<double> transform_params(glm::dvec3 scale, glm::dvec3 axis, double angle, glm::dvec3 translate);
+
+// A graph of one primitive.
+compiler::Scene single(compiler::Kind kind, const std::vector<double>& params);
+
+}  // namespace fathom::test

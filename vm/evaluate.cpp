@@ -1,0 +1,187 @@
+// The f32 evaluators, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
+#include "vm/evaluate.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+// SSSE3 machines run the portable code; each target costs compile time and a test run.
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS HWY_SSSE3
+#endif
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+
+#include "vm/interpret-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// Calls body(first point of the block, points in it) with the machine's points filled; lanes past the end repeat the
+// last point.
+template <class T, class Body>
+HWY_INLINE void for_each_block(const VerifiedProgram& program, Points points, std::size_t count, Workspace& workspace,
+                               const Body& body) {
+  constexpr std::size_t kBlockPoints = kSlot<T> * kLanes;
+  for (std::size_t begin = 0; begin < count; begin += kBlockPoints) {
+    const std::size_t size = std::min(kBlockPoints, count - begin);
+    const std::size_t used = (size + kLanes - 1) / kLanes;
+    Machine<T> machine(program, workspace, used);
+    auto* p = machine.first_point();
+    for (std::size_t i = 0; i < used; ++i) {
+      const std::size_t at = begin + i * kLanes;
+      alignas(64) float padded[3][kLanes];
+      const float* x = points.x + at;
+      const float* y = points.y + at;
+      const float* z = points.z + at;
+      if (at + kLanes > count) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          const std::size_t from = std::min(lane, count - 1 - at);
+          padded[0][lane] = x[from], padded[1][lane] = y[from], padded[2][lane] = z[from];
+        }
+        x = padded[0], y = padded[1], z = padded[2];
+      }
+      set_point(p[i], Batch::load(x), Batch::load(y), Batch::load(z));
+    }
+    machine.interpret();
+    body(begin, size, used, machine.result());
+  }
+}
+
+HWY_INLINE void set_point(Vec3<Batch>& p, Batch x, Batch y, Batch z) { p = {x, y, z}; }
+HWY_INLINE void set_point(Vec3<Dual<Batch>>& p, Batch x, Batch y, Batch z) {
+  const Batch zero = Batch::broadcast(0.0f), one = Batch::broadcast(1.0f);
+  p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
+}
+
+// Stores the first `size` of the lanes that value(i) gives.
+template <class Value>
+HWY_INLINE void store(std::size_t size, std::size_t used, float* to, const Value& value) {
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::size_t at = i * kLanes;
+    if (at + kLanes <= size) {
+      value(i).store(to + at);
+    } else {
+      alignas(64) float padded[kLanes];
+      value(i).store(padded);
+      std::copy_n(padded, size - at, to + at);
+    }
+  }
+}
+
+void distance_batch(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+                    Workspace& workspace) {
+  for_each_block<Batch>(program, points, count, workspace,
+                        [&](std::size_t begin, std::size_t size, std::size_t used, const Batch* result) HWY_ATTR {
+                          store(size, used, distance + begin, [&](std::size_t i) HWY_ATTR { return result[i]; });
+                        });
+}
+
+void surface_batch(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+                   Workspace& workspace) {
+  using T = Tagged<Dual<Batch>>;
+  for_each_block<T>(program, points, count, workspace,
+                    [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
+    store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v; });
+    store(size, used, out.gradient_x + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dx; });
+    store(size, used, out.gradient_y + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dy; });
+    store(size, used, out.gradient_z + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dz; });
+    float surfaces[kSlot<T> * kLanes];
+    store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
+    std::transform(surfaces, surfaces + size, out.surface + begin, [](float s) { return static_cast<std::uint32_t>(s); });
+  });
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fathom::vm {
+
+HWY_EXPORT(distance_batch);
+HWY_EXPORT(surface_batch);
+
+void evaluate_distance(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+                       Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(distance_batch)(program, points, count, distance, workspace);
+}
+
+void evaluate_surface(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+                      Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(surface_batch)(program, points, count, out, workspace);
+}
+
+void* Workspace::reserve(std::size_t bytes) {
+  if (bytes > size_) {
+    size_ = bytes + bytes / 2;
+    memory_.reset(::operator new(size_, std::align_val_t(64)));
+  }
+  return memory_.get();
+}
+
+void Workspace::Free::operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
+
+namespace {
+
+struct Isa {
+  std::string_view name;
+  std::int64_t target;
+};
+
+// Best first.
+constexpr Isa kIsas[] = {
+    {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
+
+// Highway's choice without any mock.
+std::int64_t supported_targets() {
+  hwy::SetSupportedTargetsForTest(0);
+  return (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
+}
+
+// FATHOM_ISA takes effect before main(): no evaluation can have begun.
+const bool kEnvironmentApplied = [] {
+  const char* wanted = std::getenv("FATHOM_ISA");
+  if (wanted == nullptr || *wanted == 0 || force_isa(wanted)) return true;
+  std::fprintf(stderr, "warning: FATHOM_ISA=%s: this machine cannot run that; using %.*s\n", wanted,
+               static_cast<int>(isa_name().size()), isa_name().data());
+  return false;
+}();
+
+}  // namespace
+
+std::vector<std::string_view> available_isas() {
+  const std::string_view in_use = isa_name();
+  const std::int64_t supported = supported_targets();
+  force_isa(in_use);
+  std::vector<std::string_view> names;
+  for (const Isa& isa : kIsas) {
+    if (supported & isa.target) names.push_back(isa.name);
+  }
+  return names;
+}
+
+bool force_isa(std::string_view name) {
+  const std::string_view before = isa_name();
+  const std::int64_t supported = supported_targets();
+  bool found = false;
+  for (const Isa& isa : kIsas) {
+    const bool wanted = isa.name == name && (supported & isa.target) != 0;
+    if (wanted || (!found && isa.name == before)) hwy::SetSupportedTargetsForTest(isa.target);
+    found = found || wanted;
+  }
+  hwy::GetChosenTarget().DeInit();
+  return found;
+}
+
+std::string_view isa_name() {
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  for (const Isa& isa : kIsas) {
+    if (supported & isa.target) return isa.name;
+  }
+  return "scalar";
+}
+
+}  // namespace fathom::vm
+#endif  // HWY_ONCE

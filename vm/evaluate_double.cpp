@@ -1,0 +1,54 @@
+// The evaluators in double: one point, its gradient and surface, or a box.
+#include "vm/evaluate.h"
+#include "vm/interpret-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+namespace {
+
+template <class T, class P>
+T run_once(const VerifiedProgram& program, const Vec3<P>& point, Workspace& workspace) {
+  Machine<T> machine(program, workspace, 1);
+  *machine.first_point() = point;
+  machine.interpret();
+  return *machine.result();
+}
+
+double distance(const VerifiedProgram& program, glm::dvec3 p, Workspace& workspace) {
+  return run_once<Real>(program, Vec3<Real>{{p.x}, {p.y}, {p.z}}, workspace).v;
+}
+
+SurfaceValue surface(const VerifiedProgram& program, glm::dvec3 p, Workspace& workspace) {
+  using D = Dual<Real>;
+  const Real zero{0}, one{1};
+  const Vec3<D> point{{{p.x}, one, zero, zero}, {{p.y}, zero, one, zero}, {{p.z}, zero, zero, one}};
+  const auto result = run_once<Tagged<D>>(program, point, workspace);
+  const D& d = result.v;
+  return {d.v.v, {d.dx.v, d.dy.v, d.dz.v}, static_cast<std::uint32_t>(result.surface.v)};
+}
+
+Range range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  const Vec3<Interval> box{{lo.x, hi.x}, {lo.y, hi.y}, {lo.z, hi.z}};
+  const Interval result = run_once<Interval>(program, box, workspace);
+  return {result.lo, result.hi};
+}
+
+}  // namespace
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+namespace fathom::vm {
+
+double evaluate_distance(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::distance(program, point, workspace);
+}
+
+SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::surface(program, point, workspace);
+}
+
+Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  return HWY_NAMESPACE::range(program, lo, hi, workspace);
+}
+
+}  // namespace fathom::vm

@@ -1,0 +1,230 @@
+// The interpreter: one loop, a template over the number type.
+//
+// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (128 with 16 f32 lanes); all
+// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is verified:
+// nothing is checked here.
+#if defined(FATHOM_VM_INTERPRET_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_INTERPRET_INL
+#undef FATHOM_VM_INTERPRET_INL
+#else
+#define FATHOM_VM_INTERPRET_INL
+#endif
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "vm/evaluate.h"
+#include "vm/semantics-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// One struct per opcode with its meaning as a function; the form decides what it may use.
+#define OP_Point(Name, meaning)                                                                                    \
+  struct Name##Op {                                                                                                \
+    template <class T>                                                                                             \
+    static HWY_INLINE Vec3<T> apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k) {                     \
+      return meaning;                                                                                              \
+    }                                                                                                              \
+  };
+#define OP_Shape(Name, meaning)                                                                                    \
+  struct Name##Op {                                                                                                \
+    template <class T>                                                                                             \
+    static HWY_INLINE T apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k,                             \
+                              [[maybe_unused]] const std::uint32_t* w) {                                           \
+      return meaning;                                                                                              \
+    }                                                                                                              \
+  };
+#define OP_Unary(Name, meaning)                                                                                    \
+  struct Name##Op {                                                                                                \
+    template <class T>                                                                                             \
+    static HWY_INLINE T apply(const T& a, [[maybe_unused]] const Constant<T>* k) {                                 \
+      return meaning;                                                                                              \
+    }                                                                                                              \
+  };
+#define OP_Binary(Name, meaning)                                                                                   \
+  struct Name##Op {                                                                                                \
+    template <class T>                                                                                             \
+    static HWY_INLINE T apply(const T& a, const T& b, [[maybe_unused]] const Constant<T>* k) {                     \
+      return meaning;                                                                                              \
+    }                                                                                                              \
+  };
+#define OP_Machine(Name, meaning)
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
+#include "vm/opcodes.def"
+#undef OP
+#undef OP_Point
+#undef OP_Shape
+#undef OP_Unary
+#undef OP_Binary
+#undef OP_Machine
+
+// How a value type relates to the points shapes run on: a Tagged value's points carry no tag.
+template <class T>
+struct ValueTraits {
+  using Point = T;
+  static HWY_INLINE T lift(const Point& value) { return value; }
+  static HWY_INLINE void tag(T&, std::uint32_t) {}
+};
+template <class T>
+struct ValueTraits<Tagged<T>> {
+  using Point = T;
+  static HWY_INLINE Tagged<T> lift(const T& value) { return {value, constant<T>(0.0)}; }
+  static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) { value.surface = constant<T>(surface); }
+};
+
+// Numbers per stack slot. Eight registers a block measured best or equal on 8 and 16 lanes; types that are many
+// registers wide take shorter blocks to stay in the cache.
+template <class T>
+inline constexpr std::size_t kSlot = 1;
+template <>
+inline constexpr std::size_t kSlot<Batch> = kLanes >= 8 ? 8 : 16;
+template <>
+inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
+
+HWY_INLINE Batch immediate(const Program& program, std::size_t word, Batch*) {
+  return Batch::broadcast(std::bit_cast<float>(program.words[word]));
+}
+template <class C>
+HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
+  return C::broadcast(program.wide[word]);
+}
+
+template <class T>
+class Machine {
+ public:
+  using Traits = ValueTraits<T>;
+  using P = typename Traits::Point;
+  using C = Constant<T>;
+  static constexpr std::size_t kBlock = kSlot<T>;
+
+  // `used` is how many of a slot's numbers matter.
+  Machine(const VerifiedProgram& verified, Workspace& workspace, std::size_t used)
+      : program_(verified.program()), used_(used) {
+    const std::size_t point_bytes = verified.max_points() * kBlock * sizeof(Vec3<P>);
+    const std::size_t value_slots = verified.max_values() + program_.locals;
+    auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_slots * kBlock * sizeof(T)));
+    points_ = reinterpret_cast<Vec3<P>*>(memory);
+    values_ = reinterpret_cast<T*>(memory + point_bytes);
+    locals_ = values_ + verified.max_values() * kBlock;
+  }
+
+  Vec3<P>* first_point() { return points_; }
+  const T* result() const { return values_; }
+
+  // Runs the program on the block of points at first_point(); its values are at result() afterwards.
+  void interpret() {
+    point_ = points_;
+    top_ = values_ - kBlock;
+    const std::size_t size = program_.words.size();
+    for (at_ = 0; at_ != size;) {
+      const std::uint32_t word = program_.words[at_];
+      ++at_;
+      switch (static_cast<Opcode>(word & 0xff)) {
+#define OP_Point(Name) case Opcode::Name: apply_point<Name##Op, info_##Name>(); break;
+#define OP_Shape(Name) case Opcode::Name: apply_shape<Name##Op, info_##Name>(); break;
+#define OP_Unary(Name) case Opcode::Name: apply_unary<Name##Op, info_##Name>(); break;
+#define OP_Binary(Name) case Opcode::Name: apply_binary<Name##Op, info_##Name>(); break;
+#define OP_Machine(Name)
+#define OP(Name, mnemonic, form, ...) OP_##form(Name)
+#include "vm/opcodes.def"
+#undef OP
+#undef OP_Point
+#undef OP_Shape
+#undef OP_Unary
+#undef OP_Binary
+#undef OP_Machine
+        case Opcode::Drop: point_ -= kBlock; break;
+        case Opcode::Tee: copy(locals_ + operand_of(word) * kBlock, top_); break;
+        case Opcode::Load:
+          top_ += kBlock;
+          copy(top_, locals_ + operand_of(word) * kBlock);
+          break;
+        case Opcode::Tag:
+          for (std::size_t i = 0; i < used_; ++i) Traits::tag(top_[i], operand_of(word));
+          break;
+      }
+    }
+  }
+
+ private:
+  // Immediate counts as compile-time constants.
+  enum : int {
+#define OP(Name, mnemonic, form, immediates, ...) info_##Name = count_names(immediates),
+#include "vm/opcodes.def"
+#undef OP
+  };
+
+  // The instruction's immediates as constants; moves past them. Local copies, so that stores to the stack cannot be
+  // thought to change them.
+  template <int Count>
+  struct Immediates {
+    C k[Count > 0 ? Count : 1];
+    const std::uint32_t* words;
+  };
+  template <int Count>
+  HWY_INLINE Immediates<Count> take() {
+    Immediates<Count> result;
+    for (int i = 0; i < Count; ++i) {
+      result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
+    }
+    result.words = program_.words.data() + at_;
+    at_ += Count;
+    return result;
+  }
+
+  template <class Op, int Count>
+  HWY_INLINE void apply_point() {
+    const auto immediates = take<Count>();
+    const Vec3<P>* from = point_;
+    Vec3<P>* to = point_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Op::apply(from[i], immediates.k); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_shape() {
+    const auto immediates = take<Count>();
+    const Vec3<P>* from = point_;
+    T* to = top_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], immediates.k, immediates.words)); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_unary() {
+    const auto immediates = take<Count>();
+    T* a = top_;
+    for_used([&](std::size_t i) HWY_ATTR { a[i] = Op::apply(a[i], immediates.k); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_binary() {
+    const auto immediates = take<Count>();
+    const T* b = top_;
+    T* a = top_ -= kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { a[i] = Op::apply(a[i], b[i], immediates.k); });
+  }
+  HWY_INLINE void copy(T* to, const T* from) {
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });
+  }
+
+  // Calls body(i) for the numbers of a slot that matter. A full block, the common case, has a constant length.
+  template <class Body>
+  HWY_INLINE void for_used(const Body& body) {
+    if (const std::size_t used = used_; used == kBlock) {
+      for (std::size_t i = 0; i < kBlock; ++i) body(i);
+    } else {
+      for (std::size_t i = 0; i < used; ++i) body(i);
+    }
+  }
+
+  const Program& program_;
+  std::size_t used_;
+  Vec3<P>* points_;
+  T* values_;
+  T* locals_;
+  Vec3<P>* point_ = nullptr;  // top of the point stack
+  T* top_ = nullptr;          // top of the value stack
+  std::size_t at_ = 0;        // next word
+};
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,67 @@
+// Batch: as many f32 lanes as the instruction set has in a register. Plain multiplies and adds only, never fused, so
+// that every instruction set gives the same bits.
+#if defined(FATHOM_VM_BATCH_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_BATCH_INL
+#undef FATHOM_VM_BATCH_INL
+#else
+#define FATHOM_VM_BATCH_INL
+#endif
+
+#include "vm/number/number-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatLanes = hn::ScalableTag<float>;
+inline constexpr std::size_t kLanes = hn::MaxLanes(FloatLanes());
+
+struct Batch {
+  using Constant = Batch;
+  hn::Vec<FloatLanes> v;
+
+  static HWY_INLINE Batch broadcast(float value) { return {hn::Set(FloatLanes(), value)}; }
+  static HWY_INLINE Batch broadcast(double value) { return broadcast(static_cast<float>(value)); }
+  static HWY_INLINE Batch load(const float* from) { return {hn::LoadU(FloatLanes(), from)}; }
+  HWY_INLINE void store(float* to) const { hn::StoreU(v, FloatLanes(), to); }
+};
+
+struct BatchMask {
+  hn::Mask<FloatLanes> m;
+};
+
+HWY_INLINE Batch operator+(Batch a, Batch b) { return {hn::Add(a.v, b.v)}; }
+HWY_INLINE Batch operator-(Batch a, Batch b) { return {hn::Sub(a.v, b.v)}; }
+HWY_INLINE Batch operator*(Batch a, Batch b) { return {hn::Mul(a.v, b.v)}; }
+HWY_INLINE Batch operator/(Batch a, Batch b) { return {hn::Div(a.v, b.v)}; }
+HWY_INLINE Batch operator-(Batch a) { return {hn::Neg(a.v)}; }
+HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
+HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
+HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }
+HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
+HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
+// x86's minps and Highway's emulation both compute a < b ? a : b.
+HWY_INLINE Batch min(Batch a, Batch b) { return {hn::Min(a.v, b.v)}; }
+HWY_INLINE Batch max(Batch a, Batch b) { return {hn::Max(a.v, b.v)}; }
+HWY_INLINE Batch abs(Batch a) { return {hn::Abs(a.v)}; }
+HWY_INLINE Batch sqr(Batch a) { return a * a; }
+HWY_INLINE Batch sqrt(Batch a) { return {hn::Sqrt(a.v)}; }
+HWY_INLINE Batch length(Batch x, Batch y) { return sqrt(x * x + y * y); }
+HWY_INLINE Batch length(Batch x, Batch y, Batch z) { return sqrt(x * x + y * y + z * z); }
+
+// x normal and positive. x = 2^e * m with m in [sqrt 1/2, sqrt 2).
+HWY_INLINE Batch log(Batch x) {
+  const hn::RebindToSigned<FloatLanes> ints;
+  const auto bits = hn::BitCast(ints, x.v);
+  const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(ints, 0x3f3504f3)));
+  const Batch m{hn::BitCast(FloatLanes(), hn::Sub(bits, hn::ShiftLeft<23>(exponent)))};
+  const Batch one = Batch::broadcast(1.0f);
+  const Batch s = (m - one) / (m + one);
+  const Batch twice = s + s;
+  const Batch e{hn::ConvertTo(FloatLanes(), exponent)};
+  return e * Batch::broadcast(0.6931471805599453) + (twice + twice * log_series(s * s, 5));
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,55 @@
+// Tagged<T>: a number and the surface it belongs to. min, max and select hand on the chosen operand's surface; sums and
+// products keep the left operand's. So the program that computes the distance also tells whose distance it is.
+#if defined(FATHOM_VM_TAGGED_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_TAGGED_INL
+#undef FATHOM_VM_TAGGED_INL
+#else
+#define FATHOM_VM_TAGGED_INL
+#endif
+
+#include "vm/number/number-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+template <class T>
+struct Tagged {
+  using Constant = typename T::Constant;
+  T v;
+  Constant surface;  // the number as a float: exact below 2^24, which the 24-bit operand guarantees
+};
+
+template <class T>
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a) { return {-a.v, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, const Tagged<T>& b) { return {a.v + b.v, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, const Tagged<T>& b) { return {a.v - b.v, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, const Tagged<T>& b) { return {a.v * b.v, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, Constant<T> b) { return {a.v - b, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator-(Constant<T> a, const Tagged<T>& b) { return {a - b.v, b.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, Constant<T> b) { return {a.v * b, a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> abs(const Tagged<T>& a) { return {abs(a.v), a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> sqr(const Tagged<T>& a) { return {sqr(a.v), a.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) { return {max(a, b.v), b.surface}; }
+template <class T>
+HWY_INLINE Tagged<T> min(const Tagged<T>& a, const Tagged<T>& b) {
+  const auto mask = a.v < b.v;
+  return {select(mask, a.v, b.v), select(mask, a.surface, b.surface)};
+}
+template <class T>
+HWY_INLINE Tagged<T> max(const Tagged<T>& a, const Tagged<T>& b) {
+  const auto mask = b.v < a.v;
+  return {select(mask, a.v, b.v), select(mask, a.surface, b.surface)};
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,229 @@
+// Meanings of the opcodes that are longer than a line (vm/opcodes.def), over any number type of vm/number/.
+//
+// T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is that
+// of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after Inigo
+// Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign failed; derivations beside.
+// Tested by: tests/compiler/shapes_test.cpp, tests/vm/evaluate_test.cpp
+#if defined(FATHOM_VM_SEMANTICS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_SEMANTICS_INL
+#undef FATHOM_VM_SEMANTICS_INL
+#else
+#define FATHOM_VM_SEMANTICS_INL
+#endif
+
+#include <cstdint>
+
+#include "vm/number/batch-inl.h"
+#include "vm/number/dual-inl.h"
+#include "vm/number/interval-inl.h"
+#include "vm/number/number-inl.h"
+#include "vm/number/real-inl.h"
+#include "vm/number/tagged-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+template <class T>
+HWY_INLINE T length(const Vec3<T>& p) {
+  return length(p.x, p.y, p.z);
+}
+
+template <class T>
+HWY_INLINE Vec3<T> subtract(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
+  return {p.x - x, p.y - y, p.z - z};
+}
+
+// Row-major 3x4: m * (p, 1).
+template <class T>
+HWY_INLINE T affine_row(const Vec3<T>& p, const Constant<T>* m) {
+  return p.x * m[0] + p.y * m[1] + p.z * m[2] + m[3];
+}
+template <class T>
+HWY_INLINE Vec3<T> affine(const Vec3<T>& p, const Constant<T>* m) {
+  return {affine_row(p, m), affine_row(p, m + 4), affine_row(p, m + 8)};
+}
+
+// Half extents x, y, z. Gradient undefined on the edges' and the inside's medial planes. The order of min's and max's
+// operands matters: on the surface both terms are 0, and the tie must go to the one with a gradient.
+template <class T>
+HWY_INLINE T box(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T qx = abs(p.x) - x, qy = abs(p.y) - y, qz = abs(p.z) - z;
+  return length(max(zero, qx), max(zero, qy), max(zero, qz)) + min(zero, max(qx, max(qy, qz)));
+}
+
+// About the y axis.
+template <class T>
+HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_height) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T dx = length(p.x, p.z) - radius, dy = abs(p.y) - half_height;
+  return length(max(zero, dx), max(zero, dy)) + min(zero, max(dx, dy));
+}
+
+// k: half height, bottom radius, top radius, the side's outward normal (nx, ny) in the half-plane (distance from the
+// axis, y), the side's length. Inside, a convex profile: the largest of the planes' distances. Outside, the nearer of
+// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface.
+template <class T>
+HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T rho = length(p.x, p.z);
+  const T qx = rho - k[1], qy = p.y + k[0];       // from the bottom rim
+  const T side = qx * k[3] + qy * k[4];           // distance to the side's line
+  const T along = qy * k[3] - qx * k[4];          // from the bottom rim up the side
+  const T beyond = along - max(zero, min(k[5], along));
+  const T cap = abs(p.y) - k[0];
+  const T past_rim = max(zero, rho - select(p.y < zero, k[1], k[2]));
+  const T inside = max(side, cap);
+  // Outside the nearer of the two is at least `inside`, but where it vanishes on the surface only `inside` has a gradient.
+  return select(zero < inside, max(min(length(side, beyond), length(past_rim, cap)), inside), inside);
+}
+
+// k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis, y).
+// Gradient undefined at the balls' centres and on the axis inside.
+template <class T>
+HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T rho = length(p.x, p.z);
+  const T along = p.y * k[3] - rho * k[4];  // where the foot on the side lies, 0 at the lower ball
+  const T lower = length(rho, p.y) - k[0];
+  const T upper = length(rho, p.y - k[2]) - k[1];
+  const T side = rho * k[3] + p.y * k[4] - k[0];
+  return select(along < zero, lower, select(k[3] * k[2] < along, upper, side));
+}
+
+// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts it into the xy plane, then for
+// each edge its start x0 y0, its direction ux uy (counter-clockwise) and its length; then the thickness. The distance to
+// the flat polygon is |z| over its inside and the distance to the nearest edge elsewhere.
+template <int N, class T>
+HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> zero = constant<T>(0.0);
+  const Vec3<T> q = affine(p, k);
+  T rx = q.x, ry = q.y, nearest = q.x;  // the offset from the nearest edge, and its square
+  auto outside = q.x < q.x;
+  for (int i = 0; i < N; ++i) {
+    const Constant<T>* edge = k + 12 + 5 * i;
+    const T wx = q.x - edge[0], wy = q.y - edge[1];
+    const T t = max(zero, min(edge[4], wx * edge[2] + wy * edge[3]));
+    const T ex = wx - t * edge[2], ey = wy - t * edge[3];
+    const T square = sqr(ex) + sqr(ey);
+    if (i == 0) {
+      rx = ex;
+      ry = ey;
+      nearest = square;
+      outside = wy * edge[2] < wx * edge[3];
+    } else {
+      const auto nearer = square < nearest;
+      rx = select(nearer, ex, rx);
+      ry = select(nearer, ey, ry);
+      nearest = select(nearer, square, nearest);
+      outside = outside | (wy * edge[2] < wx * edge[3]);
+    }
+  }
+  const T none = q.x * zero;
+  return length(select(outside, rx, none), select(outside, ry, none), q.z) - k[12 + 5 * N];
+}
+
+// (re + i im)^n by repeated squaring.
+template <class T>
+HWY_INLINE void complex_power(T& re, T& im, std::uint32_t n) {
+  T base_re = re, base_im = im;
+  bool first = true;
+  for (;;) {
+    if (n & 1) {
+      if (first) {
+        re = base_re, im = base_im, first = false;
+      } else {
+        const T x = re * base_re - im * base_im;
+        im = re * base_im + im * base_re;
+        re = x;
+      }
+    }
+    n >>= 1;
+    if (n == 0) return;
+    const T x = sqr(base_re) - sqr(base_im);
+    base_im = (base_re + base_re) * base_im;
+    base_re = x;
+  }
+}
+
+template <class T>
+HWY_INLINE T integer_power(T base, std::uint32_t n) {
+  T result = base;
+  for (std::uint32_t i = 1; i < n; ++i) result = result * base;
+  return result;
+}
+
+// A quotient that is a sine or a cosine in exact arithmetic: keeps intervals from blowing up at the axis.
+template <class T>
+HWY_INLINE T clamp_unit(const T& x) {
+  return max(constant<T>(-1.0), min(constant<T>(1.0), x));
+}
+
+// Daniel White and Paul Nylander's fractal of 2009 about the y axis: w -> w^n + p in spherical coordinates, computed
+// without trigonometry, (cos a + i sin a)^n being cos na + i sin na. Distance estimate 1/2 log|w| |w| / |dw| after
+// Hart, Sandin & Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989. Not a bound: neither certified nor
+// Lipschitz. Far out the estimate grows like |p| log|p| and would overestimate, so there the ball of radius `bound`
+// that holds the set limits it. m and |dw| are kept from 0 and infinity, so nothing is NaN.
+template <class T>
+HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t iterations, Constant<T> bailout,
+                        Constant<T> bound) {
+  const Constant<T> zero = constant<T>(0.0), one = constant<T>(1.0), tiny = constant<T>(1e-30);
+  const Constant<T> bailout2 = bailout * bailout, n = constant<T>(power), huge = constant<T>(1e30);
+  Vec3<T> w = p;
+  T m = sqr(w.x) + sqr(w.y) + sqr(w.z);
+  const T distance = sqrt(m);
+  T dw = p.x * zero + one;
+  for (std::uint32_t i = 0; i < iterations; ++i) {
+    const auto escaped = m > bailout2;
+    const auto active = m < bailout2;
+    if (!any(active)) break;
+    const T grown = min(huge, integer_power(sqrt(m), power - 1) * dw * n + one);
+    const T rho = length(w.x, w.z);
+    T re = w.y, im = rho;
+    complex_power(re, im, power);
+    const T safe_rho = max(tiny, rho);
+    const auto on_axis = rho < tiny;
+    T cos_a = select(on_axis, p.x * zero + one, clamp_unit(w.z / safe_rho));
+    T sin_a = select(on_axis, p.x * zero, clamp_unit(w.x / safe_rho));
+    complex_power(cos_a, sin_a, power);
+    w.x = select(escaped, w.x, p.x + im * sin_a);
+    w.y = select(escaped, w.y, p.y + re);
+    w.z = select(escaped, w.z, p.z + im * cos_a);
+    dw = select(escaped, dw, grown);
+    m = sqr(w.x) + sqr(w.y) + sqr(w.z);
+  }
+  m = max(tiny, m);
+  const T estimate = log(m) * sqrt(m) / dw * constant<T>(0.25);
+  return select(distance > bound + bound, min(estimate, distance - bound), estimate);
+}
+
+// Polynomial blend of width k: within |a - b| < k the result dips below the lesser by (k - |a-b|)^2 / (4k), at most k/4
+// (Inigo Quilez, "Smooth minimum"). The gradient is a convex combination of a's and b's, so 1-Lipschitz stays so.
+template <class T>
+HWY_INLINE T smooth_min(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
+  const T h = max(constant<T>(0.0), k - abs(a - b));
+  return min(a, b) - h * h * inv4k;
+}
+template <class T>
+HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
+  const T h = max(constant<T>(0.0), k - abs(a - b));
+  return max(a, b) + h * h * inv4k;
+}
+
+// Smooth minimum and maximum rise in both operands, so their ranges are those of the ends; the formula above would use
+// a and b several times and widen the result by up to k.
+HWY_INLINE Interval smooth_min(Interval a, Interval b, Interval k, Interval inv4k) {
+  const auto end = [&](double x, double y) HWY_ATTR {
+    const Interval h = max(Interval{0, 0}, k - abs(Interval{x, x} - Interval{y, y}));
+    return Interval{std::min(x, y), std::min(x, y)} - h * h * inv4k;
+  };
+  if (!(std::isfinite(a.lo) && std::isfinite(a.hi) && std::isfinite(b.lo) && std::isfinite(b.hi))) return whole_line();
+  return {end(a.lo, b.lo).lo, end(a.hi, b.hi).hi};
+}
+HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4k) {
+  return -smooth_min(-a, -b, k, inv4k);
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,100 @@
+#include "vm/verify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+namespace fathom::vm {
+namespace {
+
+// What the pass knows before the instruction at hand.
+struct State {
+  std::int64_t values = 0, points = 1, max_values = 0, max_points = 1;
+  std::vector<bool> written;  // [local]
+};
+
+std::optional<std::string> check_immediates(const Program& program, std::size_t at, const OpcodeInfo& row,
+                                            const Limits& limits) {
+  for (int i = 0; i < row.immediates; ++i) {
+    const std::size_t word = at + 1 + static_cast<std::size_t>(i);
+    const std::uint32_t bits = program.words[word];
+    if (is_integer_immediate(row, i)) {
+      if (bits == 0 || bits > limits.loop_count) {
+        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, immediate_name(row, i), bits, limits.loop_count);
+      }
+    } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
+      return fmt::format("{}: {} is not finite", row.mnemonic, immediate_name(row, i));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
+  const std::uint32_t operand = operand_of(word);
+  if (!row.has_operand && operand != 0) return fmt::format("{} has no operand, but {} is given", row.mnemonic, operand);
+  if (row.opcode != Opcode::Tee && row.opcode != Opcode::Load) return std::nullopt;
+  if (operand >= state.written.size()) {
+    return fmt::format("{} {}: the program declares {} locals", row.mnemonic, operand, state.written.size());
+  }
+  if (row.opcode == Opcode::Tee) state.written[operand] = true;
+  if (!state.written[operand]) return fmt::format("load {}: the local is read before it is written", operand);
+  return std::nullopt;
+}
+
+std::optional<std::string> check_stacks(const OpcodeInfo& row, const Limits& limits, State& state) {
+  const StackEffect& effect = row.effect;
+  if (state.values < effect.values_needed) {
+    return fmt::format("{} needs {} values, the stack holds {}", row.mnemonic, effect.values_needed, state.values);
+  }
+  if (state.points < effect.points_needed) {
+    return fmt::format("{} would take the caller's point", row.mnemonic);
+  }
+  state.values += effect.values_change;
+  state.points += effect.points_change;
+  state.max_values = std::max(state.max_values, state.values);
+  state.max_points = std::max(state.max_points, state.points);
+  if (state.max_values > limits.stack || state.max_points > limits.stack) {
+    return fmt::format("a stack grows beyond {}", limits.stack);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits& limits) {
+  VerifiedProgram result;
+  const std::size_t size = program.words.size();
+  if (size > limits.words) return VerifyError{0, fmt::format("{} words; at most {} are allowed", size, limits.words)};
+  if (program.wide.size() != size) return VerifyError{0, "the table of wide constants is not as long as the code"};
+  if (program.locals > limits.locals) {
+    return VerifyError{0, fmt::format("{} locals; at most {} are allowed", program.locals, limits.locals)};
+  }
+  State state;
+  state.written.assign(program.locals, false);
+  for (std::size_t at = 0; at < size;) {
+    const auto fail = [&](std::string reason) { return VerifyError{static_cast<std::uint32_t>(at), std::move(reason)}; };
+    const std::uint32_t word = program.words[at];
+    const OpcodeInfo* row = find_opcode(word & 0xff);
+    if (row == nullptr) return fail(fmt::format("no opcode {}", word & 0xff));
+    if (size - at - 1 < static_cast<std::size_t>(row->immediates)) return fail(fmt::format("{} is cut off", row->mnemonic));
+    if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
+    if (auto reason = check_stacks(*row, limits, state)) return fail(std::move(*reason));
+    if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
+    at += 1 + static_cast<std::size_t>(row->immediates);
+    ++result.instructions_;
+    result.cost_ += static_cast<std::uint32_t>(row->cost);
+  }
+  if (state.values != 1 || state.points != 1) {
+    return VerifyError{static_cast<std::uint32_t>(size), fmt::format("ends with {} values and {} points, not one of each",
+                                                                     state.values, state.points)};
+  }
+  result.max_values_ = static_cast<std::uint32_t>(state.max_values);
+  result.max_points_ = static_cast<std::uint32_t>(state.max_points);
+  result.program_ = std::move(program);
+  return result;
+}
+
+}  // namespace fathom::vm
