@@ -31,7 +31,11 @@ bool nowhere(Span span) { return span.begin == 0 && span.end == 0; }
 // only decides what a terminal is sent.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = static_cast<unsigned char>(text[0]);
-  const std::size_t length = byte < 0x80 ? 1 : (byte >> 5) == 6 ? 2 : (byte >> 4) == 14 ? 3 : (byte >> 3) == 30 ? 4 : 0;
+  const std::size_t length = byte < 0x80         ? 1
+                             : (byte >> 5) == 6  ? 2
+                             : (byte >> 4) == 14 ? 3
+                             : (byte >> 3) == 30 ? 4
+                                                 : 0;
   if (length == 0 || length > text.size()) return 0;
   for (std::size_t i = 1; i < length; ++i) {
     if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
@@ -143,9 +147,12 @@ std::string print_json(const Diagnostic& d, const Source& source) {
 std::string print_rest(std::size_t count, const Source& source, ErrorFormat format) {
   const std::string message = fmt::format("and {} more error{}", count, count == 1 ? "" : "s");
   switch (format) {
-    case ErrorFormat::Text: return "\n" + message + "\n";
-    case ErrorFormat::Short: return fmt::format("{}: {}\n", source.name(), message);
-    case ErrorFormat::Json: break;
+    case ErrorFormat::Text:
+      return "\n" + message + "\n";
+    case ErrorFormat::Short:
+      return fmt::format("{}: {}\n", source.name(), message);
+    case ErrorFormat::Json:
+      break;
   }
   return json_line({{"severity", "note"}, {"message", message}, {"file", source.name()}});
 }

@@ -42,6 +42,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0302", "parameters that do not fit together"},
     {"E0303", "the camera looks at its own position"},
     {"E0304", "the camera's up is its direction of view"},
+    {"E0305", "the program would be too long for the machine"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},

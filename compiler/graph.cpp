@@ -123,7 +123,8 @@ std::string print_graph(const Scene& scene, const Source& source) {
                                    print_params(graph.kind(id), graph.params(id)));
     for (const NodeId child : graph.children(id)) line += fmt::format(" %{}", number[child]);
     const std::string origin = print_origin(graph.origin(id), source);
-    if (!origin.empty()) line = fmt::format("{:<{}}{}{}", line, kCommentColumn, line.size() < kCommentColumn ? "" : " ", origin);
+    if (!origin.empty())
+      line = fmt::format("{:<{}}{}{}", line, kCommentColumn, line.size() < kCommentColumn ? "" : " ", origin);
     out += line + "\n";
   }
   return out;

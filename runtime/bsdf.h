@@ -52,9 +52,10 @@ inline BsdfSample sample_diffuse(glm::vec3 color, glm::vec3 normal, Sampler& sam
 }
 
 // A smooth dielectric: reflects with the probability that Fresnel's equations give, else refracts. `inside`: wo lies
-// within the solid. The scaling of radiance by eta^2 at a crossing is left out: light is seen where it leaves the glass
-// again, and there the two cancel.
-inline BsdfSample sample_transparent(const Material& m, glm::vec3 wo, glm::vec3 normal, bool inside, Sampler& sampler) {
+// within the solid. The scaling of radiance by eta^2 at a crossing is left out: light is seen where it leaves the
+// glass again, and there the two cancel.
+inline BsdfSample sample_transparent(const Material& m, glm::vec3 wo, glm::vec3 normal, bool inside,
+                                     Sampler& sampler) {
   const float eta = inside ? 1 / m.ior : m.ior;
   const float cos_i = std::fmin(glm::dot(wo, normal), 1.0f);
   if (sampler.next() < fresnel(cos_i, eta)) return {reflect_about(wo, normal), glm::vec3(1), false};
@@ -64,9 +65,12 @@ inline BsdfSample sample_transparent(const Material& m, glm::vec3 wo, glm::vec3 
 inline BsdfSample sample_bsdf(const Material& m, glm::vec3 wo, glm::vec3 normal, bool inside, Sampler& sampler) {
   switch (m.type) {
     case Material::Type::Diffuse:
-    case Material::Type::Emissive: return sample_diffuse(m.color, normal, sampler);
-    case Material::Type::Specular: return {reflect_about(wo, normal), m.color, false};
-    case Material::Type::Transparent: return sample_transparent(m, wo, normal, inside, sampler);
+    case Material::Type::Emissive:
+      return sample_diffuse(m.color, normal, sampler);
+    case Material::Type::Specular:
+      return {reflect_about(wo, normal), m.color, false};
+    case Material::Type::Transparent:
+      return sample_transparent(m, wo, normal, inside, sampler);
   }
   return {};
 }

@@ -1,8 +1,7 @@
 // The camera: a pixel and a place within it -> a ray.
 //
-// F = normalize(target - position), R = normalize(cross(F, up)), U = cross(R, F): x grows to the right and y downwards in
-// the picture, up is up. Pixels are square.
-// Tested by: tests/runtime/camera_test.cpp
+// F = normalize(target - position), R = normalize(cross(F, up)), U = cross(R, F): x grows to the right and y
+// downwards in the picture, up is up. Pixels are square. Tested by: tests/runtime/camera_test.cpp
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -5,9 +5,8 @@
 //   - when |g(a)| + |g(b)| > L (b - a): the two unbounding balls cover it (Hart, "Sphere Tracing", 1996), or
 //   - when interval arithmetic over its box excludes zero (Mitchell, "Robust Ray Intersection with Interval
 //     Arithmetic", 1990).
-// Otherwise it is cut in two, near half first, until a change of sign is bracketed (hit) or the segment is too short to
-// matter (contact: treated as free, and reported).
-// Tested by: tests/runtime/certify_test.cpp
+// Otherwise it is cut in two, near half first, until a change of sign is bracketed (hit) or the segment is too short
+// to matter (contact: treated as free, and reported). Tested by: tests/runtime/certify_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -27,9 +26,9 @@ struct Certified {
   bool contact = false;  // a miss that came too near for the resolution to exclude a touch
 };
 
-// The first root of g(t) = side * f(origin + t direction) in [begin, end], where g(begin) is taken to be positive; a hit
-// at `begin` when it is not. `end` must be finite. Exhausted only after a million evaluations (sixteen thousand when
-// the Lipschitz constant is an estimate), which no certified field has been seen to need.
+// The first root of g(t) = side * f(origin + t direction) in [begin, end], where g(begin) is taken to be positive; a
+// hit at `begin` when it is not. `end` must be finite. Exhausted only after a million evaluations (sixteen thousand
+// when the Lipschitz constant is an estimate), which no certified field has been seen to need.
 Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, double begin, double end,
                   vm::Workspace& workspace);
 

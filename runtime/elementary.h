@@ -1,5 +1,5 @@
-// Elementary functions in plain additions and multiplications: the same bits on every machine, which glibc's sinf, expf
-// and powf do not give (they take other paths on CPUs with fused multiply-add).
+// Elementary functions in plain additions and multiplications: the same bits on every machine, which glibc's sinf,
+// expf and powf do not give (they take other paths on CPUs with fused multiply-add).
 //
 // Tested by: tests/runtime/elementary_test.cpp (error bounds against libm in double)
 #pragma once
@@ -26,10 +26,14 @@ inline SinCos sincos_turn(float u) {
   const float c =
       ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1;
   switch (quadrant & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 

@@ -8,11 +8,13 @@
 namespace fathom::runtime {
 namespace {
 
-// The size of what is looked at, scene units: half the bound's diagonal, or how far the camera's target is.
+// The size of what is looked at, scene units: how far the camera's target is, but no more than half the bound's
+// diagonal. A wide floor must not coarsen the things that stand on it.
 double extent_of(const compiler::CompiledScene& scene) {
-  if (!scene.bound.empty() && scene.bound.finite()) return glm::length(scene.bound.hi - scene.bound.lo) / 2;
-  const double extent = glm::length(scene.camera.target - scene.camera.position);
-  return extent > 0 ? extent : 1;
+  double extent = glm::length(scene.camera.target - scene.camera.position);
+  if (!(extent > 0)) extent = 1;
+  if (scene.bound.empty() || !scene.bound.finite()) return extent;
+  return std::min(extent, glm::length(scene.bound.hi - scene.bound.lo) / 2);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ Film::Film(int width, int height)
     : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
 bool Film::add(int x, int y, const PathSample& sample) {
-  Pixel& pixel = pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  Pixel& pixel =
+      pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
   ++pixel.samples;
   bool room = true;
   for (int i = 0; i < 3; ++i) room &= accumulate(pixel.sums[Red + i], sample.radiance[i]);

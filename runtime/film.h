@@ -1,8 +1,8 @@
 // The film: what the paths brought home, summed for each pixel.
 //
-// Sums are whole multiples of 2^-32 in 64 bits. Integer addition does not depend on its order, so any partition of the
-// work gives the same bits. A sum may reach 2^31; beyond that it stays there and is counted.
-// Tested by: tests/runtime/film_test.cpp
+// Sums are whole multiples of 2^-32 in 64 bits. Integer addition does not depend on its order, so any partition of
+// the work gives the same bits. A sum may reach 2^31; beyond that it stays there and is counted. Tested by:
+// tests/runtime/film_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -27,9 +27,7 @@ Picture make_picture(const Film& film, Shade shade) {
   return picture;
 }
 
-glm::dvec3 encode(glm::dvec3 linear) {
-  return {srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z)};
-}
+glm::dvec3 encode(glm::dvec3 linear) { return {srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z)}; }
 
 }  // namespace
 

@@ -20,8 +20,8 @@ Picture beauty_picture(const Film& film, double exposure);
 // Colour of the first surface met, sRGB encoded; black where there is none.
 Picture albedo_picture(const Film& film);
 
-// Mean normal n of the first surface as n/2 + 1/2, not sRGB encoded: +x is red, +y green, +z blue. Black where no sample
-// hit; pixels that hit with a part of their samples show the mean of those.
+// Mean normal n of the first surface as n/2 + 1/2, not sRGB encoded: +x is red, +y green, +z blue. Black where no
+// sample hit; pixels that hit with a part of their samples show the mean of those.
 Picture normal_picture(const Film& film);
 
 // Distance from the camera along the ray, nearest = white, farthest = a dark grey (1/16), linear in between, not sRGB

@@ -88,9 +88,15 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
   const void* data = picture.rgb.data();
   int done = 0;
   switch (format) {
-    case ImageFormat::Png: done = stbi_write_png_to_func(append_bytes, &bytes, w, h, 3, data, 3 * w); break;
-    case ImageFormat::Jpeg: done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality); break;
-    case ImageFormat::Bmp: done = stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data); break;
+    case ImageFormat::Png:
+      done = stbi_write_png_to_func(append_bytes, &bytes, w, h, 3, data, 3 * w);
+      break;
+    case ImageFormat::Jpeg:
+      done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality);
+      break;
+    case ImageFormat::Bmp:
+      done = stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
+      break;
   }
   if (done == 0) bytes.clear();
   return bytes;

@@ -52,7 +52,8 @@ void Integrator::start(std::uint32_t id, const PathKey& key) {
   const Settings& settings = world_.settings;
   Path& path = paths_[id];
   path.key = key;
-  path.sampler = Sampler(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y), key.sample);
+  path.sampler =
+      Sampler(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y), key.sample);
   // A single sample shows what lies at the pixel's centre.
   const glm::vec2 place = settings.spp == 1 ? glm::vec2(0.5f) : path.sampler.next2();
   const CameraRay ray = world_.camera.ray(key.x + static_cast<double>(place.x), key.y + static_cast<double>(place.y));

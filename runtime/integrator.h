@@ -1,7 +1,7 @@
 // The path integrator: camera paths followed from hit to hit until they end.
 //
-// One Integrator per thread keeps a stream of rays full: every ray that arrives is shaded and goes on as the path's next
-// ray, or makes room for a new camera path. Light is found by hitting it.
+// One Integrator per thread keeps a stream of rays full: every ray that arrives is shaded and goes on as the path's
+// next ray, or makes room for a new camera path. Light is found by hitting it.
 //
 //     Integrator integrator(world, film);
 //     integrator.run([&] { return next camera path, or nothing; });
@@ -59,11 +59,11 @@ class Integrator {
   struct Path {
     PathKey key;
     Sampler sampler;
-    glm::dvec3 origin;         // of the current ray, scene units
+    glm::dvec3 origin;  // of the current ray, scene units
     glm::dvec3 direction;
     glm::vec3 throughput;
-    glm::vec3 absorption;      // of the medium the ray travels through, per scene unit
-    int bounces;               // made so far
+    glm::vec3 absorption;  // of the medium the ray travels through, per scene unit
+    int bounces;           // made so far
     PathSample result;
   };
 

@@ -10,7 +10,8 @@
 namespace fathom::runtime {
 namespace {
 
-// The direction at unit length; nothing when it has none. One that is a unit vector to float precision stays as it is.
+// The direction at unit length; nothing when it has none. One that is a unit vector to float precision stays as it
+// is.
 std::optional<glm::dvec3> unit(glm::dvec3 direction) {
   const double squared = glm::dot(direction, direction);
   if (!(squared > 1e-60 && squared < 1e60)) return std::nullopt;
@@ -27,6 +28,7 @@ struct Stretch {
 // The part of the ray within [0, t_max] and the box, by slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986);
 // nothing when there is none.
 std::optional<Stretch> clip(const compiler::Box& box, glm::dvec3 origin, glm::dvec3 direction, double t_max) {
+  if (box.empty()) return std::nullopt;
   Stretch part{0, t_max};
   for (int i = 0; i < 3; ++i) {
     if (direction[i] == 0) {
@@ -61,8 +63,7 @@ void Stream::add(std::uint32_t id, const Ray& ray) {
   ++counters_.rays;
   const std::optional<glm::dvec3> direction = unit(ray.direction);
   if (!direction || !finite(ray.origin) || std::isnan(ray.t_max)) return arrive(id, Arrival::Status::Invalid, 1);
-  const std::optional<Stretch> part =
-      clip(field_.bound, ray.origin, *direction, std::min(ray.t_max, field_.far));
+  const std::optional<Stretch> part = clip(field_.bound, ray.origin, *direction, std::min(ray.t_max, field_.far));
   if (!part) return arrive(id, Arrival::Status::Miss, 1);
 
   Course& course = courses_[static_cast<std::size_t>(live_)];
@@ -109,9 +110,15 @@ void Stream::finish(int index, LaneVerdict verdict) {
     case LaneVerdict::Hit:
       arrive(course.id, Arrival::Status::Hit, lane.side, course.entry + static_cast<double>(lane.t), lane.width);
       break;
-    case LaneVerdict::Miss: arrive(course.id, Arrival::Status::Miss, lane.side); break;
-    case LaneVerdict::Certify: certify_lane(lane, course); break;
-    default: arrive(course.id, Arrival::Status::Invalid, lane.side); break;
+    case LaneVerdict::Miss:
+      arrive(course.id, Arrival::Status::Miss, lane.side);
+      break;
+    case LaneVerdict::Certify:
+      certify_lane(lane, course);
+      break;
+    default:
+      arrive(course.id, Arrival::Status::Invalid, lane.side);
+      break;
   }
   lanes_[n] = lanes_[last];
   courses_[n] = courses_[last];
@@ -128,8 +135,10 @@ void Stream::certify_lane(const Lane& lane, const Course& course) {
   switch (found.outcome) {
     case Certified::Outcome::Hit:
       return arrive(course.id, Arrival::Status::Hit, lane.side, course.entry + found.t, found.width);
-    case Certified::Outcome::Miss: return arrive(course.id, Arrival::Status::Miss, lane.side);
-    default: return arrive(course.id, Arrival::Status::Invalid, lane.side);
+    case Certified::Outcome::Miss:
+      return arrive(course.id, Arrival::Status::Miss, lane.side);
+    default:
+      return arrive(course.id, Arrival::Status::Invalid, lane.side);
   }
 }
 

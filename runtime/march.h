@@ -1,12 +1,13 @@
 // Marching: rays -> the first surface they meet.
 //
 // A ray is followed along g(t) = side * f(origin + t direction), which is positive in the space it travels through
-// (side is -1 inside a solid). A hit is a change of sign bracketed to float resolution, never "f is small". Three tiers:
+// (side is -1 inside a solid). A hit is a change of sign bracketed to float resolution, never "f is small". Three
+// tiers:
 //
 //   clip    in double: the ray restarts where it enters the scene's bound, so that float t stays small
 //   stream  in float, many rays at once: steps certified by the Lipschitz constant, stretched by automatic relaxation
-//           (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", Eurographics 2023); near the surface a
-//           step that should cross it; then the bracket shrinks by the Illinois method (march_lane.h)
+//           (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", Eurographics 2023); near the
+//           surface a step that should cross it; then the bracket shrinks by the Illinois method (march_lane.h)
 //   certify in double, one ray at a time: the few that float cannot decide (certify.h)
 //
 // Every ray ends as Hit, Miss or Invalid; none runs out of steps.
@@ -37,8 +38,8 @@ struct Ray {
   glm::dvec3 origin;     // scene units
   glm::dvec3 direction;  // any finite length but zero; normalised unless it has unit length already
   double t_max = std::numeric_limits<double>::infinity();  // scene units, beside the field's `far`
-  int side = 0;         // +1 starts outside, -1 inside a solid; 0: find out
-  float slope = -1;     // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
+  int side = 0;                                            // +1 starts outside, -1 inside a solid; 0: find out
+  float slope = -1;  // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
 };
 
 struct Arrival {

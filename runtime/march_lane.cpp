@@ -13,8 +13,8 @@ constexpr float kLargestM = 0.9f;
 // A crossing is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side.
 constexpr float kOvershoot = 1.1f;
 constexpr float kOvershootErrors = 4;
-// ... and is at most this many bands long: further away, a straight prediction means little.
-constexpr float kLongestCrossing = 64;
+// ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen.
+constexpr float kLongestCrossing = 16;
 // A lane that takes more evaluations in float than this is finished by certify().
 constexpr int kBudget = 512;
 // A value this small a part of d_f holds no more digits of the root: half a unit in the last place at 1.
@@ -22,7 +22,9 @@ constexpr float kRootError = 0.0625f;
 // Width of a bracket that is done, relative to t: two units in the last place.
 constexpr float kRootWidth = 0x1p-22f;
 
-float safe_radius(float g, float error, const LaneRules& rules) { return (std::abs(g) - error) * rules.inv_lipschitz; }
+float safe_radius(float g, float error, const LaneRules& rules) {
+  return (std::abs(g) - error) * rules.inv_lipschitz;
+}
 
 LaneVerdict propose(Lane& a, float error, const LaneRules& rules) {
   if (a.t + a.r >= a.t_max) return LaneVerdict::Miss;
@@ -49,8 +51,9 @@ LaneVerdict propose(Lane& a, float error, const LaneRules& rules) {
 LaneVerdict accept(Lane& a, float g, float r, float error, const LaneRules& rules) {
   const float z = a.t_next - a.t;
   if (z > 0) {
-    a.m = std::min((1 - kBeta) * a.m + kBeta * (r - a.r) / z, kLargestM);
-    a.slope = (g - a.g) / z;
+    const float per_z = 1 / z;
+    a.m = std::min((1 - kBeta) * a.m + kBeta * ((r - a.r) * per_z), kLargestM);
+    a.slope = (g - a.g) * per_z;
   }
   a.t = a.t_next;
   a.g = g;
@@ -98,8 +101,8 @@ LaneVerdict begin_refining(Lane& a, float g, float error) {
   return divide(a);
 }
 
-// Illinois method: an end that stays twice running has its value halved, which pulls the secant towards it (Dowell and
-// Jarratt, "A Modified Regula Falsi Method", 1971).
+// Illinois method: an end that stays twice running has its value halved, which pulls the secant towards it (Dowell
+// and Jarratt, "A Modified Regula Falsi Method", 1971).
 LaneVerdict refine(Lane& a, float g, float error) {
   if (std::abs(g) <= kRootError * error) return hit(a, a.t_next, kRootWidth * a.t_next);
   if (g > 0) {
@@ -156,11 +159,15 @@ LaneVerdict update(Lane& a, float f, float error, const LaneRules& rules) noexce
   ++a.evaluations;
   if (!(std::abs(f) < INFINITY)) return LaneVerdict::Invalid;
   switch (a.phase) {
-    case Lane::Phase::Start: return start(a, f, error, rules);
-    case Lane::Phase::Emerge: return emerge(a, a.side * f, error, rules);
+    case Lane::Phase::Start:
+      return start(a, f, error, rules);
+    case Lane::Phase::Emerge:
+      return emerge(a, a.side * f, error, rules);
     case Lane::Phase::Walk:
-    case Lane::Phase::Retreat: return walk(a, a.side * f, error, rules);
-    case Lane::Phase::Refine: return refine(a, a.side * f, error);
+    case Lane::Phase::Retreat:
+      return walk(a, a.side * f, error, rules);
+    case Lane::Phase::Refine:
+      return refine(a, a.side * f, error);
   }
   return LaneVerdict::Invalid;
 }

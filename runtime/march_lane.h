@@ -5,10 +5,10 @@
 //   Emerge     |  Refine --> Hit       Refine: a crossing lies in [t, t_hi]
 //              Miss, Certify           Emerge: began on the wrong side of the surface, by rounding
 //
-// A step of length z from a sample with safe radius r is accepted when z <= r + r' with r' the safe radius found there:
-// the two balls then leave no gap (Keinert et al., "Enhanced Sphere Tracing", 2014). Its length is z = 2 r / (1 - m),
-// where the field is modelled as a plane of slope m along the ray, and m is an average of the slopes seen (Ban and
-// Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023).
+// A step of length z from a sample with safe radius r is accepted when z <= r + r' with r' the safe radius found
+// there: the two balls then leave no gap (Keinert et al., "Enhanced Sphere Tracing", 2014). Its length is z = 2 r /
+// (1 - m), where the field is modelled as a plane of slope m along the ray, and m is an average of the slopes seen
+// (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023).
 //
 // Not a public header: march.h is.
 #pragma once
@@ -24,13 +24,13 @@ struct Lane {
   enum class Phase : std::uint8_t { Start, Emerge, Walk, Retreat, Refine };
 
   glm::vec3 origin, direction;
-  float side;    // 0 until the first evaluation when it has to be found out
-  float t_max;   // the ray ends here
-  float t, g;    // the last accepted sample; while refining the bracket's free end
-  float t_next;  // where the field is evaluated next
-  float r;       // safe radius at t: nothing lies within (t - r, t + r)
-  float m;       // relaxation: expected slope of the safe radius along the ray
-  float slope;   // of g over the last accepted step
+  float side;              // 0 until the first evaluation when it has to be found out
+  float t_max;             // the ray ends here
+  float t, g;              // the last accepted sample; while refining the bracket's free end
+  float t_next;            // where the field is evaluated next
+  float r;                 // safe radius at t: nothing lies within (t - r, t + r)
+  float m;                 // relaxation: expected slope of the safe radius along the ray
+  float slope;             // of g over the last accepted step
   float t_hi, g_hi, g_lo;  // while refining: the far end, its value, the value the secant uses at the free end
   float width;             // of the bracket, once hit
   std::uint16_t evaluations;

@@ -1,4 +1,5 @@
 // Materials as shading wants them: single precision, ready to use.
+// Tested by: tests/runtime/render_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -20,7 +20,7 @@ struct Progress {
 };
 
 struct RenderOptions {
-  int threads = 0;  // 0: one per processor
+  int threads = 0;                   // 0: one per processor
   std::optional<int> width, height;  // pixels
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;

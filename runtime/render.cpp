@@ -81,8 +81,8 @@ class Worker {
   }
 
   void report_tile() {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(tile_->x1 - tile_->x0) *
-                                 static_cast<std::uint64_t>(tile_->y1 - tile_->y0);
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(tile_->x1 - tile_->x0) * static_cast<std::uint64_t>(tile_->y1 - tile_->y0);
     const std::uint64_t rays = integrator_.stats().march.rays;
     report_.add(pixels * static_cast<std::uint64_t>(world_.settings.spp), rays - reported_rays_);
     reported_rays_ = rays;

@@ -1,5 +1,5 @@
-// Hits -> what shading needs to know of the place: position, normal, material. In batches, through the surface program.
-// Tested by: tests/runtime/surface_test.cpp
+// Hits -> what shading needs to know of the place: position, normal, material. In batches, through the surface
+// program. Tested by: tests/runtime/surface_test.cpp
 #pragma once
 
 #include <array>
@@ -14,21 +14,22 @@ namespace fathom::runtime {
 
 // A place where a ray met the surface.
 struct Hit {
-  glm::dvec3 position;   // scene units
-  glm::vec3 wo;          // unit length, back along the ray
-  int side;              // of the space the ray came through: +1 outside, -1 inside a solid
-  float width;           // of the bracket round the hit, scene units
+  glm::dvec3 position;  // scene units
+  glm::vec3 wo;         // unit length, back along the ray
+  int side;             // of the space the ray came through: +1 outside, -1 inside a solid
+  float width;          // of the bracket round the hit, scene units
 };
 
 struct SurfacePoint {
-  glm::vec3 normal;       // unit length, into the space the ray came through; dot(normal, wo) > 0
+  glm::vec3 normal;        // unit length, into the space the ray came through; dot(normal, wo) > 0
   std::uint32_t material;  // index into CompiledScene::materials
-  float offset;           // how far along the normal a new ray has to start, scene units
+  float offset;            // how far along the normal a new ray has to start, scene units
 };
 
 inline constexpr std::size_t kSurfaceBatch = 256;
 
-// points[i] describes hits[i]; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal is wo.
+// points[i] describes hits[i]; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal
+// is wo.
 void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hits, std::span<SurfacePoint> points,
                    vm::Workspace& workspace);
 

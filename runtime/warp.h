@@ -12,8 +12,8 @@
 namespace fathom::runtime {
 
 // A direction of the upper hemisphere (z >= 0) with density cos/pi per solid angle.
-// Malley's method: a uniform point of the disk, lifted onto the hemisphere (Pharr, Jakob, Humphreys, "Physically Based
-// Rendering", 3rd ed. 2016, section 13.6.3).
+// Malley's method: a uniform point of the disk, lifted onto the hemisphere (Pharr, Jakob, Humphreys, "Physically
+// Based Rendering", 3rd ed. 2016, section 13.6.3).
 inline glm::vec3 square_to_cosine_hemisphere(glm::vec2 u) {
   const float radius = std::sqrt(u.x);
   const SinCos angle = sincos_turn(u.y);

@@ -90,7 +90,7 @@ void surface_batch(const VerifiedProgram& program, Points points, std::size_t co
     store(size, used, out.gradient_z + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dz; });
     float surfaces[kSlot<T> * kLanes];
     store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
-    std::transform(surfaces, surfaces + size, out.surface + begin, [](float s) { return static_cast<std::uint32_t>(s); });
+    std::transform(surfaces, surfaces + size, out.surface + begin, [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
   });
 }
 

@@ -60,7 +60,9 @@ namespace fathom::vm::HWY_NAMESPACE {
 #undef OP_Binary
 #undef OP_Machine
 
-// How a value type relates to the points shapes run on: a Tagged value's points carry no tag.
+// How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs to
+// no surface, kNoSurface; a tag claims what no tag within has claimed.
+inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits {
   using Point = T;
@@ -70,8 +72,10 @@ struct ValueTraits {
 template <class T>
 struct ValueTraits<Tagged<T>> {
   using Point = T;
-  static HWY_INLINE Tagged<T> lift(const T& value) { return {value, constant<T>(0.0)}; }
-  static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) { value.surface = constant<T>(surface); }
+  static HWY_INLINE Tagged<T> lift(const T& value) { return {value, constant<T>(kNoSurface)}; }
+  static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) {
+    value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);
+  }
 };
 
 // Numbers per stack slot. Eight registers a block measured best or equal on 8 and 16 lanes; types that are many

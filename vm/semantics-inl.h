@@ -62,20 +62,22 @@ HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_hei
 
 // k: half height, bottom radius, top radius, the side's outward normal (nx, ny) in the half-plane (distance from the
 // axis, y), the side's length. Inside, a convex profile: the largest of the planes' distances. Outside, the nearer of
-// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface.
+// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface, where
+// the planes' branch is taken.
 template <class T>
 HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
   const T rho = length(p.x, p.z);
-  const T qx = rho - k[1], qy = p.y + k[0];       // from the bottom rim
-  const T side = qx * k[3] + qy * k[4];           // distance to the side's line
-  const T along = qy * k[3] - qx * k[4];          // from the bottom rim up the side
+  const T qx = rho - k[1], qy = p.y + k[0];  // from the bottom rim
+  const T side = qx * k[3] + qy * k[4];      // distance to the side's line
+  const T along = qy * k[3] - qx * k[4];     // from the bottom rim up the side
   const T beyond = along - max(zero, min(k[5], along));
   const T cap = abs(p.y) - k[0];
   const T past_rim = max(zero, rho - select(p.y < zero, k[1], k[2]));
+  const T outside = sqrt(min(sqr(side) + sqr(beyond), sqr(past_rim) + sqr(cap)));
   const T inside = max(side, cap);
-  // Outside the nearer of the two is at least `inside`, but where it vanishes on the surface only `inside` has a gradient.
-  return select(zero < inside, max(min(length(side, beyond), length(past_rim, cap)), inside), inside);
+  // Never less than `inside`, but on a rim rounding can leave `outside` 0 and without a gradient where `inside` is not.
+  return select(zero < inside, max(outside, inside), inside);
 }
 
 // k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis, y).
@@ -91,36 +93,26 @@ HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
   return select(along < zero, lower, select(k[3] * k[2] < along, upper, side));
 }
 
-// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts it into the xy plane, then for
-// each edge its start x0 y0, its direction ux uy (counter-clockwise) and its length; then the thickness. The distance to
-// the flat polygon is |z| over its inside and the distance to the nearest edge elsewhere.
+// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts the polygon into the xy plane
+// with its first edge on the x axis, corners counter-clockwise; the first edge's length; for each further edge its
+// start x y, its direction ux uy and its length; the thickness. The distance to the flat polygon is |z| over its inside
+// and the distance to the nearest edge elsewhere. Gradient undefined in the polygon's plane.
 template <int N, class T>
 HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
   const Vec3<T> q = affine(p, k);
-  T rx = q.x, ry = q.y, nearest = q.x;  // the offset from the nearest edge, and its square
-  auto outside = q.x < q.x;
-  for (int i = 0; i < N; ++i) {
-    const Constant<T>* edge = k + 12 + 5 * i;
+  T outward = -q.y;  // the largest distance to an edge's line
+  T nearest = sqr(q.y) + sqr(q.x - max(zero, min(k[12], q.x)));
+  for (int i = 1; i < N; ++i) {
+    const Constant<T>* edge = k + 13 + 5 * (i - 1);
     const T wx = q.x - edge[0], wy = q.y - edge[1];
-    const T t = max(zero, min(edge[4], wx * edge[2] + wy * edge[3]));
-    const T ex = wx - t * edge[2], ey = wy - t * edge[3];
-    const T square = sqr(ex) + sqr(ey);
-    if (i == 0) {
-      rx = ex;
-      ry = ey;
-      nearest = square;
-      outside = wy * edge[2] < wx * edge[3];
-    } else {
-      const auto nearer = square < nearest;
-      rx = select(nearer, ex, rx);
-      ry = select(nearer, ey, ry);
-      nearest = select(nearer, square, nearest);
-      outside = outside | (wy * edge[2] < wx * edge[3]);
-    }
+    const T along = wx * edge[2] + wy * edge[3], across = wx * edge[3] - wy * edge[2];
+    const T beyond = along - max(zero, min(edge[4], along));
+    nearest = min(nearest, sqr(across) + sqr(beyond));
+    outward = max(outward, across);
   }
-  const T none = q.x * zero;
-  return length(select(outside, rx, none), select(outside, ry, none), q.z) - k[12 + 5 * N];
+  const T aside = select(zero < outward, nearest, q.x * zero);
+  return sqrt(aside + sqr(q.z)) - k[13 + 5 * (N - 1)];
 }
 
 // (re + i im)^n by repeated squaring.

@@ -21,8 +21,8 @@ SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vec
                            const std::vector<std::uint32_t>& order, std::vector<Material>& materials)
     : named_(named), uses_(uses), materials_(materials), has_paint_(named.size(), false) {
   for (const std::uint32_t name : order) {
-    has_paint_[name] = gives_material(named[name]) ||
-                       std::any_of(uses[name].begin(), uses[name].end(), [&](const Use& u) { return has_paint_[u.target]; });
+    has_paint_[name] = gives_material(named[name]) || std::any_of(uses[name].begin(), uses[name].end(),
+                                                                  [&](const Use& u) { return has_paint_[u.target]; });
   }
 }
 

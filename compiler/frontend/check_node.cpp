@@ -38,14 +38,36 @@ std::optional<std::uint32_t> Names::resolve(std::string_view name, std::string_v
     return found->second;
   }
   std::string help = did_you_mean(name, names_);
-  if (help.empty()) help = fmt::format("the scene has no `{0}`; add \"{0}\": {{\"{1}\": {{...}}}}",
-                                       code == std::string_view("E0202") ? "materials" : "nodes", name);
+  if (help.empty())
+    help = fmt::format("the scene has no `{0}`; add \"{0}\": {{\"{1}\": {{...}}}}",
+                       code == std::string_view("E0202") ? "materials" : "nodes", name);
   diagnostics.error(code, span, fmt::format("unknown {} `{}`", what, name), "", {std::move(help)});
   return std::nullopt;
 }
 
 CheckedNode NodeChecker::check(const syntax::Value& value) {
   CheckedNode node;
+  pending_.push_back({&value, &node});
+  check_pending();
+  return node;
+}
+
+std::vector<CheckedNode> NodeChecker::check_list(const syntax::Value& value, std::string_view whose) {
+  std::vector<CheckedNode> nodes;
+  add_list(value, whose, nodes);
+  check_pending();
+  return nodes;
+}
+
+void NodeChecker::check_pending() {
+  while (!pending_.empty()) {
+    const Pending next = pending_.back();
+    pending_.pop_back();
+    check_node(*next.value, *next.node);
+  }
+}
+
+void NodeChecker::check_node(const syntax::Value& value, CheckedNode& node) {
   node.span = value.span;
   const auto* record = std::get_if<syntax::Record>(&value.data);
   if (record == nullptr) {
@@ -55,15 +77,16 @@ CheckedNode NodeChecker::check(const syntax::Value& value) {
       help = {type ? fmt::format("write {{\"type\": \"{}\", ...}}", *name)
                    : fmt::format("write {{\"use\": \"{}\"}} to refer to a named node", *name)};
     }
-    diagnostics_.error("E0101", value.span, fmt::format("a node must be an object {{...}}, not {}", describe(value)), "",
-                       std::move(help));
-    return node;
+    diagnostics_.error("E0101", value.span, fmt::format("a node must be an object {{...}}, not {}", describe(value)),
+                       "", std::move(help));
+    return;
   }
   const syntax::Property* type = record->find("type");
   const syntax::Property* use = record->find("use");
   if (type && use) {
     diagnostics_.error("E0106", use->name_span, "a node has either `type` or `use`, not both", "",
                        {"keep `use` to place a named node, or `type` to make a new one"});
+    return;
   }
   if (type) {
     check_type(*record, *type, node);
@@ -77,19 +100,21 @@ CheckedNode NodeChecker::check(const syntax::Value& value) {
     }
     diagnostics_.error("E0103", opening(value.span), "a node needs a `type` or a `use`", "", {help});
   }
-  return node;
 }
 
-std::vector<CheckedNode> NodeChecker::check_list(const syntax::Value& value, std::string_view whose) {
+void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, std::vector<CheckedNode>& nodes) {
   const auto& list = std::get<syntax::List>(value.data);
   if (list.empty()) {
     diagnostics_.error("E0107", value.span, fmt::format("{} is empty", whose), "needs at least one node",
                        {"such as [{\"type\": \"sphere\", \"radius\": 1}]"});
   }
-  std::vector<CheckedNode> nodes;
-  nodes.reserve(list.size());
-  for (const syntax::Value& item : list) nodes.push_back(check(item));
-  return nodes;
+  nodes.resize(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) pending_.push_back({&list[i], &nodes[i]});
+}
+
+void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes) {
+  nodes.resize(1);
+  pending_.push_back({&value, &nodes[0]});
 }
 
 void NodeChecker::check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node) {
@@ -105,14 +130,14 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
   const std::string* name = text(type.value.get());
   const NodeSpec* row = name ? find_node(*name) : nullptr;
   if (name == nullptr) {
-    diagnostics_.error("E0101", type.value->span, fmt::format("`type` must be a string, not {}", describe(*type.value)),
-                       "", {fmt::format("known: {}", fmt::join(node_types(), ", "))});
+    diagnostics_.error("E0101", type.value->span,
+                       fmt::format("`type` must be a string, not {}", describe(*type.value)), "",
+                       {fmt::format("known: {}", fmt::join(node_types(), ", "))});
     return;
   }
   if (row == nullptr) return report_unknown_type(record, type, *name, node);
   node.word = *name;
   node.kind = row->kind;
-  // `use` beside `type` has been reported as such.
   const RecordReader reader(node_record(row->kind), record, type.value->span, diagnostics_, "E0301");
   for (const ParamSpec& param : row->params) {
     const std::vector<double> numbers = reader.numbers(param.name);
@@ -128,9 +153,9 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
 
 void NodeChecker::check_children(const syntax::Value& of, const NodeSpec& row, CheckedNode& node) {
   if (row.category == Category::Combinator) {
-    node.children = check_list(of, fmt::format("`of` of `{}`", row.name));
+    add_list(of, fmt::format("`of` of `{}`", row.name), node.children);
   } else {
-    node.children.push_back(check(of));
+    add_one(of, node.children);
   }
 }
 
@@ -156,14 +181,14 @@ void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
   node.transform = transform_params(factors, rotation, reader.vec3("translate"));
 }
 
-void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax::Property& type, std::string_view name,
-                                      CheckedNode& node) {
+void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax::Property& type,
+                                      std::string_view name, CheckedNode& node) {
   diagnostics_.error("E0201", type.value->span, fmt::format("unknown type of node `{}`", name), "",
                      {did_you_mean(name, node_types())});
   // What it is made of and where it stands can be checked all the same.
   if (const syntax::Property* of = record.find("of")) {
-    if (std::holds_alternative<syntax::List>(of->value->data)) node.children = check_list(*of->value, "`of`");
-    if (std::holds_alternative<syntax::Record>(of->value->data)) node.children.push_back(check(*of->value));
+    if (std::holds_alternative<syntax::List>(of->value->data)) add_list(*of->value, "`of`", node.children);
+    if (std::holds_alternative<syntax::Record>(of->value->data)) add_one(*of->value, node.children);
   }
   const syntax::Property* material = record.find("material");
   if (const std::string* wanted = material ? text(material->value.get()) : nullptr) {

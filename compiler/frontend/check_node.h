@@ -42,9 +42,21 @@ class NodeChecker {
 
   // The node, fit for building unless something was reported.
   CheckedNode check(const syntax::Value& value);
+
+  // The nodes of a list; `whose` names it in the message that it is empty.
   std::vector<CheckedNode> check_list(const syntax::Value& value, std::string_view whose);
 
  private:
+  // A node that is still to be checked, and where the result goes.
+  struct Pending {
+    const syntax::Value* value;
+    CheckedNode* node;
+  };
+
+  void check_pending();
+  void check_node(const syntax::Value& value, CheckedNode& node);
+  void add_list(const syntax::Value& value, std::string_view whose, std::vector<CheckedNode>& nodes);
+  void add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes);
   void check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node);
   void check_type(const syntax::Record& record, const syntax::Property& type, CheckedNode& node);
   void check_children(const syntax::Value& of, const NodeSpec& row, CheckedNode& node);
@@ -55,6 +67,7 @@ class NodeChecker {
   Names& materials_;
   Names& nodes_;
   Diagnostics& diagnostics_;
+  std::vector<Pending> pending_;  // in place of recursion: nodes may be nested thousands deep
 };
 
 }  // namespace fathom::compiler

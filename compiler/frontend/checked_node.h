@@ -13,11 +13,11 @@
 namespace fathom::compiler {
 
 struct CheckedNode {
-  Span span;                  // of the whole record
-  std::string name;           // its `name`, or what it is called under `nodes`; "" when neither
-  std::string word;           // its `use` or else its `type`
-  Kind kind = Kind::Union;    // of no meaning when `use` is there
-  std::optional<std::uint32_t> use;       // which of the named nodes
+  Span span;                         // of the whole record
+  std::string name;                  // its `name`, or what it is called under `nodes`; "" when neither
+  std::string word;                  // its `use` or else its `type`
+  Kind kind = Kind::Union;           // of no meaning when `use` is there
+  std::optional<std::uint32_t> use;  // which of the named nodes
   std::vector<double> params;
   std::vector<CheckedNode> children;
   std::optional<std::array<double, 13>> transform;  // see Kind::Transform

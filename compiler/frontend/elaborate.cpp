@@ -49,9 +49,10 @@ std::vector<bool> reached(const CheckedScene& scene) {
 void warn_of_unused(const CheckedScene& scene, Diagnostics& diagnostics) {
   for (std::uint32_t i = 0; i < scene.material_names.size(); ++i) {
     if (scene.material_names.used(i)) continue;
-    diagnostics.warning("W0401", scene.material_names.span(i),
-                        fmt::format("unused material `{}`", scene.material_names.name(i)), "no node has it",
-                        {fmt::format("give it to a node with \"material\": \"{}\", or remove it", scene.material_names.name(i))});
+    diagnostics.warning(
+        "W0401", scene.material_names.span(i), fmt::format("unused material `{}`", scene.material_names.name(i)),
+        "no node has it",
+        {fmt::format("give it to a node with \"material\": \"{}\", or remove it", scene.material_names.name(i))});
   }
   const std::vector<bool> in_scene = reached(scene);
   for (std::uint32_t i = 0; i < scene.node_names.size(); ++i) {
@@ -80,7 +81,8 @@ CheckedScene check_nodes(const RecordReader& reader, Diagnostics& diagnostics) {
       scene.uses.push_back(uses_of(node));
     }
   }
-  if (const syntax::Value* objects = reader.value("objects")) scene.objects = checker.check_list(*objects, "`objects`");
+  if (const syntax::Value* objects = reader.value("objects"))
+    scene.objects = checker.check_list(*objects, "`objects`");
   scene.order = order_names(scene.uses, scene.node_names, diagnostics);
   return scene;
 }
@@ -93,7 +95,8 @@ Elaborated read_settings(const RecordReader& reader, Diagnostics& diagnostics) {
   if (const syntax::Value* background = reader.value("background")) {
     out.background = read_background(*background, diagnostics);
   }
-  if (const syntax::Value* materials = reader.value("materials")) out.materials = read_materials(*materials, diagnostics);
+  if (const syntax::Value* materials = reader.value("materials"))
+    out.materials = read_materials(*materials, diagnostics);
   return out;
 }
 
@@ -102,8 +105,9 @@ Elaborated read_settings(const RecordReader& reader, Diagnostics& diagnostics) {
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
-    diagnostics.error("E0101", file.root.span, fmt::format("a scene must be an object {{...}}, not {}", describe(file.root)),
-                      "", {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
+    diagnostics.error(
+        "E0101", file.root.span, fmt::format("a scene must be an object {{...}}, not {}", describe(file.root)), "",
+        {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
     return std::nullopt;
   }
   const RecordReader reader(scene_record(), *record, opening(file.root.span), diagnostics);

@@ -12,8 +12,8 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kDeepest = 4096;             // records and lists within each other; bounds every recursion
-constexpr std::size_t kLargestText = 1u << 30;     // bytes; spans are 32 bits wide
+constexpr std::size_t kDeepest = 4096;          // records and lists within each other; bounds every recursion
+constexpr std::size_t kLargestText = 1u << 30;  // bytes; spans are 32 bits wide
 
 // Reads a text for nlohmann's lexer and tells how many bytes it has taken.
 class CountingIterator {

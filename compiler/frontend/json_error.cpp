@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 namespace fathom::compiler {
 namespace {
@@ -39,12 +40,15 @@ std::string position(const Source& source, std::size_t at) {
 // What the grammar allows where the offending token stands.
 std::string wanted(const JsonPlace& place) {
   switch (place.inside) {
-    case JsonPlace::Inside::Nothing: return "`{`";
-    case JsonPlace::Inside::AfterRoot: return "the end of the file";
+    case JsonPlace::Inside::Nothing:
+      return "`{`";
+    case JsonPlace::Inside::AfterRoot:
+      return "the end of the file";
     case JsonPlace::Inside::List:
       if (place.empty) return "a value or `]`";
       return place.skipped.comma ? "a value" : "`,` or `]`";
-    case JsonPlace::Inside::Record: break;
+    case JsonPlace::Inside::Record:
+      break;
   }
   if (place.has_key) return place.skipped.colon ? fmt::format("the value of `{}`", place.key) : "`:`";
   if (place.empty) return "a property's name in double quotes or `}`";
@@ -54,24 +58,55 @@ std::string wanted(const JsonPlace& place) {
 void report_end(const Source& source, const JsonPlace& place, Diagnostics& diagnostics) {
   const std::string& text = source.text();
   if (place.inside == JsonPlace::Inside::Nothing) {
-    diagnostics.error("E0002", {}, "the file is empty", "",
-                      {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
+    diagnostics.error(
+        "E0002", {}, "the file is empty", "",
+        {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
     return;
   }
   const bool record = place.inside == JsonPlace::Inside::Record;
   // Beside the last thing written, not on the empty line after it.
   std::size_t end = text.size();
   while (end > 0 && is_blank(text[end - 1])) --end;
-  diagnostics.error("E0002", span(end, end), "the file ends too early", fmt::format("expected {}", wanted(place)),
-                    {fmt::format("the `{}` at {} is never closed", record ? '{' : '[',
-                                 position(source, place.opened_at))});
+  diagnostics.error(
+      "E0002", span(end, end), "the file ends too early", fmt::format("expected {}", wanted(place)),
+      {fmt::format("the `{}` at {} is never closed", record ? '{' : '[', position(source, place.opened_at))});
+}
+
+// The UTF-16 code unit that \uXXXX at `at` stands for; nullopt when that is not there.
+std::optional<unsigned> code_unit(std::string_view text, std::size_t at) {
+  if (at + 6 > text.size() || text.substr(at, 2) != "\\u") return std::nullopt;
+  unsigned unit = 0;
+  const auto [end, error] = std::from_chars(text.data() + at + 2, text.data() + at + 6, unit, 16);
+  return error == std::errc() && end == text.data() + at + 6 ? std::optional(unit) : std::nullopt;
+}
+
+// The length of the escape at `at`, of both halves of a surrogate pair; 0 when it is malformed.
+std::size_t escape_length(std::string_view text, std::size_t at) {
+  if (at + 1 < text.size() && std::string_view("\"\\/bfnrt").find(text[at + 1]) != std::string_view::npos) return 2;
+  const std::optional<unsigned> unit = code_unit(text, at);
+  if (!unit) return 0;
+  if (*unit < 0xD800 || *unit > 0xDFFF) return 6;
+  const std::optional<unsigned> second = code_unit(text, at + 6);
+  return *unit < 0xDC00 && second && *second >= 0xDC00 && *second <= 0xDFFF ? 12 : 0;
+}
+
+void report_escape(std::string_view text, std::size_t at, Diagnostics& diagnostics) {
+  if (text.substr(at, 2) == "\\u") {
+    const bool half = code_unit(text, at).has_value();
+    diagnostics.error("E0003", span(at, at + (half ? 6 : 2)),
+                      half ? "half of a surrogate pair in a string" : "\\u needs four hexadecimal digits",
+                      "not a character", {"write the character itself: scene files are UTF-8"});
+  } else {
+    diagnostics.error("E0003", span(at, at + 1 + character(text, at + 1).size()), "unknown escape in a string",
+                      "not an escape",
+                      {"known: \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a backslash is written \\\\"});
+  }
 }
 
 // Whether the string that begins at `begin` has a fault, which is reported: the first byte that cannot stand there.
-bool report_string(const Source& source, std::size_t begin, Diagnostics& diagnostics) {
-  const std::string_view text = source.text();
+bool report_string(std::string_view text, std::size_t begin, Diagnostics& diagnostics) {
   std::size_t at = begin + 1;
-  for (; at < text.size() && text[at] != '"'; ++at) {
+  while (at < text.size() && text[at] != '"') {
     const unsigned char c = static_cast<unsigned char>(text[at]);
     if (c == '\n' || c == '\r') break;
     if (c < 0x20) {
@@ -79,33 +114,12 @@ bool report_string(const Source& source, std::size_t begin, Diagnostics& diagnos
                         {c == '\t' ? "write a tab as \\t" : fmt::format("write it as \\u{:04x}", c)});
       return true;
     }
-    if (c != '\\') continue;
-    const std::string_view escape = text.substr(at, 2);
-    if (escape.size() == 2 && std::string_view("\"\\/bfnrt").find(escape[1]) != std::string_view::npos) {
-      ++at;
-      continue;
-    }
-    if (escape == "\\u") {
-      const std::string_view digits = text.substr(at + 2, 4);
-      const bool good = digits.size() == 4 && std::all_of(digits.begin(), digits.end(), [](char d) {
-                          return std::isxdigit(static_cast<unsigned char>(d)) != 0;
-                        });
-      const bool surrogate = good && (digits[0] == 'd' || digits[0] == 'D') && std::tolower(digits[1]) >= '8';
-      const bool second = good && surrogate && std::tolower(digits[1]) >= 'c';
-      const bool pair = surrogate && !second && text.substr(at + 6, 2) == "\\u" && text.size() > at + 9 &&
-                        std::tolower(text[at + 8]) == 'd' && std::tolower(text[at + 9]) >= 'c';
-      if (good && (!surrogate || pair)) {
-        at += pair ? 11 : 5;
-        continue;
-      }
-      diagnostics.error("E0003", span(at, at + (good ? 6 : 2)),
-                        good ? "half of a surrogate pair in a string" : "\\u needs four hexadecimal digits",
-                        "not a character", {"write the character itself: scene files are UTF-8"});
+    const std::size_t length = c == '\\' ? escape_length(text, at) : 1;
+    if (length == 0) {
+      report_escape(text, at, diagnostics);
       return true;
     }
-    diagnostics.error("E0003", span(at, at + 1 + character(text, at + 1).size()), "unknown escape in a string",
-                      "not an escape", {"known: \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a backslash is written \\\\"});
-    return true;
+    at += length;
   }
   if (at < text.size() && text[at] == '"') return false;
   diagnostics.error("E0003", span(begin, at), "the string does not end on its line", "no closing `\"`",
@@ -139,6 +153,8 @@ void report_word(std::string_view text, const JsonPlace& place, Diagnostics& dia
   std::string message = fmt::format("unexpected `{}`", word), help = fmt::format("expected {}", wanted(place));
   if (word == "'") {
     help = "strings and names stand in double quotes";
+  } else if (is_word(word[0]) && begin > 0 && text[begin - 1] == '"') {
+    help = fmt::format("the string before it ends right here: is a `\"` missing, or one too many?");
   } else if (name_wanted && is_word(word[0]) && (place.empty || place.skipped.comma)) {
     message = fmt::format("the name `{}` is not in quotes", word);
     help = fmt::format("write \"{}\"", word);
@@ -179,10 +195,12 @@ void report_token(const Source& source, const JsonPlace& place, Diagnostics& dia
   } else if (place.inside == JsonPlace::Inside::AfterRoot) {
     help.push_back("a file holds one scene: {...}");
   } else if ((c == '}' && in_list) || (c == ']' && in_record)) {
-    help.push_back(fmt::format("the `{}` at {} is still open", in_list ? '[' : '{', position(source, place.opened_at)));
+    help.push_back(
+        fmt::format("the `{}` at {} is still open", in_list ? '[' : '{', position(source, place.opened_at)));
   }
   diagnostics.error("E0001", span(begin, end), fmt::format("expected {}, found {}", wanted(place), found),
-                    place.inside == JsonPlace::Inside::AfterRoot ? "after the end of the scene" : "", std::move(help));
+                    place.inside == JsonPlace::Inside::AfterRoot ? "after the end of the scene" : "",
+                    std::move(help));
 }
 
 bool good_number(std::string_view text, std::size_t begin, std::size_t end) {
@@ -225,8 +243,9 @@ void report_json_error(const Source& source, const JsonPlace& place, Diagnostics
   while (word > 0 && (is_word(c) || c == '.') && (is_word(text[word - 1]) || text[word - 1] == '.')) --word;
   if (place.overflow) {
     const std::size_t end = std::min(place.token_end, text.size());
-    diagnostics.error("E0009", span(begin, end), fmt::format("the number {} is too large", text.substr(begin, end - begin)),
-                      "", {"the largest number is about 1.8e308"});
+    diagnostics.error("E0009", span(begin, end),
+                      fmt::format("the number {} is too large", text.substr(begin, end - begin)), "",
+                      {"the largest number is about 1.8e308"});
   } else if (word < begin && std::isdigit(static_cast<unsigned char>(text[word]))) {
     report_number(text, word, diagnostics);
   } else if (c == '/') {
@@ -235,12 +254,12 @@ void report_json_error(const Source& source, const JsonPlace& place, Diagnostics
                       open ? "the comment is never closed" : "a comment begins with `//` or `/*`",
                       open ? "begins here" : "", {open ? "close it with `*/`" : "write `// ...` or `/* ... */`"});
   } else if (c == '"') {
-    if (!report_string(source, begin, diagnostics)) report_token(source, place, diagnostics);
+    if (!report_string(text, begin, diagnostics)) report_token(source, place, diagnostics);
   } else if (std::string_view("{}[],:").find(c) != std::string_view::npos) {
     report_token(source, place, diagnostics);
   } else if (std::isdigit(static_cast<unsigned char>(c)) || c == '-' || c == '+' || c == '.') {
     good_number(text, begin, std::min(place.token_end, text.size())) ? report_token(source, place, diagnostics)
-                                                                      : report_number(text, begin, diagnostics);
+                                                                     : report_number(text, begin, diagnostics);
   } else {
     const std::string_view token = text.substr(begin, place.token_end - begin);
     const bool literal = token == "true" || token == "false" || token == "null";
@@ -254,7 +273,12 @@ bool check_text(const Source& source, Diagnostics& diagnostics) {
   for (std::size_t at = 0; at < text.size();) {
     const unsigned first = byte(at);
     // Table 3-7 of the Unicode standard: the length, and the range of the second byte; the others are 80..BF.
-    const std::size_t length = first - 1 < 0x7F ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+    const std::size_t length = first - 1 < 0x7F ? 1
+                               : first < 0xC2   ? 0
+                               : first < 0xE0   ? 2
+                               : first < 0xF0   ? 3
+                               : first < 0xF5   ? 4
+                                                : 0;
     const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
     const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
     bool good = length > 0 && (length == 1 || (byte(at + 1) >= least && byte(at + 1) <= most));

@@ -14,9 +14,9 @@ namespace fathom::compiler {
 
 // The way from the end of one token to the begin of the next.
 struct Skipped {
-  std::size_t begin = 0;              // of the token; the text's size at its end
-  std::optional<std::size_t> comma;   // the last one passed
-  bool colon = false;                 // whether one was passed
+  std::size_t begin = 0;             // of the token; the text's size at its end
+  std::optional<std::size_t> comma;  // the last one passed
+  bool colon = false;                // whether one was passed
 };
 
 // Passes blanks, comments, and the commas and colons that are not themselves the token that ends at `token_end`.

@@ -15,20 +15,33 @@ using syntax::Value;
 
 std::string_view expected(ValueType type) {
   switch (type) {
-    case ValueType::Number: return "a number";
-    case ValueType::Integer: return "a whole number";
-    case ValueType::Vec3: return "three numbers [x, y, z]";
-    case ValueType::Color: return "three numbers [red, green, blue]";
+    case ValueType::Number:
+      return "a number";
+    case ValueType::Integer:
+      return "a whole number";
+    case ValueType::Vec3:
+      return "three numbers [x, y, z]";
+    case ValueType::Color:
+      return "three numbers [red, green, blue]";
     case ValueType::Text:
-    case ValueType::Choice: return "a string";
-    case ValueType::Record: return "an object {...}";
-    case ValueType::Named: return "an object {\"name\": {...}, ...}";
-    case ValueType::Node: return "a node {...}";
-    case ValueType::Nodes: return "a list of nodes [{...}, ...]";
-    case ValueType::Scale: return "a number or three numbers [x, y, z]";
-    case ValueType::Rotation: return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
-    case ValueType::Gradient: return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}";
-    case ValueType::Anything: break;
+    case ValueType::Choice:
+      return "a string";
+    case ValueType::Record:
+      return "an object {...}";
+    case ValueType::Named:
+      return "an object {\"name\": {...}, ...}";
+    case ValueType::Node:
+      return "a node {...}";
+    case ValueType::Nodes:
+      return "a list of nodes [{...}, ...]";
+    case ValueType::Scale:
+      return "a number or three numbers [x, y, z]";
+    case ValueType::Rotation:
+      return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
+    case ValueType::Gradient:
+      return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}";
+    case ValueType::Anything:
+      break;
   }
   return "anything";
 }
@@ -38,20 +51,29 @@ bool has_type(const Value& value, ValueType type) {
   const bool record = std::holds_alternative<syntax::Record>(value.data);
   const bool three = number == nullptr && three_numbers(value).has_value();
   switch (type) {
-    case ValueType::Number: return number != nullptr;
-    case ValueType::Integer: return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));
+    case ValueType::Number:
+      return number != nullptr;
+    case ValueType::Integer:
+      return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));
     case ValueType::Vec3:
-    case ValueType::Color: return three;
+    case ValueType::Color:
+      return three;
     case ValueType::Text:
-    case ValueType::Choice: return std::holds_alternative<std::string>(value.data);
+    case ValueType::Choice:
+      return std::holds_alternative<std::string>(value.data);
     case ValueType::Record:
     case ValueType::Named:
-    case ValueType::Node: return record;
-    case ValueType::Nodes: return std::holds_alternative<syntax::List>(value.data);
-    case ValueType::Scale: return number != nullptr || three;
+    case ValueType::Node:
+      return record;
+    case ValueType::Nodes:
+      return std::holds_alternative<syntax::List>(value.data);
+    case ValueType::Scale:
+      return number != nullptr || three;
     case ValueType::Rotation:
-    case ValueType::Gradient: return record || three;
-    case ValueType::Anything: break;
+    case ValueType::Gradient:
+      return record || three;
+    case ValueType::Anything:
+      break;
   }
   return true;
 }
@@ -62,8 +84,8 @@ std::string broken_rule(double number, const PropertySpec& spec) {
   if (!std::isfinite(number)) return "finite";
   if (spec.rule == Rule::Positive && !(number > 0)) return "positive";
   if (spec.rule == Rule::NotNegative && !(number >= 0)) return "zero or positive";
-  const bool inside = range.open ? number > range.least && number < range.most
-                                 : number >= range.least && number <= range.most;
+  const bool inside =
+      range.open ? number > range.least && number < range.most : number >= range.least && number <= range.most;
   if (inside) return "";
   if (range.most == kLargest && range.least == -kLargest) return fmt::format("at most {} in magnitude", kLargest);
   if (range.open) return fmt::format("greater than {} and less than {}", range.least, range.most);
@@ -95,8 +117,32 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
   return std::nullopt;
 }
 
-std::vector<std::string> about(const PropertySpec& spec) {
-  return {fmt::format("`{}`: {}", spec.name, spec.doc)};
+std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("`{}`: {}", spec.name, spec.doc)}; }
+
+// Help for a value of the wrong type.
+std::vector<std::string> retype(const Value& value, const PropertySpec& spec) {
+  if (spec.type == ValueType::Nodes && std::holds_alternative<syntax::Record>(value.data)) {
+    return {"put the node in brackets: [{...}]"};
+  }
+  if (spec.type == ValueType::Node && std::holds_alternative<syntax::List>(value.data)) {
+    return {"make one node of several with {\"type\": \"union\", \"of\": [...]}"};
+  }
+  return about(spec);
+}
+
+std::vector<std::string_view> known_properties(const RecordSpec& spec) {
+  std::vector<std::string_view> known;
+  for (const PropertySpec& row : spec.properties) {
+    if (row.name[0] != '$') known.push_back(row.name);
+  }
+  return known;
+}
+
+// Whether some unknown property of the record was meant to be this one, so that it is not missing but misnamed.
+bool misnamed(const PropertySpec& missing, const RecordSpec& spec, const syntax::Record& record) {
+  return std::any_of(record.properties.begin(), record.properties.end(), [&](const syntax::Property& property) {
+    return !spec.find(property.name) && suggest(property.name, known_properties(spec)) == missing.name;
+  });
 }
 
 // The other row of the same family that has the property: "`ior` is a property of transparent materials".
@@ -105,14 +151,15 @@ std::string owner(const RecordSpec& spec, std::string_view property) {
     const auto same = [&](const RecordSpec& row) { return &row == &spec; };
     if (std::none_of(family->begin(), family->end(), same)) continue;
     for (const RecordSpec& row : *family) {
-      if (row.find(property)) return fmt::format("`{}` goes with \"type\": \"{}\"", property, row.name);
+      if (row.find(property)) return fmt::format("`{}` goes with \"type\": \"{}\"", property, row.type);
     }
   }
   return "";
 }
 
 bool is_numeric(ValueType type) {
-  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec3 || type == ValueType::Color;
+  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec3 ||
+         type == ValueType::Color;
 }
 
 }  // namespace
@@ -154,8 +201,8 @@ RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record,
   const std::size_t before = diagnostics.errors();
   for (const syntax::Property& property : record.properties) check(property);
   for (const PropertySpec& row : spec.properties) {
-    if (!row.required || record.find(row.name)) continue;
-    diagnostics.error("E0103", place, fmt::format("`{}` has no `{}`", spec.name, row.name),
+    if (!row.required || record.find(row.name) || misnamed(row, spec, record)) continue;
+    diagnostics.error("E0103", place, fmt::format("{} has no `{}`", spec.title, row.name),
                       fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
   }
   good_ = diagnostics.errors() == before;
@@ -165,19 +212,16 @@ void RecordReader::check(const syntax::Property& property) {
   const PropertySpec* row = spec_.find(property.name);
   const Value& value = *property.value;
   if (row == nullptr) {
-    std::vector<std::string_view> known;
-    for (const PropertySpec& other : spec_.properties) {
-      if (other.name[0] != '$') known.push_back(other.name);
-    }
-    std::vector<std::string> help = {did_you_mean(property.name, known)};
+    std::vector<std::string> help = {did_you_mean(property.name, known_properties(spec_))};
     const std::string elsewhere = owner(spec_, property.name);
     if (!elsewhere.empty()) help.insert(help.begin(), elsewhere);
-    diagnostics_.error("E0102", property.name_span, fmt::format("unknown property `{}` in `{}`", property.name, spec_.name),
+    diagnostics_.error("E0102", property.name_span,
+                       fmt::format("unknown property `{}` in {}", property.name, spec_.title),
                        fmt::format("not a {} property", spec_.noun), std::move(help));
   } else if (!has_type(value, row->type)) {
     diagnostics_.error("E0101", value.span,
                        fmt::format("`{}` must be {}, not {}", row->name, expected(row->type), describe(value)), "",
-                       about(*row));
+                       retype(value, *row));
   } else if (const std::optional<Broken> broken = first_broken(value, *row)) {
     diagnostics_.error(range_code_, broken->span, fmt::format("`{}` must be {}", row->name, broken->rule), "",
                        about(*row));

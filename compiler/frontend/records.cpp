@@ -30,33 +30,44 @@ PropertySpec choice(std::vector<std::string_view> choices, std::string_view doc,
   return {"type", ValueType::Choice, doc, {}, required, Rule::Any, {}, std::move(choices)};
 }
 
-RecordSpec camera(std::string name, std::vector<PropertySpec> own) {
-  RecordSpec record{std::move(name), "camera", {
-      choice({"perspective", "orthographic"}, "the projection", false),
-      vec3("position", "where the camera is", {0, 0, 5}),
-      vec3("target", "what it looks at", {0, 0, 0}),
-      vec3("up", "the direction that is up in the picture", {0, 1, 0}, Rule::NotZero)}};
+RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
+  RecordSpec record{
+      std::move(type),
+      "`camera`",
+      "camera",
+      {choice({"perspective", "orthographic"}, "the projection", false),
+       vec3("position", "where the camera is", {0, 0, 5}), vec3("target", "what it looks at", {0, 0, 0}),
+       vec3("up", "the direction that is up in the picture", {0, 1, 0}, Rule::NotZero)}};
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   return record;
 }
 
-RecordSpec material(std::string name, std::vector<PropertySpec> own) {
-  RecordSpec record{name, name + " material", {
-      choice({"diffuse", "emissive", "specular", "transparent"}, "how the surface scatters light", true)}};
+RecordSpec material(std::string type, std::vector<PropertySpec> own) {
+  RecordSpec record{
+      type,
+      "`" + type + "`",
+      type + " material",
+      {choice({"diffuse", "emissive", "specular", "transparent"}, "how the surface scatters light", true)}};
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   return record;
 }
 
 // What every node may have.
 void add_placement(RecordSpec& record) {
-  for (PropertySpec property : {
-           PropertySpec{"scale", ValueType::Scale, "a positive number, or three; before rotate and translate", {}, false,
-                        Rule::Positive, {1 / kLargest, kLargest}, {}},
-           other("rotate", ValueType::Rotation,
-                 "{\"axis\": [x,y,z], \"angle\": degrees}, or degrees about the fixed x, then y, then z axis"),
-           vec3("translate", "how far to move the node, after scale and rotate", {0, 0, 0}),
-           other("material", ValueType::Text, "name of a material, for what within has none of its own"),
-           other("name", ValueType::Text, "for messages and listings")}) {
+  for (PropertySpec property :
+       {PropertySpec{"scale",
+                     ValueType::Scale,
+                     "a positive number, or three; before rotate and translate",
+                     {},
+                     false,
+                     Rule::Positive,
+                     {1 / kLargest, kLargest},
+                     {}},
+        other("rotate", ValueType::Rotation,
+              "{\"axis\": [x,y,z], \"angle\": degrees}, or degrees about the fixed x, then y, then z axis"),
+        vec3("translate", "how far to move the node, after scale and rotate", {0, 0, 0}),
+        other("material", ValueType::Text, "name of a material, for what within has none of its own"),
+        other("name", ValueType::Text, "for messages and listings")}) {
     record.properties.push_back(std::move(property));
   }
 }
@@ -72,7 +83,8 @@ PropertySpec parameter(const ParamSpec& param) {
 std::vector<RecordSpec> make_node_records() {
   std::vector<RecordSpec> records;
   for (const NodeSpec& node : node_table()) {
-    RecordSpec record{std::string(node.name), std::string(node.name), {}};
+    const std::string type(node.name);
+    RecordSpec record{type, "`" + type + "`", type, {}};
     record.properties.push_back(other("type", ValueType::Text, "the type of node", true));
     for (const ParamSpec& param : node.params) record.properties.push_back(parameter(param));
     if (node.category == Category::Alteration) {
@@ -96,48 +108,68 @@ const PropertySpec* RecordSpec::find(std::string_view property) const {
 }
 
 const RecordSpec& scene_record() {
-  static const RecordSpec record{"scene", "scene", {
-      {"version", ValueType::Number, "1", {}, true, Rule::Any, {}, {}},
-      other("$schema", ValueType::Anything, "ignored; for editors"),
-      other("camera", ValueType::Record, "where the picture is taken from"),
-      other("film", ValueType::Record, "the picture"),
-      other("render", ValueType::Record, "how much work to spend"),
-      other("background", ValueType::Gradient, "radiance of rays that leave the scene"),
-      other("materials", ValueType::Named, "name -> material"),
-      other("nodes", ValueType::Named, "name -> node, for `use`"),
-      other("objects", ValueType::Nodes, "the scene is their union", true)}};
+  static const RecordSpec record{
+      "",
+      "the scene",
+      "scene",
+      {{"version", ValueType::Number, "1, the version of the scene format", {}, true, Rule::Any, {}, {}},
+       other("$schema", ValueType::Anything, "ignored; for editors"),
+       other("camera", ValueType::Record, "where the picture is taken from"),
+       other("film", ValueType::Record, "the picture"),
+       other("render", ValueType::Record, "how much work to spend"),
+       other("background", ValueType::Gradient, "radiance of rays that leave the scene"),
+       other("materials", ValueType::Named, "name -> material"),
+       other("nodes", ValueType::Named, "name -> node, for `use`"),
+       other("objects", ValueType::Nodes, "the scene is their union", true)}};
   return record;
 }
 
 const RecordSpec& film_record() {
-  static const RecordSpec record{"film", "film", {
-      integer("width", "pixels", 640, {1, 65536}),
-      integer("height", "pixels", 360, {1, 65536}),
-      number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100})}};
+  static const RecordSpec record{
+      "",
+      "`film`",
+      "film",
+      {integer("width", "pixels", 640, {1, 65536}), integer("height", "pixels", 360, {1, 65536}),
+       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100})}};
   return record;
 }
 
 const RecordSpec& render_record() {
-  static const RecordSpec record{"render", "render", {
-      integer("spp", "samples per pixel", 16, {1, 1 << 20}),
-      integer("bounces", "before Russian roulette may end a path", 10, {0, 4096}),
-      integer("tile", "pixels a side", 16, {1, 1024}),
-      integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
-      number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
+  static const RecordSpec record{
+      "",
+      "`render`",
+      "render",
+      {integer("spp", "samples per pixel", 16, {1, 1 << 20}),
+       integer("bounces", "before Russian roulette may end a path", 10, {0, 4096}),
+       integer("tile", "pixels a side", 16, {1, 1024}),
+       integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
+       number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
   return record;
 }
 
 const RecordSpec& gradient_record() {
-  static const RecordSpec record{"background", "background", {
-      color("bottom", "radiance from straight down", 0, {}, Rule::NotNegative),
-      color("top", "radiance from straight up", 0, {}, Rule::NotNegative)}};
+  static const RecordSpec record{"",
+                                 "`background`",
+                                 "background",
+                                 {color("bottom", "radiance from straight down", 0, {}, Rule::NotNegative),
+                                  color("top", "radiance from straight up", 0, {}, Rule::NotNegative)}};
   return record;
 }
 
 const RecordSpec& rotation_record() {
-  static const RecordSpec record{"rotate", "rotation", {
-      {"axis", ValueType::Vec3, "direction of the axis, any length", {}, true, Rule::NotZero, {}, {}},
-      {"angle", ValueType::Number, "degrees, counter-clockwise as the axis points at you", {}, true, Rule::Any, {}, {}}}};
+  static const RecordSpec record{
+      "",
+      "`rotate`",
+      "rotation",
+      {{"axis", ValueType::Vec3, "direction of the axis, any length", {}, true, Rule::NotZero, {}, {}},
+       {"angle",
+        ValueType::Number,
+        "degrees, counter-clockwise as the axis points at you",
+        {},
+        true,
+        Rule::Any,
+        {},
+        {}}}};
   return record;
 }
 
@@ -155,9 +187,10 @@ const std::vector<RecordSpec>& material_records() {
       material("emissive", {color("emission", "radiance, both sides", 1, {}, Rule::NotNegative),
                             color("color", "albedo of the lamp itself", 0)}),
       material("specular", {color("color", "reflectance of the mirror", 1)}),
-      material("transparent", {number("ior", "index of refraction inside relative to outside", {1.5}, {}, Rule::Positive),
-                               color("color", "tint at each crossing", 1),
-                               color("absorption", "inside, per scene unit", 0, {}, Rule::NotNegative)})};
+      material("transparent",
+               {number("ior", "index of refraction inside relative to outside", {1.5}, {}, Rule::Positive),
+                color("color", "tint at each crossing", 1),
+                color("absorption", "inside, per scene unit", 0, {}, Rule::NotNegative)})};
   return records;
 }
 
@@ -168,7 +201,7 @@ const RecordSpec& node_record(Kind kind) {
 
 const RecordSpec& use_record() {
   static const RecordSpec record = [] {
-    RecordSpec made{"use", "use", {other("use", ValueType::Text, "name of a node in `nodes`", true)}};
+    RecordSpec made{"", "`use`", "use", {other("use", ValueType::Text, "name of a node in `nodes`", true)}};
     add_placement(made);
     return made;
   }();

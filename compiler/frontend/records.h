@@ -15,14 +15,14 @@ namespace fathom::compiler {
 enum class ValueType {
   Number,
   Integer,
-  Vec3,      // three numbers
-  Color,     // three numbers
+  Vec3,   // three numbers
+  Color,  // three numbers
   Text,
-  Choice,    // one of PropertySpec::choices
-  Record,    // a record with a table of its own
-  Named,     // a record whose properties are names of the scene's choosing
+  Choice,  // one of PropertySpec::choices
+  Record,  // a record with a table of its own
+  Named,   // a record whose properties are names of the scene's choosing
   Node,
-  Nodes,     // a list of nodes, not empty
+  Nodes,     // a list of nodes
   Scale,     // a number or three
   Rotation,  // three numbers or a record by rotation_record()
   Gradient,  // a colour or a record by gradient_record()
@@ -43,7 +43,8 @@ struct PropertySpec {
   std::string_view name;
   ValueType type;
   std::string_view doc;
-  std::vector<double> fallback = {};  // numbers and vectors: used when the property is absent; empty when there is none
+  std::vector<double> fallback =
+      {};  // numbers and vectors: used when the property is absent; empty when there is none
   bool required = false;
   Rule rule = Rule::Any;
   Range range = {};
@@ -51,8 +52,9 @@ struct PropertySpec {
 };
 
 struct RecordSpec {
-  std::string name;  // "camera", "sphere", "diffuse": what `type` says, when there is one
-  std::string noun;  // "camera", "sphere", "diffuse material"
+  std::string type;   // what the property `type` says, such as "sphere"; "" when the record has none
+  std::string title;  // in messages: "`camera`", "`sphere`", "the scene"
+  std::string noun;   // "camera", "sphere", "diffuse material"
   std::vector<PropertySpec> properties;
 
   const PropertySpec* find(std::string_view property) const;

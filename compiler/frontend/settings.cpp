@@ -15,8 +15,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 // The row of the family that the record's `type` names; nullptr after reporting that there is none. `place` is where
 // a missing type is reported.
-const RecordSpec* row_by_type(const std::vector<RecordSpec>& family, std::string_view what, const syntax::Record& record,
-                              Span place, Diagnostics& diagnostics) {
+const RecordSpec* row_by_type(const std::vector<RecordSpec>& family, std::string_view what,
+                              const syntax::Record& record, Span place, Diagnostics& diagnostics) {
   const syntax::Property* type = record.find("type");
   const PropertySpec& row = *family[0].find("type");
   std::vector<std::string_view> known(row.choices);
@@ -28,12 +28,13 @@ const RecordSpec* row_by_type(const std::vector<RecordSpec>& family, std::string
   }
   const auto* name = std::get_if<std::string>(&type->value->data);
   if (name == nullptr) {
-    diagnostics.error("E0101", type->value->span, fmt::format("`type` must be a string, not {}", describe(*type->value)),
-                      "", {fmt::format("known: {}", fmt::join(known, ", "))});
+    diagnostics.error("E0101", type->value->span,
+                      fmt::format("`type` must be a string, not {}", describe(*type->value)), "",
+                      {fmt::format("known: {}", fmt::join(known, ", "))});
     return nullptr;
   }
   for (const RecordSpec& member : family) {
-    if (member.name == *name) return &member;
+    if (member.type == *name) return &member;
   }
   diagnostics.error("E0108", type->value->span, fmt::format("unknown type of {} `{}`", what, *name), "",
                     {did_you_mean(*name, known)});
@@ -79,7 +80,7 @@ Camera read_camera(const syntax::Value& value, Diagnostics& diagnostics) {
   camera.position = reader.vec3("position");
   camera.target = reader.vec3("target");
   camera.up = reader.vec3("up");
-  if (row->name == "orthographic") {
+  if (row->type == "orthographic") {
     camera.projection = Camera::Projection::Orthographic;
     camera.width = reader.number("width");
   } else {
@@ -127,22 +128,22 @@ std::vector<Material> read_materials(const syntax::Value& value, Diagnostics& di
     material.name = property.name;
     const auto* record = std::get_if<syntax::Record>(&property.value->data);
     if (record == nullptr) {
-      diagnostics.error("E0101", property.value->span,
-                        fmt::format("material `{}` must be an object {{...}}, not {}", property.name,
-                                    describe(*property.value)),
-                        "", {"such as {\"type\": \"diffuse\", \"color\": [0.8, 0.8, 0.8]}"});
+      diagnostics.error(
+          "E0101", property.value->span,
+          fmt::format("material `{}` must be an object {{...}}, not {}", property.name, describe(*property.value)),
+          "", {"such as {\"type\": \"diffuse\", \"color\": [0.8, 0.8, 0.8]}"});
       continue;
     }
     const RecordSpec* row = row_by_type(material_records(), "material", *record, property.name_span, diagnostics);
     if (row == nullptr) continue;
     const RecordReader reader(*row, *record, property.name_span, diagnostics);
     material.color = reader.vec3("color");
-    if (row->name == "emissive") {
+    if (row->type == "emissive") {
       material.type = Material::Type::Emissive;
       material.emission = reader.vec3("emission");
-    } else if (row->name == "specular") {
+    } else if (row->type == "specular") {
       material.type = Material::Type::Specular;
-    } else if (row->name == "transparent") {
+    } else if (row->type == "transparent") {
       material.type = Material::Type::Transparent;
       material.ior = reader.number("ior");
       material.absorption = reader.vec3("absorption");

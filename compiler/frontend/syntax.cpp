@@ -48,7 +48,9 @@ std::string print_short(const Value& value) {
 }
 
 std::string print_name(std::string_view name) {
-  const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '$'; };
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '$';
+  };
   return !name.empty() && std::all_of(name.begin(), name.end(), plain) ? std::string(name) : quoted(name);
 }
 

@@ -78,7 +78,8 @@ std::vector<NodeSpec> make_table() {
       primitive(Kind::Mandelbulb, "mandelbulb",
                  {{"power", kInteger, Rule::Positive, 8.0, "of the iteration, 2 to 24"},
                   {"iterations", kInteger, Rule::Positive, 8.0, "at most, 1 to 256"},
-                  {"bailout", kNumber, Rule::Positive, 4.0, "radius beyond which a point has escaped, 2 or more"}},
+                  {"bailout", kNumber, Rule::Positive, 4.0, "radius beyond which a point has escaped, 2 or more"},
+                  {"detail", kNumber, Rule::NotNegative, 0.001, "the surface lies where the estimate is this; finer features go"}},
                  "a fractal about the y axis; its distance is an estimate", check_mandelbulb, Opcode::Mandelbulb,
                  mandelbulb_immediates, mandelbulb_bound, kEstimate, kEstimate),
 

@@ -38,6 +38,9 @@ dvec3 area_vector(const std::vector<dvec3>& v) {
 
 constexpr const char* kCornerNames = "abcd";
 
+// Beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p escapes, for |w| >= |p| grows: the Mandelbulb lies within.
+double escape_radius(double power) { return std::pow(2.0, 1.0 / (power - 1)); }
+
 Complaint check_sheet(const std::vector<dvec3>& v) {
   const double scale = longest_side(v);
   for (std::size_t i = 0; i < v.size(); ++i) {
@@ -114,7 +117,9 @@ Complaint check_mandelbulb(Params p) {
 
 std::vector<double> same_immediates(Params p) { return {p.begin(), p.end()}; }
 
-std::vector<double> mandelbulb_immediates(Params p) { return {p[0], p[1], p[2], mandelbulb_bound(p).hi.x}; }
+std::vector<double> mandelbulb_immediates(Params p) {
+  return {p[0], p[1], p[2], escape_radius(p[0]), p[3]};
+}
 
 std::vector<double> round_box_immediates(Params p) { return {p[0] - p[3], p[1] - p[3], p[2] - p[3], p[3]}; }
 
@@ -142,8 +147,8 @@ std::vector<double> round_cone_immediates(Params p) {
   return {p[0], p[1], p[2], std::max(1e-30, std::sqrt((1 - b) * (1 + b))), b};
 }
 
-// A frame with the first corner at its origin, the first edge along x and the normal along z; then for each edge its
-// start, its direction and its length in that frame's xy plane; then the thickness.
+// A frame with the first corner at its origin, the first edge along x and the normal along z; the first edge's length;
+// for each further edge its start, its direction and its length in that frame's xy plane; the thickness.
 std::vector<double> sheet_immediates(Params p) {
   const std::vector<dvec3> v = corners(p);
   const dvec3 z = glm::normalize(area_vector(v));
@@ -153,7 +158,8 @@ std::vector<double> sheet_immediates(Params p) {
   for (const dvec3& axis : {x, y, z}) {
     result.insert(result.end(), {axis.x, axis.y, axis.z, -glm::dot(axis, v[0])});
   }
-  for (std::size_t i = 0; i < v.size(); ++i) {
+  result.push_back(glm::length(v[1] - v[0]));
+  for (std::size_t i = 1; i < v.size(); ++i) {
     const dvec3 start = v[i] - v[0], edge = v[(i + 1) % v.size()] - v[i];
     const double length = glm::length(edge);
     result.insert(result.end(), {glm::dot(start, x), glm::dot(start, y), glm::dot(edge, x) / length,
@@ -197,8 +203,7 @@ Box sheet_bound(Params p) {
   return box.grown(p.back());
 }
 
-// Beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p escapes (|w| grows), so the set lies within.
-// The estimate is positive there: after any number of iterations |w| >= |p| > 1.
-Box mandelbulb_bound(Params p) { return Box::centred(dvec3(std::pow(2.0, 1.0 / (p[0] - 1)))); }
+// The estimate is at least about a quarter of the distance from the set.
+Box mandelbulb_bound(Params p) { return Box::centred(dvec3(escape_radius(p[0]) + 4 * p[3])); }
 
 }  // namespace fathom::compiler

@@ -15,17 +15,17 @@ constexpr const char* kExamples =
     "fathom check --error-format short scene.json   # one line an error, for editors";
 
 std::string describe(std::string_view name, const vm::VerifiedProgram& program) {
-  return fmt::format(
-      "  {} program: {} instructions, {} words, stacks of {} values and {} points, about {} "
-      "multiply-adds a point\n",
-      name, program.instructions(), program.program().words.size(), program.max_values(), program.max_points(),
-      program.cost());
+  return fmt::format("  {} program: {}, {}, stacks of {} and {}, about {} a point\n", name,
+                     count_of(program.instructions(), "instruction"),
+                     count_of(program.program().words.size(), "word"), count_of(program.max_values(), "value"),
+                     count_of(program.max_points(), "point"), count_of(program.cost(), "multiply-add"));
 }
 
 std::string report(const compiler::CompiledScene& scene) {
   return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
          describe("distance", scene.distance) + describe("surface", scene.surface) +
-         fmt::format("  materials: {}, surfaces: {}\n", scene.materials.size(), scene.surfaces.size());
+         fmt::format("  {}, {}\n", count_of(scene.materials.size(), "material"),
+                     count_of(scene.surfaces.size(), "surface"));
 }
 
 }  // namespace

@@ -25,10 +25,6 @@ std::variant<std::string, Unreadable> read_all(std::istream& in) {
   return text;
 }
 
-std::string count_of(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene) {

@@ -14,4 +14,8 @@ void note(const Streams& streams, std::string_view message) {
   streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << message << '\n';
 }
 
+std::string count_of(std::size_t count, std::string_view noun) {
+  return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
+}
+
 }  // namespace fathom::cli

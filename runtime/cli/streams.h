@@ -7,6 +7,7 @@
 // Tested by: tests/runtime/cli_test.cpp
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -30,5 +31,8 @@ using Help = std::vector<std::string>;  // each a line after "= help:"
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help = {});
 
 void note(const Streams& streams, std::string_view message);
+
+// "1 error", "2 errors".
+std::string count_of(std::size_t count, std::string_view noun);
 
 }  // namespace fathom::cli

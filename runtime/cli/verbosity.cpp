@@ -28,7 +28,8 @@ std::size_t count_nodes(const compiler::Scene& scene) {
 std::string triple(glm::dvec3 v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); }
 
 std::string describe_settings(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
-  std::string text = fmt::format("instruction set {}, {} threads\n", vm::isa_name(), settings.threads);
+  std::string text = fmt::format("instruction set {}, {}\n", vm::isa_name(),
+                                 count_of(static_cast<std::size_t>(settings.threads), "thread"));
   text += fmt::format("{}x{} pixels, {} samples a pixel, {} bounces, tiles of {}, seed {}\n", settings.width,
                       settings.height, settings.spp, settings.bounces, settings.tile, settings.seed);
   text += settings.far ? fmt::format("rays end {:.6g} from the camera\n", *settings.far) : "";
@@ -68,9 +69,9 @@ void Verbosity::describe(const compiler::CompiledScene& scene, const runtime::Se
   const std::chrono::duration<double, std::milli> compiling = std::chrono::steady_clock::now() - start_;
   std::ostream& err = streams_.err;
   if (level_ >= 1) {
-    err << fmt::format("{}: {}\ncompiled in {:.1f} ms to {} instructions, about {} multiply-adds a point\n",
-                       scene.source.name(), scene.summary, compiling.count(), scene.distance.instructions(),
-                       scene.distance.cost());
+    err << fmt::format("{}: {}\ncompiled in {:.1f} ms to {}, about {} a point\n", scene.source.name(), scene.summary,
+                       compiling.count(), count_of(scene.distance.instructions(), "instruction"),
+                       count_of(scene.distance.cost(), "multiply-add"));
   }
   if (level_ >= 3) err << describe_settings(scene, settings);
   if (level_ >= 4) err << describe_tables(scene);

@@ -11,60 +11,39 @@
 #include <set>
 #include <sstream>
 
+#include "compiler/compile.h"
 #include "compiler/error_codes.h"
-#include "compiler/frontend/elaborate.h"
-#include "compiler/frontend/json.h"
+#include "tests/support/golden.h"
 
 namespace {
 
 using namespace fathom::compiler;
 namespace fs = std::filesystem;
-
-const std::string kSeparator = "----- expected\n";
-const fs::path kGolden = fs::path(FATHOM_SOURCE_DIR) / "tests/golden/diagnostics";
-
-std::string read_file(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
-std::vector<fs::path> golden_files() {
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(kGolden)) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
+using fathom::tests::check_golden;
+using fathom::tests::golden_files;
+using fathom::tests::read_file;
 
 Diagnostics diagnose(const Source& source) {
   Diagnostics diagnostics;
-  if (const auto file = read_json(source, diagnostics)) elaborate(*file, diagnostics);
+  compile(source, diagnostics);
   return diagnostics;
 }
 
 TEST_CASE("golden diagnostics", "[diagnostics]") {
-  const bool update = std::getenv("FATHOM_UPDATE_GOLDEN") != nullptr;
-  for (const fs::path& path : golden_files()) {
-    CAPTURE(path.filename().string());
-    const std::string text = read_file(path);
-    const std::size_t end = text.find(kSeparator);
-    REQUIRE(end != std::string::npos);
-    const Source source("scene.json", text.substr(0, end));
-    const std::string actual = diagnose(source).print(source, ErrorFormat::Text);
-    if (update) std::ofstream(path, std::ios::binary) << source.text() << kSeparator << actual;
-    if (!update) CHECK(actual == text.substr(end + kSeparator.size()));
-  }
+  check_golden("diagnostics", [](const std::string& input) {
+    const Source source("scene.json", input);
+    return diagnose(source).print(source, ErrorFormat::Text);
+  });
 }
 
 TEST_CASE("every code has a golden file and every golden file shows its code", "[diagnostics]") {
   std::set<std::string> shown;
-  for (const fs::path& path : golden_files()) {
+  for (const fs::path& path : golden_files("diagnostics")) {
     const std::string name = path.filename().string(), text = read_file(path);
     const std::string code = name.substr(0, 5);
     if (name.starts_with("layout")) continue;
     CAPTURE(name);
-    CHECK(text.find("[" + code + "]", text.find(kSeparator)) != std::string::npos);
+    CHECK(text.find("[" + code + "]", text.find("----- expected\n")) != std::string::npos);
     shown.insert(code);
   }
   for (const ErrorCode& row : kErrorCodes) {
@@ -130,7 +109,7 @@ TEST_CASE("the gutter is as wide as the line number", "[diagnostics]") {
   diagnostics.error("E0102", {101, 102}, "message", "label", {"first", "second"});
   CHECK(diagnostics.print(source, ErrorFormat::Text) ==
         "error[E0102]: message\n"
-        "   --> toy.json:100:3\n"
+        "    --> toy.json:100:3\n"
         "     |\n"
         " 100 |   x\n"
         "     |   ^ label\n"

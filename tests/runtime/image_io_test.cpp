@@ -54,7 +54,8 @@ TEST_CASE("image_io: each file has its format's header, and the size", "[runtime
   CHECK(write_image(picture, folder.file("a.jpg")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.bmp")) == std::nullopt);
   CHECK(folder.entries() == 3);
-  const std::string png = read(folder.file("a.png")), jpg = read(folder.file("a.jpg")), bmp = read(folder.file("a.bmp"));
+  const std::string png = read(folder.file("a.png")), jpg = read(folder.file("a.jpg")),
+                    bmp = read(folder.file("a.bmp"));
   CHECK(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
   CHECK(png[19] == 7);
   CHECK(png[23] == 5);

@@ -23,9 +23,9 @@ Film three_pixels() {
 
 TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[runtime]") {
   const Film film = three_pixels();
-  CHECK(beauty_picture(film, 0).rgb[0] == 137);   // 0.25
-  CHECK(beauty_picture(film, 1).rgb[0] == 188);   // 0.5
-  CHECK(beauty_picture(film, 2).rgb[0] == 255);   // 1
+  CHECK(beauty_picture(film, 0).rgb[0] == 137);  // 0.25
+  CHECK(beauty_picture(film, 1).rgb[0] == 188);  // 0.5
+  CHECK(beauty_picture(film, 2).rgb[0] == 255);  // 1
   CHECK(beauty_picture(film, 10).rgb[0] == 255);
   CHECK(beauty_picture(film, 10).rgb[6] == 0);
 }

@@ -36,7 +36,9 @@ TEST_CASE("sampler: pairs are even, over dimensions and over neighbouring pixels
     const std::uint32_t x = static_cast<std::uint32_t>(i % 512), y = static_cast<std::uint32_t>(i / 512);
     Sampler sampler(0, x, y, 0), neighbour(0, x + 1, y, 0), later(0, x, y, 1);
     const float a = sampler.next();
-    const auto cell = [&](float b) { return static_cast<std::size_t>(a * 16) * 16 + static_cast<std::size_t>(b * 16); };
+    const auto cell = [&](float b) {
+      return static_cast<std::size_t>(a * 16) * 16 + static_cast<std::size_t>(b * 16);
+    };
     ++along[cell(sampler.next())];
     ++across[cell(neighbour.next())];
     ++samples[cell(later.next())];

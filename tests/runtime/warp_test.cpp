@@ -43,7 +43,8 @@ TEST_CASE("warp: frames are orthonormal for every direction", "[runtime]") {
   std::vector<glm::vec3> normals = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, -0.0f}, {-1, 0, 0}};
   normals[4] = {0, -1, -0.0f};
   for (int i = 0; i < 1000; ++i) {
-    normals.push_back(to_frame(normals[static_cast<std::size_t>(i) % 6], square_to_cosine_hemisphere(sampler.next2())));
+    normals.push_back(
+        to_frame(normals[static_cast<std::size_t>(i) % 6], square_to_cosine_hemisphere(sampler.next2())));
   }
   for (glm::vec3 n : normals) {
     n = glm::normalize(n);

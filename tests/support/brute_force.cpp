@@ -179,7 +179,7 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
     revolve(line({radius - e, h}, {0, h}));
     revolve(arc(radius - e, h - e, e, 0, kPi / 2));
     revolve(arc(radius - e, -h + e, e, kPi / 2, kPi));
-    inside_ = [=](dvec3 p) {  // at height y the cross section is a disc, smaller by the rounding's sagitta near the caps
+    inside_ = [=](dvec3 p) {  // at height y the cross section is a disc, smaller near the caps
       const double into_cap = std::abs(p.y) - (h - e);
       if (into_cap >= e) return false;
       const double at = into_cap > 0 ? radius - e + std::sqrt(e * e - into_cap * into_cap) : radius;

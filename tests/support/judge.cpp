@@ -127,7 +127,7 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::RoundCone: return round_cone(p, k[0], k[1], k[2]);
     case Kind::Triangle: return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
     case Kind::Quad: return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
-    case Kind::Mandelbulb: return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]);
+    case Kind::Mandelbulb: return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]) - k[3];
     default: CHECK(false, "a primitive"); return 0;
   }
 }

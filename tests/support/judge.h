@@ -20,7 +20,7 @@ namespace fathom::test {
 struct Verdict {
   double distance;        // of the node's field, in the space of p
   std::uint32_t surface;  // number of the innermost paint around the winning primitive; 0 when there is none
-  double margin;          // how far from the nearest choice between operands (scene units of p); infinite without choices
+  double margin;          // from the nearest tie between operands, scene units; infinite without choices
 };
 
 Verdict judge(const compiler::Graph& graph, compiler::NodeId node, glm::dvec3 p);

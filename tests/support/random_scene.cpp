@@ -49,9 +49,11 @@ dvec3 corner(Random& random) { return {eighths(random, 12), eighths(random, 12),
 // for s, t > 0, s + t > 1.
 std::vector<double> sheet(Random& random, bool quad) {
   dvec3 a, u, v;
+  double area;
   do {
     a = corner(random), u = corner(random) - a, v = corner(random) - a;
-  } while (glm::length(glm::cross(u, v)) < 0.25 * glm::length(u) * glm::length(v) || glm::length(glm::cross(u, v)) < 0.2);
+    area = glm::length(glm::cross(u, v));
+  } while (area < 0.25 * glm::length(u) * glm::length(v) || area < 0.2);
   const double st[4][2] = {{1, 1}, {0.5, 1}, {1, 0.75}, {0.75, 0.75}};
   const double* w = st[random.below(4)];
   const dvec3 b = a + u, c = a + w[0] * u + w[1] * v, d = a + v;
@@ -68,7 +70,9 @@ class Maker {
       : graph_(graph), random_(random), options_(options) {}
 
   NodeId make(int depth) {
-    if (!made_.empty() && random_.chance(0.15)) return made_[static_cast<std::size_t>(random_.below(int(made_.size())))];
+    if (!made_.empty() && random_.chance(0.15)) {
+      return made_[static_cast<std::size_t>(random_.below(static_cast<int>(made_.size())))];
+    }
     const NodeId id = depth == 0 || random_.chance(0.1) ? primitive() : operation(depth);
     made_.push_back(id);
     return id;
@@ -175,7 +179,12 @@ std::vector<double> random_params(Kind kind, Random& random) {
     case Kind::RoundCone: return round_cone(random);
     case Kind::Triangle: return sheet(random, false);
     case Kind::Quad: return sheet(random, true);
-    default: return {2.0 + random.below(8), 1.0 + random.below(10), 2.0 + random.below(15)};
+    default: {  // Mandelbulb
+      const double detail[] = {0, 0x1p-10, 0x1p-6};
+      const double power = 2.0 + random.below(8), iterations = 1.0 + random.below(10);
+      const double bailout = 2.0 + random.below(7);
+      return {power, iterations, bailout, detail[random.below(3)]};
+    }
   }
 }
 

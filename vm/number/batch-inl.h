@@ -40,9 +40,21 @@ HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
 HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }
 HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
 HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
-// x86's minps and Highway's emulation both compute a < b ? a : b.
-HWY_INLINE Batch min(Batch a, Batch b) { return {hn::Min(a.v, b.v)}; }
-HWY_INLINE Batch max(Batch a, Batch b) { return {hn::Max(a.v, b.v)}; }
+// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; Highway's emulation would drop the NaN.
+HWY_INLINE Batch min(Batch a, Batch b) {
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+  return select(a < b, a, b);
+#else
+  return {hn::Min(a.v, b.v)};
+#endif
+}
+HWY_INLINE Batch max(Batch a, Batch b) {
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+  return select(a > b, a, b);
+#else
+  return {hn::Max(a.v, b.v)};
+#endif
+}
 HWY_INLINE Batch abs(Batch a) { return {hn::Abs(a.v)}; }
 HWY_INLINE Batch sqr(Batch a) { return a * a; }
 HWY_INLINE Batch sqrt(Batch a) { return {hn::Sqrt(a.v)}; }

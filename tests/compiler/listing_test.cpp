@@ -1,0 +1,57 @@
+// What the compiler makes of scenes: tests/golden/listings/*.txt hold a scene, and its graph after each pass that
+// changed it and both programs' listings.
+#include <catch2/catch.hpp>
+
+#include "compiler/compile.h"
+#include "tests/support/golden.h"
+#include "vm/disassemble.h"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::compiler;
+
+std::string print_everything(const std::string& text) {
+  const Source source("scene.json", text);
+  std::string out, last;
+  CompileOptions options;
+  options.on_pass = [&](std::string_view pass, const Scene& scene) {
+    const std::string graph = print_graph(scene, source);
+    if (graph != last) out += "; after " + std::string(pass) + "\n" + graph;
+    last = graph;
+  };
+  Diagnostics diagnostics;
+  const auto scene = compile(source, diagnostics, options);
+  if (!scene) return diagnostics.print(source, ErrorFormat::Text);
+  out += "; distance\n" + vm::disassemble(scene->distance);
+  if (scene->surfaces.size() > 1) out += "; surface\n" + vm::disassemble(scene->surface);
+  return out + "; " + scene->summary + "\n";
+}
+
+}  // namespace
+
+TEST_CASE("golden listings", "[golden]") { tests::check_golden("listings", print_everything); }
+
+TEST_CASE("a scene with one surface carries no material code", "[compile]") {
+  const Source source("scene.json", R"({"version": 1, "objects": [{"type": "sphere", "radius": 1}]})");
+  Diagnostics diagnostics;
+  const auto scene = compile(source, diagnostics);
+  REQUIRE(scene);
+  CHECK(scene->surface.program().words == scene->distance.program().words);
+  CHECK(scene->distance.instructions() == 1);
+}
+
+TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[compile]") {
+  for (const bool left : {true, false}) {
+    std::string node = R"({"type": "sphere", "radius": 1})";
+    const std::string leaf = R"({"type": "box", "half_size": [1, 2, 3]})";
+    for (int i = 0; i < 1000; ++i) {
+      node = R"({"type": "smooth_union", "k": 0.1, "of": [)" + (left ? node + "," + leaf : leaf + "," + node) + "]}";
+    }
+    const Source source("scene.json", R"({"version": 1, "objects": [)" + node + "]}");
+    Diagnostics diagnostics;
+    const auto scene = compile(source, diagnostics);
+    REQUIRE(scene);
+    CHECK(scene->distance.max_values() == 2);
+  }
+}

@@ -1,0 +1,58 @@
+// The folders' order: vm <- compiler <- runtime. Reads every include of the sources.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// The quoted includes of a file, from the repository's root.
+std::set<std::string> includes(const fs::path& file) {
+  std::ifstream in(file);
+  std::set<std::string> result;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("#include \"")) continue;
+    const std::size_t begin = line.find('"') + 1;
+    result.insert(line.substr(begin, line.find('"', begin) - begin));
+  }
+  return result;
+}
+
+std::string top(const std::string& path) { return path.substr(0, path.find('/')); }
+
+}  // namespace
+
+TEST_CASE("a folder includes only folders before it", "[layers]") {
+  const std::map<std::string, std::set<std::string>> allowed = {
+      {"vm", {"vm", "hwy"}},
+      {"compiler", {"vm", "compiler"}},
+      {"runtime", {"vm", "compiler", "runtime"}},
+  };
+  for (const auto& [folder, may] : allowed) {
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / folder)) {
+      if (!entry.is_regular_file()) continue;
+      ++files;
+      for (const std::string& include : includes(entry.path())) {
+        CAPTURE(entry.path().string(), include);
+        CHECK(may.count(top(include)) == 1);
+      }
+    }
+    CHECK(files > 10);
+  }
+}
+
+TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]") {
+  for (const auto& entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "runtime")) {
+    if (!entry.is_regular_file()) continue;
+    for (const std::string& include : includes(entry.path())) {
+      CAPTURE(entry.path().string(), include);
+      CHECK((top(include) != "compiler" || include == "compiler/compiled_scene.h" || include == "compiler/box.h"));
+    }
+  }
+}

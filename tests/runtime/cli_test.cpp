@@ -1,0 +1,390 @@
+// The program as its users meet it: exit codes, messages, data on stdout, files written and not written.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int code;
+  std::string out, err;
+};
+
+const char* const kBall = R"({
+  "version": 1,
+  "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+  "film": {"width": 32, "height": 16},
+  "render": {"spp": 2},
+  "background": [1, 1, 1],
+  "objects": [{"name": "ball", "type": "sphere", "radius": 0.5}]
+})";
+
+const char* const kTwo = R"({
+  "version": 1,
+  "materials": {"red": {"type": "diffuse", "color": [1, 0, 0]}, "blue": {"type": "diffuse", "color": [0, 0, 1]}},
+  "objects": [
+    {"name": "left", "type": "sphere", "radius": 1, "translate": [-2, 0, 0], "material": "red"},
+    {"name": "right", "type": "box", "half_size": [1, 1, 1], "translate": [2, 0, 0], "material": "blue"}
+  ]
+})";
+
+// An empty folder to run the program in, removed with everything in it.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "fathom-cli-XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+    write("ball.json", kBall);
+    write("two.json", kTwo);
+  }
+  ~Folder() { fs::remove_all(path_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  std::string read(const std::string& name) const {
+    std::stringstream text;
+    text << std::ifstream(path_ / name).rdbuf();
+    return text.str();
+  }
+  bool has(const std::string& name) const { return fs::exists(path_ / name); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
+  }
+
+  // `arguments` as for a shell; standard input is `in`.
+  Result run(const std::string& arguments, const std::string& in = "") const {
+    const fs::path io = path_.string() + ".io";  // beside the folder, which stays the user's
+    fs::create_directories(io);
+    std::ofstream(io / "in") << in;
+    const std::string command = "cd '" + path_.string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
+                                (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
+                                (io / "err").string() + "'";
+    const int status = std::system(command.c_str());
+    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
+                  read("../" + io.filename().string() + "/err")};
+    fs::remove_all(io);
+    return result;
+  }
+
+ private:
+  fs::path path_;
+};
+
+using Catch::Contains;
+
+// Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
+std::pair<int, int> png_size(const std::string& bytes) {
+  REQUIRE(bytes.size() > 24);
+  const auto big_endian = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  return {big_endian(16), big_endian(20)};
+}
+
+}  // namespace
+
+TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong") {
+  struct Case {
+    const char* arguments;
+    const char* message;
+  };
+  const Case cases[] = {
+      {"rendr ball.json", "did you mean `fathom render`?"},
+      {"frobnicate", "unknown verb `frobnicate`"},
+      {"ball.json -o out.png", "did you mean `fathom render ball.json`?"},
+      {"--versoin", "did you mean `fathom --version`?"},
+      {"help rendr", "did you mean `fathom render`?"},
+      {"render", "the scene is missing"},
+      {"render ball.json --bounce 4", "did you mean `--bounces`?"},
+      {"render ball.json --sppp=4", "unknown option `--sppp`"},
+      {"render ball.json two.json", "unexpected argument `two.json`"},
+      {"render ball.json --spp", "--spp: its value is missing"},
+      {"render ball.json -o --spp 4", "unexpected argument `4`"},
+      {"render ball.json -o --quiet", "--output: its value is missing"},
+      {"render ball.json -s many", "--spp: `many` is not a whole number from 1 to"},
+      {"render ball.json -s 0", "--spp: `0`"},
+      {"render ball.json -s 1.5", "--spp: `1.5`"},
+      {"render ball.json -t 0", "--tile: `0`"},
+      {"render ball.json -b -1", "--bounces: `-1`"},
+      {"render ball.json --threads 0", "--threads: `0`"},
+      {"render ball.json --seed -1", "--seed: `-1`"},
+      {"render ball.json --far 0", "--far: `0` is not a positive number"},
+      {"render ball.json -r 0", "--resolution: `0`"},
+      {"render ball.json -o out.gif", "valid endings: .png, .jpg, .jpeg, .bmp"},
+      {"render ball.json -o out", "`out` does not end in a picture format's name"},
+      {"render ball.json --aspect 16", "--aspect: `16` is not a ratio"},
+      {"render ball.json --aspect 16:0", "--aspect: `16:0`"},
+      {"render ball.json --aspect -4:3", "--aspect: `-4:3`"},
+      {"render ball.json --aspect 4:3:2", "--aspect: `4:3:2`"},
+      {"render ball.json --aspect 16/9", "write it as 16:9 or 4x3"},
+      {"render ball.json --aspect nan:1", "--aspect: `nan:1`"},
+      {"render ball.json --aspect 1:100000", "too large"},
+      {"render ball.json -f 45", "did you mean `45deg`?"},
+      {"render ball.json -f 3.2", "did you mean `3.2deg`?"},
+      {"render ball.json -f 0", "--fov: `0` is not between 0 and 180 degrees"},
+      {"render ball.json -f 180deg", "--fov: `180deg` is not between 0 and 180 degrees"},
+      {"render ball.json -f -1", "--fov: `-1`"},
+      {"render ball.json -f wide", "--fov: `wide` is not an angle"},
+      {"render ball.json --size 12", "write it as 1920x1080"},
+      {"render ball.json --size 12x0", "--size: `12x0`"},
+      {"render ball.json --size 4x4 -r 5", "--size gives width and height"},
+      {"render ball.json --quiet -v", "--quiet does not go with --verbose"},
+      {"check ball.json --error-format xml", "--error-format: `xml` is not one of text, short, json"},
+      {"dump ball.json --stage bytcode", "did you mean `bytecode`?"},
+      {"dump ball.json --after nonsense", "is not one of graph, "},
+      {"dump ball.json --stage graph --stats", "--stats is about bytecode"},
+      {"dump ball.json --stage syntax --program surface", "--program is about bytecode"},
+      {"dump ball.json --stage syntax --after graph", "--after names a pass"},
+      {"eval ball.json", "no point to evaluate at"},
+      {"eval ball.json --at 1,2", "--at: `1,2` is not a point"},
+      {"eval ball.json --at 1,2,x", "--at: `1,2,x` is not a point"},
+      {"eval ball.json --box 1,0,0,0,1,1", "the first corner's x is above the second's"},
+      {"eval ball.json --box 0,0,0,1,1,1 --number f32", "--box needs --number range"},
+      {"eval - --points -", "cannot both come from standard input"},
+  };
+  const Folder folder;
+  for (const Case& c : cases) {
+    INFO("fathom " << c.arguments);
+    const Result result = folder.run(c.arguments);
+    CHECK(result.code == 2);
+    CHECK_THAT(result.err, Contains(c.message) && Contains("error: "));
+    CHECK(result.out == "");
+  }
+  CHECK(folder.files() == 2);  // the scenes, and no pictures
+}
+
+TEST_CASE("cli: help and version go to stdout and succeed") {
+  const Folder folder;
+  for (const char* arguments : {"--help", "-h", "help"}) {
+    const Result result = folder.run(arguments);
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Contains("fathom render scene.json") && Contains("Exit status") && Contains("65"));
+    CHECK(result.err == "");
+  }
+  for (const std::string verb : {"render", "check", "dump", "eval"}) {
+    const Result result = folder.run(verb + " --help");
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Contains("Examples:\n  fathom " + verb));
+    CHECK(folder.run("help " + verb).out == result.out);
+  }
+  const Result nothing = folder.run("");
+  CHECK(nothing.code == 2);
+  CHECK_THAT(nothing.err, Contains("Usage:"));
+  CHECK(nothing.out == "");
+}
+
+TEST_CASE("cli: render --help names every flag of the paper") {
+  const std::string help = Folder().run("render -h").out;
+  for (const char* names :
+       {"-h,--help", "-v,", "--aspect", "-a,--albedo", "-d,--depth", "-n,--normal", "-o,--output",
+        "-r,--res,--resolution", "-b,--bounces", "-f,--fov", "--no-denoise", "-s,--spp", "-t,--tile"}) {
+    CHECK_THAT(help, Contains(names));
+  }
+}
+
+TEST_CASE("cli: the version is the project's") {
+  std::stringstream lists;
+  lists << std::ifstream(FATHOM_SOURCE_DIR "/CMakeLists.txt").rdbuf();
+  const Result result = Folder().run("--version");
+  REQUIRE(result.out.substr(0, 7) == "fathom ");
+  CHECK_THAT(lists.str(), Contains("VERSION " + result.out.substr(7, result.out.size() - 8) + " "));
+}
+
+TEST_CASE("cli: files that cannot be read or written are exit code 74") {
+  const Folder folder;
+  for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0"}) {
+    const Result result = folder.run(std::string(verb) + " missing.json");
+    CHECK(result.code == 74);
+    CHECK_THAT(result.err, Contains("cannot read `missing.json`: No such file or directory"));
+  }
+  CHECK_THAT(folder.run("check .").err, Contains("cannot read `.`: it is a directory"));
+  CHECK(folder.run("check .").code == 74);
+  CHECK(folder.run("eval ball.json --points missing.txt").code == 74);
+  for (const char* output : {"-o missing/out.png", "-o out.png --stats-json missing/s.json"}) {
+    const Result result = folder.run(std::string("render ball.json ") + output);
+    CHECK(result.code == 74);
+    CHECK_THAT(result.err, Contains("`missing`"));
+    CHECK_THAT(result.err, !Contains("camera rays"));  // found before rendering
+  }
+  CHECK(folder.run("dump ball.json").code == 0);
+  CHECK(folder.files() == 2);
+}
+
+TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
+  const Folder folder;
+  folder.write("bad.json", R"({"version": 1, "objects": [{"type": "spere", "radius": 1}, {"type": "box"}]})");
+  const Result render = folder.run("render bad.json -o bad.png");
+  CHECK(render.code == 65);
+  CHECK_THAT(render.err, Contains("bad.json:1:") && Contains("sphere") && Contains("2 errors"));
+  CHECK_FALSE(folder.has("bad.png"));
+  CHECK(folder.run("dump bad.json").code == 65);
+  CHECK(folder.run("eval bad.json --at 0,0,0").code == 65);
+  const Result check = folder.run("check bad.json");
+  CHECK(check.code == 1);
+  CHECK(check.out == "");
+  CHECK(check.err == render.err);
+  const Result brief = folder.run("check bad.json --error-format short");
+  CHECK(std::count(brief.err.begin(), brief.err.end(), '\n') == 2);
+  CHECK(folder.run("check bad.json --error-format json").err.front() == '{');
+}
+
+TEST_CASE("cli: the scenes that come with the program have no errors and no warnings") {
+  int scenes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    const Result result = Folder().run("check '" + entry.path().string() + "'");
+    INFO(entry.path());
+    CHECK(result.code == 0);
+    CHECK(result.err == "");
+    ++scenes;
+  }
+  CHECK(scenes > 0);
+}
+
+TEST_CASE("cli: check reports on stdout, and warnings are no failure") {
+  const Folder folder;
+  folder.write("unused.json", R"({"version": 1, "materials": {"red": {"type": "diffuse"}},
+    "objects": [{"type": "sphere", "radius": 1}]})");
+  const Result result = folder.run("check unused.json");
+  CHECK(result.code == 0);
+  CHECK_THAT(result.err, Contains("warning") && Contains("red"));
+  CHECK_THAT(result.out, Contains("Lipschitz") && Contains("1 instruction,"));
+  CHECK(folder.run("check ball.json").err == "");
+}
+
+TEST_CASE("cli: eval prints distance, gradient and name") {
+  const Folder folder;
+  CHECK(folder.run("eval ball.json --at 0,2,0").out == "1.5 0 1 0 ball\n");
+  CHECK(folder.run("eval ball.json --at -3,0,4 --number f32").out == "4.5 -0.6 0 0.8 ball\n");
+  CHECK(folder.run("eval two.json --at -2,3,0 --at 2,0,-4").out == "2 0 1 0 left\n3 0 0 -1 right\n");
+  CHECK(folder.run("eval two.json --at -2,3,0 --stage graph").out == "2 0 1 0 left\n");
+  CHECK(folder.run("eval two.json --at -2,3,0 --after graph").out == "2 0 1 0 left\n");
+  CHECK(folder.run("eval - --at 0,2,0", kBall).out == "1.5 0 1 0 ball\n");
+
+  const Result range = folder.run("eval ball.json --box 1,0,0,2,0,0");
+  std::istringstream numbers(range.out);
+  double lo = 0, hi = 0;
+  REQUIRE(numbers >> lo >> hi);
+  CHECK((lo <= 0.5 && lo > 0.49 && hi >= 1.5 && hi < 1.51));
+  CHECK_THAT(folder.run("eval ball.json --at 1,0,0 --number range").out, Contains(" "));
+}
+
+TEST_CASE("cli: eval reads points from a file, and names the line that is none") {
+  const Folder folder;
+  folder.write("points.txt", "# above\n0 2 0\n\n  \t\r\n3, 0, 0\n");
+  CHECK(folder.run("eval ball.json --points points.txt").out == "1.5 0 1 0 ball\n2.5 1 0 0 ball\n");
+  CHECK(folder.run("eval ball.json --points -", "0 2 0").out == "1.5 0 1 0 ball\n");
+  folder.write("bad.txt", "0 2 0\n0 2\n");
+  const Result bad = folder.run("eval ball.json --points bad.txt");
+  CHECK(bad.code == 65);
+  CHECK(bad.out == "");
+  CHECK_THAT(bad.err, Contains("bad.txt:2: `0 2` is not a point"));
+}
+
+TEST_CASE("cli: dump prints each stage on stdout") {
+  const Folder folder;
+  CHECK_THAT(folder.run("dump ball.json").out, Contains("sphere") && Contains("0.5"));
+  CHECK_THAT(folder.run("dump two.json --program surface").out, Contains("tag"));
+  CHECK_THAT(folder.run("dump two.json --program distance").out, !Contains("tag"));
+  CHECK_THAT(folder.run("dump ball.json --stage syntax").out, Contains("radius"));
+  CHECK_THAT(folder.run("dump ball.json --stage graph").out, Contains("%0 = sphere radius=0.5"));
+  CHECK_THAT(folder.run("dump two.json --after graph").out, Contains("%0 = ") && Contains("union"));
+  CHECK_THAT(folder.run("dump two.json --after graph --stage bytecode").out, Contains("box"));
+  CHECK_THAT(folder.run("dump two.json --stats").out, Contains("sphere") && Contains("total"));
+  CHECK(folder.run("dump two.json").err == "");
+}
+
+TEST_CASE("cli: render writes the picture, and what is asked for beside it") {
+  const Folder folder;
+  const Result result = folder.run("render ball.json -o a.png -o b.jpg -a -d -n --stats-json stats.json");
+  CHECK(result.code == 0);
+  CHECK(result.out == "");
+  CHECK_THAT(result.err, Contains("camera rays") && Contains("wrote a.png (32x16)"));
+  for (const char* name : {"a.png", "a-albedo.png", "a-depth.png", "a-normal.png", "b.jpg", "b-albedo.jpg",
+                           "b-depth.jpg", "b-normal.jpg", "stats.json"}) {
+    CHECK(folder.has(name));
+  }
+  CHECK(folder.files() == 2 + 9);
+  CHECK(png_size(folder.read("a.png")) == std::pair(32, 16));
+  CHECK_THAT(folder.read("stats.json"), Contains("\"primary_rays\": 1024"));  // 32 * 16 * 2
+}
+
+TEST_CASE("cli: without -o the picture is named after the scene, in the current folder") {
+  const Folder folder;
+  const Result result = folder.run("render ./ball.json");
+  CHECK(result.code == 0);
+  CHECK_THAT(result.err, Contains("the picture goes to ball.png"));
+  CHECK(folder.has("ball.png"));
+  CHECK(folder.run("render - --quiet", kBall).err == "");
+  CHECK(folder.has("out.png"));
+}
+
+TEST_CASE("cli: flags override the scene") {
+  const Folder folder;
+  const auto size = [&](const std::string& flags) {
+    REQUIRE(folder.run("render ball.json -o a.png " + flags).code == 0);
+    return png_size(folder.read("a.png"));
+  };
+  CHECK(size("-r 20") == std::pair(20, 10));         // the film's aspect stays
+  CHECK(size("--aspect 4:3") == std::pair(32, 24));  // the width stays
+  CHECK(size("--res 21 --aspect 1.5x1") == std::pair(21, 14));
+  CHECK(size("--size 5x7") == std::pair(5, 7));
+  CHECK(size("-r 1 --aspect 100:1") == std::pair(1, 1));
+  CHECK_THAT(folder.run("render ball.json -s 3 --stats-json -").out, Contains("\"primary_rays\": 1536"));
+  CHECK_THAT(folder.run("render ball.json -s 3 -s 1 --stats-json -").out, Contains("\"primary_rays\": 512"));
+
+  const auto picture = [&](const std::string& flags) {
+    REQUIRE(folder.run("render ball.json -o a.png -n " + flags).code == 0);
+    return folder.read("a-normal.png");
+  };
+  const std::string plain = picture("");
+  CHECK(picture("-f 45deg") == plain);
+  CHECK(picture("-f 0.7853981633974483") == plain);
+  CHECK(picture("-f 0.7853981633974483rad") == plain);
+  CHECK(picture("-f 1.2") != plain);
+  CHECK(picture("-t 3 --threads 1") == plain);
+  CHECK(picture("--seed 7") != plain);
+}
+
+TEST_CASE("cli: an orthographic camera has no field of view to override") {
+  const Folder folder;
+  folder.write("flat.json", R"({"version": 1, "camera": {"type": "orthographic"}, "film": {"width": 8, "height": 8},
+    "objects": [{"type": "sphere", "radius": 1}]})");
+  const Result result = folder.run("render flat.json -f 45deg");
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("orthographic"));
+  CHECK(folder.run("render flat.json").code == 0);
+}
+
+TEST_CASE("cli: -v says more each time, up to six") {
+  const Folder folder;
+  std::size_t shorter = 0;
+  for (const char* flags : {"", "-v", "-vv", "-vvv", "-vvvv", "-vvvvv", "-vvvvvv"}) {
+    const Result result = folder.run(std::string("render ball.json -o a.png ") + flags);
+    CHECK(result.code == 0);
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') > static_cast<std::ptrdiff_t>(shorter));
+    shorter = static_cast<std::size_t>(std::count(result.err.begin(), result.err.end(), '\n'));
+  }
+  CHECK(folder.run("render ball.json -o a.png -vvvvvvvvv").code == 0);
+  CHECK_THAT(folder.run("render ball.json -o a.png -v --no-denoise").err, Contains("there is no denoiser"));
+  CHECK_THAT(folder.run("render ball.json -o a.png --no-denoise").err, !Contains("denoiser"));
+  CHECK(folder.run("render ball.json -o a.png -q").err == "");
+}
+
+TEST_CASE("cli: output that is not a terminal has no colours and no redrawn lines") {
+  const Folder folder;
+  folder.write("bad.json", "{");
+  for (const char* arguments : {"render ball.json -o a.png", "check bad.json"}) {
+    CHECK_THAT(folder.run(arguments).err, !Contains("\033") && !Contains("\r"));
+  }
+}

@@ -1,0 +1,218 @@
+// Whole pictures against closed forms, and the promise that threads and tiles leave no trace.
+#include "runtime/render.h"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/runtime/scenes.h"
+
+namespace fathom::runtime {
+namespace {
+
+RenderOptions options_of(int width, int height, int spp) {
+  RenderOptions options;
+  options.width = width;
+  options.height = height;
+  options.spp = spp;
+  return options;
+}
+
+struct Estimate {
+  double mean, sigma;  // of the mean over the whole picture
+};
+
+// Red radiance over all pixels; sigma from the spread between pixels, which are independent.
+Estimate estimate(const Film& film) {
+  double sum = 0, squares = 0;
+  const double n = static_cast<double>(film.width()) * film.height();
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x) {
+      const double value = film.means(x, y).radiance.x;
+      sum += value;
+      squares += value * value;
+    }
+  }
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+}
+
+void expect_mean(const RenderResult& result, double reference) {
+  const Estimate found = estimate(result.film);
+  INFO("mean " << found.mean << " +- " << found.sigma);
+  CHECK(std::abs(found.mean - reference) <= 3 * found.sigma + 1e-6 * reference);
+  CHECK(found.sigma <= 2e-3 * reference);
+  CHECK(result.stats.march.invalid == 0);
+  CHECK(result.stats.march.exhausted == 0);
+  CHECK(result.stats.dropped_samples == 0);
+}
+
+std::string furnace(double albedo) {
+  const std::string a = std::to_string(albedo);
+  return R"("camera": {"position": [0.3, 0.1, 0.2], "target": [0, 0, -1], "fov": 90},
+      "materials": {"lamp": {"type": "emissive", "emission": [1, 1, 1], "color": [)" +
+         a + "," + a + "," + a + R"(]}},
+      "objects": [{"type": "sphere", "radius": 1, "material": "lamp"}])";
+}
+
+TEST_CASE("render: white furnace, 1/(1 - albedo)", "[render]") {
+  expect_mean(render(scene_of(furnace(0.5)), options_of(64, 64, 64)), 2);
+  expect_mean(render(scene_of(furnace(0.8)), options_of(64, 64, 128)), 5);
+}
+
+TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[render]") {
+  const auto scene = scene_of(furnace(0.8));
+  for (const int bounces : {0, 1, 3, 30}) {
+    RenderOptions options = options_of(48, 48, 64);
+    options.bounces = bounces;
+    INFO("bounces " << bounces);
+    const RenderResult result = render(scene, options);
+    const Estimate found = estimate(result.film);
+    CHECK(std::abs(found.mean - 5) <= 4 * found.sigma + 1e-5);
+  }
+}
+
+TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render]") {
+  // The floor's radiance under the lamp is albedo E / pi. Orthographic, looking at a small spot from the side, below
+  // the lamp and seeing nothing else. The spot is so small that E is 1e-4 from constant.
+  const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [3, 1, 0], "target": [0, 0, 0],
+        "width": 0.01},
+      "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
+                    "lamp": {"type": "emissive", "emission": [8, 8, 8]}},
+      "objects": [{"type": "plane", "normal": [0, 1, 0], "material": "floor"},
+                  {"type": "sphere", "radius": 0.5, "translate": [0, 2, 0], "material": "lamp"}])");
+  const RenderResult result = render(scene, options_of(64, 64, 512));
+  const double radiance = 0.5 * 8 * (0.5 / 2) * (0.5 / 2);
+  const Estimate found = estimate(result.film);
+  INFO("mean " << found.mean << " +- " << found.sigma);
+  CHECK(std::abs(found.mean - radiance) <= 3 * found.sigma + 1e-4 * radiance);
+  CHECK(found.sigma <= 5e-3 * radiance);
+}
+
+TEST_CASE("render: glass and mirrors vanish in an even light", "[render]") {
+  for (const char* material : {R"({"type": "transparent", "ior": 1.5})", R"({"type": "specular"})",
+                               R"({"type": "diffuse", "color": [1, 1, 1]})"}) {
+    const auto scene = scene_of(std::string(R"("camera": {"position": [0, 0, 3], "fov": 60}, "background": [1, 1, 1],
+        "materials": {"m": )") + material +
+                                R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}])");
+    RenderOptions options = options_of(32, 32, 64);
+    options.bounces = 60;
+    const RenderResult result = render(scene, options);
+    const Estimate found = estimate(result.film);
+    INFO(material << " mean " << found.mean << " +- " << found.sigma);
+    CHECK(std::abs(found.mean - 1) <= 1e-3);
+    CHECK(result.stats.march.invalid == 0);
+  }
+}
+
+TEST_CASE("render: glass absorbs along the way through it", "[render]") {
+  // A slab without refraction, seen straight on: exp(-absorption * thickness).
+  const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 0, 3], "width": 0.5},
+      "background": [1, 1, 1],
+      "materials": {"m": {"type": "transparent", "ior": 1, "absorption": [1, 2, 0]}},
+      "objects": [{"type": "box", "half_size": [1, 1, 0.25], "material": "m"}])");
+  const glm::dvec3 radiance = render(scene, options_of(4, 4, 1)).film.means(1, 1).radiance;
+  CHECK(radiance.x == Approx(std::exp(-0.5)).epsilon(1e-4));
+  CHECK(radiance.y == Approx(std::exp(-1.0)).epsilon(1e-4));
+  CHECK(radiance.z == Approx(1).epsilon(1e-4));
+}
+
+TEST_CASE("render: the background is linear in the sine of the elevation, and up is up", "[render]") {
+  const auto scene = scene_of(R"("camera": {"position": [0, 0, 3], "fov": 90},
+      "background": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
+      "objects": [{"type": "sphere", "radius": 0.1, "translate": [0, 0, 100]}])");
+  const RenderResult result = render(scene, options_of(3, 3, 1));
+  const double sine = (2.0 / 3) / std::sqrt(1 + 4.0 / 9);  // of the middle column's top pixel, at its centre
+  CHECK(result.film.means(1, 0).radiance.x == Approx((1 + sine) / 2).epsilon(1e-6));
+  CHECK(result.film.means(1, 1).radiance.x == Approx(0.5).epsilon(1e-6));
+  CHECK(result.film.means(1, 2).radiance.x == Approx((1 - sine) / 2).epsilon(1e-6));
+  CHECK(result.stats.primary_hits == 0);
+}
+
+TEST_CASE("render: what lies first along the camera's rays", "[render]") {
+  const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 0, 3], "width": 4},
+      "materials": {"m": {"type": "diffuse", "color": [0.2, 0.4, 0.6]}},
+      "objects": [{"type": "box", "half_size": [1, 1, 0.5], "material": "m"}])");
+  const RenderResult result = render(scene, options_of(4, 4, 1));
+  const PixelMeans hit = result.film.means(1, 1), missed = result.film.means(0, 0);
+  CHECK(hit.depth == Approx(2.5).epsilon(1e-6));
+  CHECK(hit.albedo.y == Approx(0.4).epsilon(1e-6));
+  CHECK(hit.normal.z == Approx(1).epsilon(1e-6));
+  CHECK(missed.hits == 0);
+  CHECK(result.stats.primary_rays == 16);
+  CHECK(result.stats.primary_hits == 4);
+}
+
+const char* const kVaried = R"("camera": {"position": [0, 1.2, 4], "target": [0, 0.5, 0]},
+    "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.5, 0.7, 1]},
+    "materials": {"white": {"type": "diffuse"}, "glass": {"type": "transparent", "absorption": [0.3, 0.1, 0]},
+                  "mirror": {"type": "specular", "color": [0.9, 0.9, 0.8]},
+                  "lamp": {"type": "emissive", "emission": [5, 5, 5]}},
+    "objects": [{"type": "plane", "normal": [0, 1, 0], "material": "white"},
+                {"type": "sphere", "radius": 0.5, "translate": [-0.6, 0.5, 0], "material": "glass"},
+                {"type": "torus", "major_radius": 0.4, "minor_radius": 0.15, "translate": [0.6, 0.4, 0],
+                 "material": "mirror"},
+                {"type": "box", "half_size": [0.3, 0.05, 0.3], "translate": [0, 2, 0], "material": "lamp"}])";
+
+TEST_CASE("render: threads and tiles leave no trace in the picture", "[render]") {
+  const auto scene = scene_of(kVaried);
+  RenderOptions options = options_of(70, 45, 4);
+  options.threads = 1;
+  const RenderResult reference = render(scene, options);
+  for (const int threads : {1, 2, 3}) {
+    for (const int tile : {8, 16, 17}) {
+      options.threads = threads;
+      options.tile = tile;
+      const RenderResult result = render(scene, options);
+      INFO(threads << " threads, tiles of " << tile);
+      CHECK(result.film.hash() == reference.film.hash());
+      CHECK(result.stats.march.rays == reference.stats.march.rays);
+      CHECK(result.stats.march.evaluations == reference.stats.march.evaluations);
+    }
+  }
+  options.seed = 1;
+  CHECK(render(scene, options).film.hash() != reference.film.hash());
+}
+
+TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {
+  const RenderResult result = render(scene_of(kVaried), options_of(160, 90, 8));
+  CHECK(result.stats.march.invalid == 0);
+  CHECK(result.stats.march.exhausted == 0);
+  CHECK(result.stats.dropped_samples == 0);
+  CHECK(result.stats.primary_rays == 160u * 90u * 8u);
+}
+
+TEST_CASE("render: progress ends at one; a cancelled render returns", "[render]") {
+  const auto scene = scene_of(kVaried);
+  RenderOptions options = options_of(64, 64, 1);
+  double last = 0;
+  options.on_progress = [&](const Progress& progress) {
+    CHECK(progress.fraction > last);
+    last = progress.fraction;
+  };
+  CHECK_FALSE(render(scene, options).stats.cancelled);
+  CHECK(last == 1);
+
+  const std::atomic<bool> cancel = true;
+  options.cancel = &cancel;
+  const RenderResult nothing = render(scene, options);
+  CHECK(nothing.stats.cancelled);
+  CHECK(nothing.stats.primary_rays == 0);
+}
+
+TEST_CASE("render: options overrule the scene, which overrules the defaults", "[render]") {
+  const auto scene = scene_of(R"("film": {"width": 30, "height": 20}, "render": {"spp": 7, "bounces": 3},
+      "objects": [{"type": "sphere", "radius": 1}])");
+  RenderOptions options;
+  options.spp = 2;
+  options.threads = 3;
+  const Settings settings = resolve(scene, options);
+  CHECK(settings.width == 30);
+  CHECK(settings.spp == 2);
+  CHECK(settings.bounces == 3);
+  CHECK(settings.tile == 16);
+  CHECK(settings.threads == 3);
+}
+
+}  // namespace
+}  // namespace fathom::runtime

@@ -1,0 +1,374 @@
+// The evaluators against each other (the same bits on every instruction set, in every place of a block) and against the
+// judge (ranges contain, surfaces agree).
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/judge.h"
+#include "tests/support/plain_lowering.h"
+#include "tests/support/random_scene.h"
+#include "vm/evaluate.h"
+
+namespace fathom::test {
+namespace {
+
+using compiler::Kind;
+using glm::dvec3;
+using vm::Opcode;
+
+// Points as three arrays.
+struct Cloud {
+  std::vector<float> x, y, z;
+
+  void add(float px, float py, float pz) { x.push_back(px), y.push_back(py), z.push_back(pz); }
+  std::size_t size() const { return x.size(); }
+  vm::Points from(std::size_t first) const { return {x.data() + first, y.data() + first, z.data() + first}; }
+};
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// Ordinary points with, every so often, a coordinate from the edge of what floats can say.
+Cloud spicy_cloud(Random& random, std::size_t count) {
+  static const float kSpice[] = {0.f, -0.f, 1e-45f, -1e-39f, 1e-20f, 1e19f, -1e30f, 3.4e38f, kInf, -kInf, kNan};
+  Cloud cloud;
+  for (std::size_t i = 0; i < count; ++i) {
+    float p[3];
+    for (float& c : p) c = static_cast<float>(random.uniform(-2, 2));
+    if (random.chance(0.2)) p[random.below(3)] = kSpice[random.below(11)];
+    cloud.add(p[0], p[1], p[2]);
+  }
+  return cloud;
+}
+
+// The bits of a float; every NaN counts as the same, since IEEE 754 leaves its sign and payload to the processor.
+std::uint32_t bits_of(float f) { return std::bit_cast<std::uint32_t>(std::isnan(f) ? kNan : f); }
+
+// All that evaluate_surface gives, one word each: distance, gradient, surface. [point][5]
+std::vector<std::uint32_t> surface_bits(const vm::VerifiedProgram& program, vm::Points points, std::size_t count,
+                                        vm::Workspace& workspace) {
+  std::vector<float> d(count), gx(count), gy(count), gz(count);
+  std::vector<std::uint32_t> s(count), bits;
+  vm::evaluate_surface(program, points, count, {d.data(), gx.data(), gy.data(), gz.data(), s.data()}, workspace);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (float f : {d[i], gx[i], gy[i], gz[i]}) bits.push_back(bits_of(f));
+    bits.push_back(s[i]);
+  }
+  return bits;
+}
+
+std::vector<std::uint32_t> distance_bits(const vm::VerifiedProgram& program, vm::Points points, std::size_t count,
+                                         vm::Workspace& workspace) {
+  std::vector<float> d(count);
+  vm::evaluate_distance(program, points, count, d.data(), workspace);
+  std::vector<std::uint32_t> bits(count);
+  std::transform(d.begin(), d.end(), bits.begin(), bits_of);
+  return bits;
+}
+
+// Restores the instruction set when a test that forces others ends.
+struct IsaGuard {
+  std::string before{vm::isa_name()};
+  ~IsaGuard() { vm::force_isa(before); }
+};
+
+compiler::Scene scene_of(std::uint64_t seed, bool mandelbulbs) {
+  Random random(seed);
+  GraphOptions options;
+  options.mandelbulbs = mandelbulbs;
+  return random_scene(random, options);
+}
+
+// Every primitive alone, then random graphs.
+std::vector<compiler::Scene> scenes(int graphs) {
+  std::vector<compiler::Scene> all;
+  Random random(7);
+  for (int kind = 0; kind <= static_cast<int>(Kind::Mandelbulb); ++kind) {
+    all.push_back(single(static_cast<Kind>(kind), random_params(static_cast<Kind>(kind), random)));
+  }
+  for (int seed = 0; seed < graphs; ++seed) all.push_back(scene_of(static_cast<std::uint64_t>(seed), seed % 4 == 0));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("one point at a time or many, on any instruction set: the same bits", "[evaluate][isa]") {
+  const IsaGuard guard;
+  vm::Workspace workspace;
+  constexpr std::size_t kPoints = 300;
+  const auto all = scenes(20);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const vm::VerifiedProgram program = plain_lowering(all[n]);
+    Random random(n);
+    const Cloud cloud = spicy_cloud(random, kPoints);
+    REQUIRE(vm::force_isa("scalar"));
+    std::vector<std::uint32_t> distances, surfaces;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      distances.push_back(distance_bits(program, cloud.from(i), 1, workspace)[0]);
+      const auto one = surface_bits(program, cloud.from(i), 1, workspace);
+      surfaces.insert(surfaces.end(), one.begin(), one.end());
+    }
+    for (std::string_view isa : vm::available_isas()) {
+      REQUIRE(vm::force_isa(isa));
+      REQUIRE(vm::isa_name() == isa);
+      for (std::size_t count = 1; count <= kPoints; count += n < 12 ? 1 : 7) {
+        const std::size_t first = random.below(static_cast<int>(kPoints - count) + 1);
+        INFO("scene " << n << ", " << isa << ", points " << first << " and " << count << " on");
+        const auto many = distance_bits(program, cloud.from(first), count, workspace);
+        CHECK(std::equal(many.begin(), many.end(), distances.begin() + static_cast<std::ptrdiff_t>(first)));
+        if (count % 5 > 1) continue;
+        const auto full = surface_bits(program, cloud.from(first), count, workspace);
+        CHECK(std::equal(full.begin(), full.end(), surfaces.begin() + static_cast<std::ptrdiff_t>(5 * first)));
+      }
+    }
+  }
+}
+
+TEST_CASE("the surface's distance is the distance, bit for bit", "[evaluate]") {
+  vm::Workspace workspace;
+  const auto all = scenes(60);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const vm::VerifiedProgram program = plain_lowering(all[n]);
+    Random random(n);
+    const Cloud cloud = spicy_cloud(random, 500);
+    const auto distances = distance_bits(program, cloud.from(0), cloud.size(), workspace);
+    const auto surfaces = surface_bits(program, cloud.from(0), cloud.size(), workspace);
+    int differ = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) differ += distances[i] != surfaces[5 * i];
+    INFO("scene " << n);
+    CHECK(differ == 0);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const dvec3 p(cloud.x[i], cloud.y[i], cloud.z[i]);
+      const double alone = vm::evaluate_distance(program, p, workspace);
+      const double with = vm::evaluate_surface(program, p, workspace).distance;
+      INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
+      if (std::isnan(alone)) {
+        CHECK(std::isnan(with));
+      } else {
+        CHECK(std::bit_cast<std::uint64_t>(alone) == std::bit_cast<std::uint64_t>(with));
+      }
+    }
+  }
+}
+
+TEST_CASE("a NaN point leaves its neighbours alone", "[evaluate]") {
+  vm::Workspace workspace;
+  constexpr std::size_t kPoints = 70;
+  const auto all = scenes(10);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const vm::VerifiedProgram program = plain_lowering(all[n]);
+    Random random(n);
+    Cloud cloud;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const dvec3 p = random.in_box(2);
+      cloud.add(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    }
+    const auto before = surface_bits(program, cloud.from(0), kPoints, workspace);
+    for (std::size_t poisoned = 0; poisoned < kPoints; ++poisoned) {
+      Cloud with = cloud;
+      with.x[poisoned] = with.y[poisoned] = with.z[poisoned] = kNan;
+      auto after = surface_bits(program, with.from(0), kPoints, workspace);
+      std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(5 * poisoned), 5,
+                  after.begin() + static_cast<std::ptrdiff_t>(5 * poisoned));
+      INFO("scene " << n << ", point " << poisoned);
+      CHECK(after == before);
+    }
+  }
+}
+
+TEST_CASE("no points: nothing is written", "[evaluate]") {
+  vm::Workspace workspace;
+  float untouched = 42;
+  vm::evaluate_distance(primitive_program(Kind::Sphere, {1}), {nullptr, nullptr, nullptr}, 0, &untouched, workspace);
+  CHECK(untouched == 42);
+}
+
+TEST_CASE("an unknown instruction set is refused", "[evaluate][isa]") {
+  const IsaGuard guard;
+  CHECK_FALSE(vm::force_isa("z80"));
+  CHECK(vm::isa_name() == guard.before);
+  const auto isas = vm::available_isas();
+  CHECK(vm::isa_name() == guard.before);
+  CHECK(std::find(isas.begin(), isas.end(), "scalar") != isas.end());
+  CHECK(std::find(isas.begin(), isas.end(), guard.before) != isas.end());
+}
+
+TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
+  vm::Workspace workspace;
+  const double sides[] = {0, 1e-9, 1e-3, 0.05, 0.3, 1, 4};
+  long samples = 0;
+  for (std::uint64_t seed = 0; seed < 1700; ++seed) {
+    Random random(seed);
+    const bool primitive = seed % 3 == 0;
+    const Kind kind = static_cast<Kind>(random.below(static_cast<int>(Kind::Mandelbulb) + 1));
+    const compiler::Scene scene = primitive ? single(kind, random_params(kind, random)) : scene_of(seed, seed % 7 == 0);
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    for (int box = 0; box < 20; ++box) {
+      const dvec3 side = dvec3(sides[random.below(7)], sides[random.below(7)], sides[random.below(7)]);
+      const dvec3 lo = random.in_box(2), hi = lo + side;
+      const vm::Range range = vm::evaluate_range(program, lo, hi, workspace);
+      INFO((primitive ? "primitive, seed " : "graph, seed ") << seed << ", box " << box);
+      REQUIRE(range.lo <= range.hi);
+      for (int i = 0; i < 30; ++i, ++samples) {
+        dvec3 p;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double t = random.chance(0.3) ? random.below(2) : random.uniform(0, 1);
+          p[axis] = std::clamp(lo[axis] + t * side[axis], lo[axis], hi[axis]);
+        }
+        const double value = vm::evaluate_distance(program, p, workspace);
+        if (!(value >= range.lo && value <= range.hi)) {
+          FAIL_CHECK(value << " not in " << range.lo << " .. " << range.hi);
+        }
+        const double judged = judge_distance(scene.graph, scene.root, p);
+        const double slack = 1e-12 * std::max(1.0, std::abs(judged));  // of the judge's own rounding
+        if (!(judged >= range.lo - slack && judged <= range.hi + slack)) {
+          FAIL_CHECK("judged " << judged << " not in " << range.lo << " .. " << range.hi << " at " << p.x << ' ' << p.y
+                               << ' ' << p.z);
+        }
+      }
+    }
+  }
+  CHECK(samples >= 1000000);
+}
+
+TEST_CASE("ranges of small boxes are narrow", "[evaluate][range]") {
+  vm::Workspace workspace;
+  int boxes = 0, narrow = 0;
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Random random(seed);
+    const vm::VerifiedProgram program = plain_lowering(scene_of(seed, false));
+    for (int i = 0; i < 10; ++i, ++boxes) {
+      const dvec3 lo = random.in_box(2);
+      const vm::Range range = vm::evaluate_range(program, lo, lo + 1e-6, workspace);
+      narrow += range.hi - range.lo <= 1e-3;
+    }
+  }
+  INFO(narrow << " of " << boxes);
+  CHECK(narrow >= 0.98 * boxes);
+}
+
+TEST_CASE("ranges of unbounded boxes are ranges", "[evaluate][range]") {
+  vm::Workspace workspace;
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto all = scenes(30);
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const vm::VerifiedProgram program = plain_lowering(all[n]);
+    INFO("scene " << n);
+    const double there = judge_distance(all[n].graph, all[n].root, {0.5, 0.25, -0.5});
+    for (const dvec3& hi : {dvec3(inf), dvec3(1, inf, 1), dvec3(1e200)}) {
+      const vm::Range range = vm::evaluate_range(program, -hi, hi, workspace);
+      CHECK(range.lo <= there);
+      CHECK(range.hi >= there);
+    }
+  }
+}
+
+TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][surface]") {
+  vm::Workspace workspace;
+  int named = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    const compiler::Scene scene = scene_of(seed, false);
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    Random random(seed);
+    for (int i = 0; i < 40; ++i) {
+      const dvec3 p = random.in_box(3);
+      const Verdict verdict = judge(scene.graph, scene.root, p);
+      INFO("seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z << ", margin " << verdict.margin);
+      if (verdict.margin > 1e-9) {
+        ++named;
+        CHECK(vm::evaluate_surface(program, p, workspace).surface == verdict.surface);
+      }
+      if (verdict.margin > 1e-3) {
+        const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+        CHECK(surface_bits(program, {&x, &y, &z}, 1, workspace)[4] == verdict.surface);
+      }
+    }
+  }
+  CHECK(named > 20000);
+}
+
+// The values of two operands are the point's x and y: planes whose distance is a coordinate.
+TEST_CASE("unary and binary opcodes on a grid", "[evaluate][opcodes]") {
+  const double k = 0.5;
+  struct Row {
+    Opcode opcode;
+    std::vector<double> immediates;
+    double (*truth)(double a, double b);
+    double units;  // allowed error, 2^-24 of the largest of |a|, |b|, k and the result
+  };
+  const auto dip = [](double a, double b) {  // of the blend of width 0.5
+    const double h = std::max(0.0, 0.5 - std::abs(a - b));
+    return h * h / 2;
+  };
+  static const auto kDip = dip;
+  const Row rows[] = {
+      {Opcode::Min, {}, [](double a, double b) { return std::min(a, b); }, 0},
+      {Opcode::Max, {}, [](double a, double b) { return std::max(a, b); }, 0},
+      {Opcode::Subtract, {}, [](double a, double b) { return std::max(a, -b); }, 0},
+      {Opcode::SmoothMin, {k, 0.25 / k}, [](double a, double b) { return std::min(a, b) - kDip(a, b); }, 4},
+      {Opcode::SmoothMax, {k, 0.25 / k}, [](double a, double b) { return std::max(a, b) + kDip(a, b); }, 4},
+      {Opcode::SmoothSubtract, {k, 0.25 / k}, [](double a, double b) { return std::max(a, -b) + kDip(a, -b); }, 4},
+      {Opcode::Offset, {k}, [](double, double b) { return b - 0.5; }, 1},
+      {Opcode::Onion, {k}, [](double, double b) { return std::abs(b) - 0.5; }, 1},
+      {Opcode::Scale, {k}, [](double, double b) { return b * 0.5; }, 0},
+      {Opcode::Negate, {}, [](double, double b) { return -b; }, 0},
+  };
+  const float grid[] = {0, 1e-38f, 1e-20f, 0.25f, 0.3f, 0.5f, 0.8f, 1, 1.25f, 3, 1e6f, 1e30f};
+  vm::Workspace workspace;
+  for (const Row& row : rows) {
+    vm::Program code;
+    code.append(Opcode::Plane, 0, {1, 0, 0, 0}, {});
+    code.append(Opcode::Plane, 0, {0, 1, 0, 0}, {});
+    code.append(row.opcode, 0, row.immediates, {});
+    if (vm::info(row.opcode).form == vm::Form::Unary) {  // leave the first operand out of the result
+      code.append(Opcode::Tee, 0, {}, {});
+      code.append(Opcode::Max, 0, {}, {});
+      code.append(Opcode::Load, 0, {}, {});
+      code.append(Opcode::Min, 0, {}, {});
+      code.locals = 1;
+    }
+    const vm::VerifiedProgram program = verified(std::move(code));
+    for (int i = 0; i < 24 * 24; ++i) {
+      const float a = grid[i % 12] * (i / 12 % 2 ? -1.f : 1.f), b = grid[i / 24 % 12] * (i / 288 ? -1.f : 1.f);
+      const float z = 0;
+      float narrow;
+      vm::evaluate_distance(program, {&a, &b, &z}, 1, &narrow, workspace);
+      const double truth = row.truth(a, b);
+      const double scale = std::max({std::abs(double(a)), std::abs(double(b)), std::abs(truth), k});
+      INFO(vm::info(row.opcode).mnemonic << ' ' << a << ' ' << b << " is " << narrow);
+      CHECK(std::abs(narrow - truth) <= row.units * 0x1p-24 * scale);
+      CHECK(std::abs(vm::evaluate_distance(program, dvec3(a, b, z), workspace) - truth) <= 1e-15 * scale);
+    }
+  }
+}
+
+TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][opcodes]") {
+  vm::Workspace workspace;
+  const std::pair<Opcode, Opcode> pairs[] = {
+      {Opcode::SmoothMin, Opcode::Min}, {Opcode::SmoothMax, Opcode::Max}, {Opcode::SmoothSubtract, Opcode::Subtract}};
+  for (const auto& [smooth, hard] : pairs) {
+    const auto program_with = [](Opcode opcode, const std::vector<double>& immediates) {
+      vm::Program code;
+      code.append(Opcode::Sphere, 0, {1}, {});
+      code.append(Opcode::Box, 0, {0.5, 1.5, 1}, {});
+      code.append(opcode, 0, immediates, {});
+      return verified(std::move(code));
+    };
+    Random random(1);
+    Cloud cloud;
+    for (int i = 0; i < 1000; ++i) {
+      const dvec3 p = random.in_box(2);
+      cloud.add(static_cast<float>(p.x), i % 7 ? static_cast<float>(p.y) : -0.f, static_cast<float>(p.z));
+    }
+    CHECK(distance_bits(program_with(smooth, {0, 0}), cloud.from(0), cloud.size(), workspace) ==
+          distance_bits(program_with(hard, {}), cloud.from(0), cloud.size(), workspace));
+  }
+}
+
+}  // namespace fathom::test

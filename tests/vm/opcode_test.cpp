@@ -1,0 +1,96 @@
+// The table of opcodes agrees with itself.
+#include <catch2/catch.hpp>
+
+#include <set>
+#include <string>
+
+#include "vm/opcode.h"
+
+namespace fathom::test {
+
+using vm::Choice;
+using vm::Form;
+using vm::Opcode;
+using vm::OpcodeInfo;
+
+namespace {
+
+template <typename Check>
+void for_each_opcode(const Check& check) {
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(vm::kOpcodeCount); ++i) {
+    const OpcodeInfo* row = vm::find_opcode(i);
+    REQUIRE(row != nullptr);
+    INFO(row->mnemonic);
+    check(i, *row);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every opcode has its own row and mnemonic", "[opcode]") {
+  std::set<std::string_view> mnemonics;
+  for_each_opcode([&](std::uint32_t i, const OpcodeInfo& row) {
+    CHECK(static_cast<std::uint32_t>(row.opcode) == i);
+    CHECK(&vm::info(row.opcode) == &row);
+    CHECK(vm::find_mnemonic(row.mnemonic) == &row);
+    CHECK(mnemonics.insert(row.mnemonic).second);
+    CHECK(row.mnemonic.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == std::string_view::npos);
+    CHECK(row.cost >= 0);
+  });
+  CHECK(vm::find_opcode(static_cast<std::uint32_t>(vm::kOpcodeCount)) == nullptr);
+  CHECK(vm::find_opcode(255) == nullptr);
+  CHECK(vm::find_opcode(256) == nullptr);
+  CHECK(vm::find_mnemonic("") == nullptr);
+  CHECK(vm::find_mnemonic("sphere ") == nullptr);
+  CHECK(vm::find_mnemonic("spher") == nullptr);
+}
+
+TEST_CASE("immediates are counted, named and told apart", "[opcode]") {
+  for_each_opcode([](std::uint32_t, const OpcodeInfo& row) {
+    std::set<std::string_view> names;
+    for (int i = 0; i < row.immediates; ++i) {
+      const std::string_view name = vm::immediate_name(row, i);
+      CHECK_FALSE(name.empty());
+      CHECK(name.find(':') == std::string_view::npos);
+      CHECK(names.insert(name).second);
+    }
+    CHECK(vm::immediate_name(row, row.immediates).empty());
+  });
+  CHECK(vm::info(Opcode::Affine).immediates == 12);
+  CHECK(vm::info(Opcode::Negate).immediates == 0);
+  CHECK(vm::info(Opcode::Sphere).immediates == 1);
+  CHECK(vm::info(Opcode::Quad).immediates == vm::info(Opcode::Triangle).immediates + 5);
+  CHECK(vm::is_integer_immediate(vm::info(Opcode::Mandelbulb), 0));
+  CHECK(vm::is_integer_immediate(vm::info(Opcode::Mandelbulb), 1));
+  CHECK_FALSE(vm::is_integer_immediate(vm::info(Opcode::Mandelbulb), 2));
+  CHECK_FALSE(vm::is_integer_immediate(vm::info(Opcode::Sphere), 0));
+  CHECK(vm::count_names("") == 0);
+  CHECK(vm::count_names("  a  bc d ") == 3);
+}
+
+TEST_CASE("forms, stack effects and choices go together", "[opcode]") {
+  for_each_opcode([](std::uint32_t, const OpcodeInfo& row) {
+    const vm::StackEffect& effect = row.effect;
+    CHECK(effect.values_needed + effect.values_change >= 0);
+    CHECK(effect.points_needed + effect.points_change >= 0);
+    if (row.form != Form::Binary) CHECK(row.choice == Choice::None);
+    if (row.form != Form::Machine) CHECK_FALSE(row.has_operand);
+    if (row.form == Form::Shape) CHECK((effect.values_change == 1 && effect.points_change == 0));
+    if (row.form == Form::Point) CHECK((effect.values_change == 0 && effect.points_change == 1));
+    if (row.form == Form::Binary) CHECK((effect.values_change == -1 && effect.values_needed == 2));
+  });
+  CHECK(vm::info(Opcode::Tee).has_operand);
+  CHECK(vm::info(Opcode::Load).has_operand);
+  CHECK(vm::info(Opcode::Tag).has_operand);
+  CHECK_FALSE(vm::info(Opcode::Drop).has_operand);
+}
+
+TEST_CASE("an opcode word takes apart into what it was made of", "[opcode]") {
+  for (std::uint32_t operand : {0u, 1u, 255u, 256u, vm::kMaxOperand}) {
+    const std::uint32_t word = vm::opcode_word(Opcode::Tag, operand);
+    CHECK(vm::operand_of(word) == operand);
+    CHECK((word & 0xff) == static_cast<std::uint32_t>(Opcode::Tag));
+  }
+}
+
+}  // namespace fathom::test
