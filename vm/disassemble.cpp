@@ -23,6 +23,11 @@ std::string place(const Program& program, const DebugEntry& entry) {
   return text;
 }
 
+// A stack's height before and after, or the one height when it stays.
+std::string height(int before, int change) {
+  return change == 0 ? fmt::format("{}", before) : fmt::format("{}->{}", before, before + change);
+}
+
 }  // namespace
 
 std::string disassemble(const VerifiedProgram& verified) {
@@ -31,16 +36,17 @@ std::string disassemble(const VerifiedProgram& verified) {
                                  program.source_name.empty() ? "program" : program.source_name, verified.instructions(),
                                  program.words.size(), verified.max_values(), verified.max_points(), program.locals,
                                  verified.cost());
-  text += "; off  words  stack  cost  op                               ; source\n";
+  text += "; off  words  values  points  cost  op                               ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
     const OpcodeInfo& row = *find_opcode(program.words[at] & 0xff);
+    const std::string value_stack = height(values, row.effect.values_change);
+    const std::string point_stack = height(points, row.effect.points_change);
     values += row.effect.values_change;
     points += row.effect.points_change;
-    const std::string stack = fmt::format("{}/{}", values, points);
     const std::string source = i < program.debug.size() ? place(program, program.debug[i]) : "";
-    text += fmt::format("  {:04}  {:5}  {:>5}  {:4}  {:<32} ; {}\n", at, 1 + row.immediates, stack, row.cost,
-                        operation(program, at, row), source);
+    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, 1 + row.immediates, value_stack, point_stack,
+                        row.cost, operation(program, at, row), source);
     at += 1 + static_cast<std::size_t>(row.immediates);
   }
   return text;

@@ -69,7 +69,7 @@ std::optional<ExitCode> read_points(const std::string& path, const Streams& stre
                                     std::vector<glm::dvec3>& points) {
   const auto read = read_text(path, streams);
   if (const auto* unreadable = std::get_if<Unreadable>(&read)) {
-    return fail(streams, kIo, fmt::format("cannot read `{}`: {}", path, unreadable->reason));
+    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
   }
   std::string_view rest = std::get<std::string>(read);
   for (int number = 1; !rest.empty(); ++number) {

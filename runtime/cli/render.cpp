@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
+#include <system_error>
 
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
@@ -42,8 +43,9 @@ std::optional<std::string> check_stats_path(const std::string& path) {
   std::error_code ignored;
   if (path == "-" || (is_special(path) && !std::filesystem::is_directory(path, ignored))) return std::nullopt;
   if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder", path);
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (::access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0) return std::nullopt;
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return std::nullopt;
   return fmt::format("cannot write to the folder `{}`: {}", folder, std::generic_category().message(errno));
 }
 

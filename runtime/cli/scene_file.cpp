@@ -44,10 +44,12 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const S
   return read_all(file);
 }
 
+std::string quoted(const std::string& path) { return path == "-" ? "standard input" : "`" + path + "`"; }
+
 std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
   auto text = read_text(arguments.path, streams);
   if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    return fail(streams, kIo, fmt::format("cannot read `{}`: {}", arguments.path, unreadable->reason));
+    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(arguments.path), unreadable->reason));
   }
   return compiler::Source(arguments.path == "-" ? "<stdin>" : arguments.path, std::get<std::string>(std::move(text)));
 }

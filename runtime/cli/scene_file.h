@@ -25,6 +25,9 @@ struct Unreadable {
 };
 std::variant<std::string, Unreadable> read_text(const std::string& path, const Streams& streams);
 
+// The file's name for messages.
+std::string quoted(const std::string& path);
+
 // The scene's text, or the exit code after a message.
 std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
 

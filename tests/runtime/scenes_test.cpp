@@ -1,0 +1,150 @@
+// Every shipped scene: it compiles without a warning, and its picture agrees with a stored mean (tests/images/README.md).
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "compiler/compile.h"
+#include "runtime/render.h"
+#include "tests/support/golden.h"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::compiler;
+namespace fs = std::filesystem;
+
+constexpr int kColumns = 16, kRows = 9, kCellSide = 3;  // cells, pixels
+constexpr std::size_t kValues = kColumns * kRows * 3;
+
+std::vector<fs::path> scene_files() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+CompiledScene compile_file(const fs::path& file) {
+  const Source source(file.filename().string(), tests::read_file(file));
+  Diagnostics diagnostics;
+  auto scene = compile(source, diagnostics);
+  CHECK(diagnostics.print(source, ErrorFormat::Text) == "");
+  REQUIRE(scene);
+  return std::move(*scene);
+}
+
+// Means of values over independent renders, and the standard errors of those means.
+struct Estimate {
+  std::vector<double> mean, error;
+  int renders = 0;
+};
+
+// [cell][channel]
+std::vector<double> cells(const runtime::Film& film) {
+  std::vector<double> values(kValues, 0.0);
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x) {
+      const glm::dvec3 radiance = film.means(x, y).radiance;
+      const std::size_t cell = static_cast<std::size_t>(y / kCellSide * kColumns + x / kCellSide);
+      for (int c = 0; c < 3; ++c) {
+        values[3 * cell + static_cast<std::size_t>(c)] += radiance[c] / (kCellSide * kCellSide);
+      }
+    }
+  }
+  return values;
+}
+
+Estimate estimate(const CompiledScene& scene, int renders, std::uint64_t first_seed) {
+  runtime::RenderOptions options;
+  options.width = kColumns * kCellSide;
+  options.height = kRows * kCellSide;
+  options.spp = 64;
+  std::vector<double> sum(kValues, 0.0), squares(kValues, 0.0);
+  for (int i = 0; i < renders; ++i) {
+    options.seed = first_seed + static_cast<std::uint64_t>(i);
+    const std::vector<double> values = cells(runtime::render(scene, options).film);
+    for (std::size_t v = 0; v < kValues; ++v) {
+      sum[v] += values[v];
+      squares[v] += values[v] * values[v];
+    }
+  }
+  Estimate result{std::vector<double>(kValues), std::vector<double>(kValues), renders};
+  for (std::size_t v = 0; v < kValues; ++v) {
+    result.mean[v] = sum[v] / renders;
+    const double variance = std::max(0.0, squares[v] / renders - result.mean[v] * result.mean[v]) / (renders - 1);
+    result.error[v] = std::sqrt(variance);
+  }
+  return result;
+}
+
+fs::path reference_file(const fs::path& scene) {
+  return fs::path(FATHOM_SOURCE_DIR) / "tests/images" / (scene.stem().string() + ".txt");
+}
+
+void store(const fs::path& scene, const Estimate& e) {
+  std::ofstream out(reference_file(scene));
+  out << "# " << scene.filename().string() << ": mean r g b, standard error r g b; " << e.renders << " renders\n";
+  for (std::size_t v = 0; v < kValues; v += 3) {
+    for (std::size_t c = 0; c < 3; ++c) out << e.mean[v + c] << ' ';
+    out << e.error[v] << ' ' << e.error[v + 1] << ' ' << e.error[v + 2] << '\n';
+  }
+}
+
+Estimate load(const fs::path& scene) {
+  std::ifstream in(reference_file(scene));
+  std::string comment;
+  std::getline(in, comment);
+  Estimate e{std::vector<double>(kValues), std::vector<double>(kValues), 64};
+  for (std::size_t v = 0; v < kValues; v += 3) {
+    in >> e.mean[v] >> e.mean[v + 1] >> e.mean[v + 2] >> e.error[v] >> e.error[v + 1] >> e.error[v + 2];
+  }
+  REQUIRE(in);
+  return e;
+}
+
+}  // namespace
+
+TEST_CASE("scenes open with a comment and compile without a word", "[scenes]") {
+  REQUIRE(scene_files().size() >= 5);
+  for (const fs::path& file : scene_files()) {
+    CAPTURE(file.filename().string());
+    CHECK(tests::read_file(file).starts_with("//"));
+    compile_file(file);
+  }
+}
+
+TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heavy]") {
+  const bool update = std::getenv("FATHOM_UPDATE_IMAGES") != nullptr;
+  for (const fs::path& file : scene_files()) {
+    CAPTURE(file.filename().string());
+    const CompiledScene scene = compile_file(file);
+    if (update) {
+      store(file, estimate(scene, 64, 1000));
+      continue;
+    }
+    const Estimate reference = load(file), now = estimate(scene, 8, 1);
+    // Welch's t with at least 7 degrees of freedom: |t| > 4.8 has probability 0.002, so more than 2 % of cells beyond it
+    // does not happen by chance; and no cell may be beyond 25 (probability 2e-5 for any of 432).
+    // 1e-5 is allowed for the rounding of the stored digits, where nothing varies.
+    std::size_t far_off = 0;
+    double worst = 0, brighter = 0, variance = 0;
+    for (std::size_t v = 0; v < kValues; ++v) {
+      const double difference = now.mean[v] - reference.mean[v];
+      const double error = std::hypot(now.error[v], reference.error[v]) + 1e-5 * (1 + std::abs(reference.mean[v]));
+      worst = std::max(worst, std::abs(difference) / error);
+      far_off += std::abs(difference) > 4.8 * error;
+      brighter += difference;
+      variance += error * error;
+    }
+    INFO("largest |t| " << worst << ", mean difference in errors " << brighter / std::sqrt(variance));
+    CHECK(far_off <= kValues / 50);
+    CHECK(worst < 25);
+    // Cells share no path, so their errors are independent but for the three channels: 3 x 5 standard deviations.
+    CHECK(std::abs(brighter) < 15 * std::sqrt(variance));
+  }
+}
