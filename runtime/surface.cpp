@@ -45,7 +45,7 @@ void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hi
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
     points[i].normal = oriented({gx[i], gy[i], gz[i]}, hits[i]);
     points[i].material = scene.surfaces[surface[i]].material;
-    points[i].offset = std::max(2 * hits[i].width, kOffsetErrors * distance_error(x[i], y[i], z[i]));
+    points[i].offset = std::max(2 * hits[i].width, kOffsetErrors * distance_error(x[i], y[i], z[i], 0));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
@@ -88,6 +89,7 @@ int main(int argc, char** argv) {
   const bool dumb = term == nullptr || std::string_view(term) == "dumb";
   const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
   std::ios::sync_with_stdio(false);
+  std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // how a failed CHECK ends, after its message
   const Streams streams{std::cin, std::cout, std::cerr, terminal && !dumb, color};
   try {
     return run_and_flush(std::vector<std::string>(argv + 1, argv + argc), streams);
