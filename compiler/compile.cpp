@@ -100,7 +100,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        .certified = known.certified,
                        .node_count = count_nodes(field),
                        .summary = ""};
-  result.summary = fmt::format("{} nodes, {}", result.node_count, describe(known));
+  result.summary =
+      fmt::format("{} {}, {}", result.node_count, result.node_count == 1 ? "node" : "nodes", describe(known));
   return result;
 }
 

@@ -110,6 +110,11 @@ std::optional<std::string> write_image(const Picture& picture, const std::string
 }
 
 std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path) {
+  // Renaming over a device or a folder would destroy it.
+  struct stat existing {};
+  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
+    return fmt::format("cannot write `{}`: it is not a regular file", path);
+  }
   std::string beside = path + ".XXXXXX";
   const int file = ::mkstemp(beside.data());
   if (file < 0) return fmt::format("cannot write `{}`: {}", path, reason());

@@ -49,7 +49,7 @@ TEST_CASE("sampler: pairs are even, over dimensions and over neighbouring pixels
   CHECK(chi_square(samples, n / 256.0) < limit);
 }
 
-TEST_CASE("sampler: numbers lie in [0,1)", "[runtime]") {
+TEST_CASE("sampler: numbers lie from 0 up to, but not at, 1", "[runtime]") {
   Sampler sampler(1, 2, 3, 4);
   for (int i = 0; i < 1 << 20; ++i) {
     const float u = sampler.next();
