@@ -117,7 +117,7 @@ TEST_CASE("the gutter is as wide as the line number", "[diagnostics]") {
         "     = help: second\n");
 }
 
-TEST_CASE("carets stay on their line; control characters do not reach the terminal", "[diagnostics]") {
+TEST_CASE("carets stay on their line, and control characters do not reach the terminal", "[diagnostics]") {
   Source source("toy.json", "ab\x1b[2J\ncd");
   Diagnostics diagnostics;
   diagnostics.error("E0102", {1, 9}, "message");

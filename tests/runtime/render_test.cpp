@@ -182,7 +182,7 @@ TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {
   CHECK(result.stats.primary_rays == 160u * 90u * 8u);
 }
 
-TEST_CASE("render: progress ends at one; a cancelled render returns", "[render]") {
+TEST_CASE("render: progress ends at one, and a cancelled render returns", "[render]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(64, 64, 1);
   double last = 0;
