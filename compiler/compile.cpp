@@ -86,20 +86,15 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   }
 
   const Knowledge known = analyse(field.graph)[field.root];
-  CompiledScene result{.source = std::move(source),
-                       .distance = std::move(*distance),
-                       .surface = std::move(*surface),
-                       .surfaces = std::move(elaborated->surfaces),
-                       .materials = std::move(elaborated->materials),
-                       .camera = elaborated->camera,
-                       .film = elaborated->film,
-                       .settings = elaborated->settings,
-                       .background = elaborated->background,
-                       .bound = known.box,
-                       .lipschitz = known.lipschitz,
-                       .certified = known.certified,
-                       .node_count = count_nodes(field),
-                       .summary = ""};
+  CompiledScene result{static_cast<SceneTables&&>(*elaborated),
+                       std::move(source),
+                       std::move(*distance),
+                       std::move(*surface),
+                       known.box,
+                       known.lipschitz,
+                       known.certified,
+                       count_nodes(field),
+                       ""};
   result.summary =
       fmt::format("{} {}, {}", result.node_count, result.node_count == 1 ? "node" : "nodes", describe(known));
   return result;

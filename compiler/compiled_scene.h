@@ -60,16 +60,20 @@ struct Background {
   glm::dvec3 bottom{0.0}, top{0.0};
 };
 
-struct CompiledScene {
-  Source source;
-  vm::VerifiedProgram distance;  // the field
-  vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
+// What a scene says beside its geometry.
+struct SceneTables {
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   Camera camera;
   Film film;
   RenderSettings settings;
   Background background;
+};
+
+struct CompiledScene : SceneTables {
+  Source source;
+  vm::VerifiedProgram distance;  // the field
+  vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
 
   Box bound;            // the field is positive outside
   double lipschitz = 1; // |f(p) - f(q)| <= lipschitz * |p - q|

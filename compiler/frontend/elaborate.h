@@ -13,14 +13,8 @@
 namespace fathom::compiler {
 
 // The scene with its tables; `scene.root` is the union of the objects, each in a Paint node with its surface.
-struct Elaborated {
+struct Elaborated : SceneTables {
   Scene scene;
-  std::vector<Surface> surfaces;
-  std::vector<Material> materials;
-  Camera camera;
-  Film film;
-  RenderSettings settings;
-  Background background;
 };
 
 // Reports every semantic error of the file; nullopt when there was any.
