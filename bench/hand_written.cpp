@@ -66,18 +66,17 @@ HWY_INLINE B dot(V a, P p) { return c(a.x) * p.x + c(a.y) * p.y + c(a.z) * p.z; 
 template <std::size_t N>
 HWY_INLINE B polygon(P p, const V (&v)[N], double thickness) {
   const V normal = cross(v[1] - v[0], v[0] - v[N - 1]);
-  B nearest = c(1e30);
-  auto outside = zero() < zero();
+  B nearest = c(1e30), inward = c(1e30);
   for (std::size_t i = 0; i < N; ++i) {
     const V e = v[(i + 1) % N] - v[i];
     const P w = at(p, v[i].x, v[i].y, v[i].z);
     const B t = clamp(dot(e, w) * c(1 / dot(e, e)), 0, 1);
     const B x = c(e.x) * t - w.x, y = c(e.y) * t - w.y, z = c(e.z) * t - w.z;
     nearest = min(nearest, x * x + y * y + z * z);
-    outside = outside | (dot(cross(e, normal), w) < zero());
+    inward = min(inward, dot(cross(e, normal), w));
   }
   const B height = dot(normal, at(p, v[0].x, v[0].y, v[0].z));
-  return sqrt(select(outside, nearest, height * height * c(1 / dot(normal, normal)))) - c(thickness);
+  return sqrt(select(inward < zero(), nearest, height * height * c(1 / dot(normal, normal)))) - c(thickness);
 }
 
 HWY_INLINE B primitives(P p) {

@@ -57,8 +57,11 @@ Box image(const Affine& a, const Box& box) {
   return result;
 }
 
-// Jacobi's method on the symmetric matrix of the rows' dot products (Golub & Van Loan, "Matrix Computations", 8.5).
-Stretch stretch(const Affine& a) {
+namespace {
+
+// The largest singular value, by Jacobi's method on the symmetric matrix of the rows' dot products (Golub & Van Loan,
+// "Matrix Computations", 8.5).
+double most_stretch(const Affine& a) {
   double m[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) m[i][j] = glm::dot(a.rows[i], a.rows[j]);
@@ -82,9 +85,13 @@ Stretch stretch(const Affine& a) {
       }
     }
   }
-  const auto [least, most] = std::minmax({m[0][0], m[1][1], m[2][2]});
-  return {std::sqrt(std::max(0.0, least)), std::sqrt(std::max(0.0, most))};
+  return std::sqrt(std::max({m[0][0], m[1][1], m[2][2]}));
 }
+
+}  // namespace
+
+// The least through the inverse: squaring loses the digits of a small singular value beside a large one.
+Stretch stretch(const Affine& a) { return {1 / most_stretch(inverse(a)), most_stretch(a)}; }
 
 bool is_axis_aligned(const Affine& a) {
   return std::all_of(a.rows.begin(), a.rows.end(),

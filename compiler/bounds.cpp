@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "compiler/affine.h"
 
@@ -12,9 +13,18 @@ namespace {
 
 constexpr double kSqrt3 = 1.7320508075688772;
 
+// The largest coordinate in the box; infinite when it has no end.
+double largest_coordinate(const Box& box) {
+  if (box.empty()) return 0;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(box.lo[i]), std::abs(box.hi[i])});
+  return largest;
+}
+
 // The surface moved out by `by`.
 Knowledge offset(Knowledge k, double by) {
   if (by <= 0) return k;
+  k.magnitude += by;
   if (!(k.reach_max > 0)) {
     k.box = Box::everything();
     return k;
@@ -31,6 +41,11 @@ Knowledge of_primitive(const NodeSpec& row, std::span<const double> params) {
   k.inside = row.inside;
   k.certified = row.outside != Exactness::Estimate;
   if (!k.certified) k.reach = k.reach_max = 0;
+  if (row.kind == Kind::Triangle || row.kind == Kind::Quad) {
+    // They are evaluated from their first corner: at most that far off, or their own size.
+    const double first_corner = std::max({std::abs(params[0]), std::abs(params[1]), std::abs(params[2])});
+    k.magnitude = std::min(first_corner, glm::length(k.box.hi - k.box.lo));
+  }
   return k;
 }
 
@@ -40,6 +55,9 @@ Knowledge of_transform(std::span<const double> params, const Knowledge& child) {
   const Stretch s = stretch(to_child);
   Knowledge k = child;
   k.box = image(inverse(to_child), child.box);
+  // In the child's space a point lies as far off as the translation adds, but near the surface within the child's box.
+  const glm::dvec3 t = glm::abs(to_child.translation);
+  k.magnitude = factor * (std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box)) + child.magnitude);
   // A product that is 1 but for rounding is 1: the factor is the smallest scale, the most stretch its inverse.
   const double slope = factor * s.most;
   k.lipschitz = child.lipschitz * (std::abs(slope - 1) < 1e-12 ? 1 : slope);
@@ -64,6 +82,7 @@ Knowledge together(std::span<const NodeId> children, const std::vector<Knowledge
     k.reach_max = std::min(k.reach_max, c.reach_max);
     k.outside = std::max(k.outside, c.outside);
     k.inside = std::max(k.inside, c.inside);
+    k.magnitude = std::max(k.magnitude, c.magnitude);
   }
   return k;
 }
@@ -97,7 +116,9 @@ Knowledge of_subtraction(std::span<const NodeId> children, const std::vector<Kno
   return k;
 }
 
-Knowledge blended(Knowledge k) {
+// Of width `width`: the operands' distances count up to there.
+Knowledge blended(Knowledge k, double width) {
+  k.magnitude += width;
   k.outside = std::max(k.outside, Exactness::Bound);
   k.inside = std::max(k.inside, Exactness::Bound);
   return k;
@@ -125,11 +146,11 @@ Knowledge of_node(const Graph& graph, NodeId id, const std::vector<Knowledge>& k
     case Kind::SmoothUnion:
       // One blend lowers the distance by at most k/4; many by at most k, for an operand k away changes nothing.
       return blended(offset(of_union(children, known),
-                            std::min(1.0, 0.25 * static_cast<double>(children.size() - 1)) * params[0]));
-    case Kind::Intersection:
-    case Kind::SmoothIntersection: return blended(of_intersection(children, known));
-    case Kind::Subtraction:
-    case Kind::SmoothSubtraction: return of_subtraction(children, known);
+                            std::min(1.0, 0.25 * static_cast<double>(children.size() - 1)) * params[0]), params[0]);
+    case Kind::Intersection: return of_intersection(children, known);
+    case Kind::SmoothIntersection: return blended(of_intersection(children, known), params[0]);
+    case Kind::Subtraction: return of_subtraction(children, known);
+    case Kind::SmoothSubtraction: return blended(of_subtraction(children, known), params[0]);
     default: return of_primitive(spec(kind), params);
   }
 }

@@ -1,5 +1,5 @@
 // What the compiler knows of every node: where it can be solid, how fast its distance changes, how far to trust it.
-// Tested by: tests/compiler/shapes_test.cpp
+// Tested by: tests/compiler/bounds_test.cpp, tests/compiler/passes_test.cpp
 #pragma once
 
 #include <string>
@@ -20,6 +20,10 @@ struct Knowledge {
   // how far an offset by r can move the surface out of the box, r / reach_max. Per-axis distances survive
   // intersection, Euclidean ones rotation; reach <= reach_max <= sqrt 3 reach whenever both are known.
   double reach_max = 1, reach = 1;
+  // Near the surface at p, evaluating f meets no coordinate or distance larger than |p| + magnitude, scene units: its
+  // float error is at most 10 * 2^-24 * (max(1, |p|, |f|) + magnitude). Large where large numbers cancel: a ball of
+  // radius 1000 whose top is the ground, a group moved far away and back.
+  double magnitude = 0;
 };
 
 // One entry per node id, children first.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <utility>
 
 #include "compiler/bounds.h"
@@ -30,6 +32,7 @@ constexpr Pass kPasses[] = {
 };
 
 constexpr std::size_t kMaxInstructions = 1'000'000;
+constexpr std::size_t kMaxDepth = 5000;  // lower() recurses once a level
 
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
@@ -44,7 +47,21 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   return scene;
 }
 
+// Of the longest chain of nodes from the root.
+std::size_t depth(const Scene& scene) {
+  std::vector<std::size_t> depths(scene.root + 1, 1);
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    for (NodeId child : scene.graph.children(id)) depths[id] = std::max(depths[id], depths[child] + 1);
+  }
+  return depths[scene.root];
+}
+
 std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, Diagnostics& diagnostics) {
+  if (const std::size_t deep = depth(scene); deep > kMaxDepth) {
+    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
+                      fmt::format("nodes lie {} deep within each other; at most {} are allowed", deep, kMaxDepth));
+    return std::nullopt;
+  }
   std::optional<vm::Program> program = lower(scene, source, kMaxInstructions);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
@@ -67,6 +84,22 @@ std::size_t count_nodes(const Scene& scene) {
   return count;
 }
 
+// Warns when float32 knows distances near the surface less well than a ten-thousandth of what the camera looks at.
+void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
+                          Diagnostics& diagnostics) {
+  constexpr double kRoundings = 10 * 0x1p-24;  // the float error per unit of magnitude (vm/opcodes.def)
+  const double error = kRoundings * known[scene.root].magnitude;
+  if (error <= 1e-4 * glm::length(camera.target - camera.position)) return;
+  NodeId worst = scene.root;
+  for (NodeId child : scene.graph.children(scene.root)) {
+    if (known[child].magnitude == known[scene.root].magnitude) worst = child;
+  }
+  diagnostics.warning("W0403", scene.graph.origin(worst).span,
+                      fmt::format("numbers around {:.3g} cancel here: in float its surface is known to {:.1g}",
+                                  known[worst].magnitude, error),
+                      "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
+}
+
 }  // namespace
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
@@ -85,13 +118,16 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     if (!surface) return std::nullopt;
   }
 
-  const Knowledge known = analyse(field.graph)[field.root];
+  const std::vector<Knowledge> all_known = analyse(field.graph);
+  const Knowledge& known = all_known[field.root];
+  warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(source),
                        std::move(*distance),
                        std::move(*surface),
                        known.box,
                        known.lipschitz,
+                       known.magnitude,
                        known.certified,
                        count_nodes(field),
                        ""};

@@ -46,6 +46,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},
+    {"W0403", "large numbers cancel in float"},
 };
 
 }  // namespace fathom::compiler

@@ -32,6 +32,9 @@ enum class Kind : std::uint8_t {
   Paint,
 };
 
+// A blend narrower than this changes no float and counts as none.
+inline constexpr double kLeastBlend = 1e-30;
+
 using NodeId = std::uint32_t;
 
 // Where a node was first written, and the name the scene gave it ("" when none).

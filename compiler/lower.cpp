@@ -160,7 +160,7 @@ class Lowering {
     const auto blend = [&](Opcode opcode) {
       const double k = params[0];
       // A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by it.
-      append(node, opcode, 0, {k, k > 0 ? 0.25 / k : 0});
+      append(node, opcode, 0, {k, k > kLeastBlend ? 0.25 / k : 0});
     };
     switch (graph_.kind(node)) {
       case Kind::Union: return append(node, Opcode::Min, 0, {});

@@ -5,9 +5,21 @@
 
 namespace fathom::compiler {
 
+namespace {
+
+constexpr std::size_t kStride = 256;
+
+// Every byte but a UTF-8 continuation byte begins a code point.
+bool begins_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
+
+}  // namespace
+
 Source::Source(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
   line_starts_.push_back(0);
+  std::uint32_t code_points = 0;
   for (std::size_t i = 0; i < text_.size(); ++i) {
+    if (i % kStride == 0) code_points_.push_back(code_points);
+    code_points += begins_code_point(text_[i]);
     if (text_[i] == '\n') line_starts_.push_back(static_cast<std::uint32_t>(i + 1));
   }
 }
@@ -17,10 +29,16 @@ Position Source::locate(std::uint32_t offset) const {
   offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const std::uint32_t start = *(after - 1);
-  // Every byte but a UTF-8 continuation byte begins a code point.
-  const auto points = std::count_if(text_.begin() + start, text_.begin() + offset,
-                                    [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
-  return {static_cast<std::uint32_t>(after - line_starts_.begin()), static_cast<std::uint32_t>(points) + 1};
+  return {static_cast<std::uint32_t>(after - line_starts_.begin()),
+          code_points_before(offset) - code_points_before(start) + 1};
+}
+
+std::uint32_t Source::code_points_before(std::uint32_t offset) const {
+  if (code_points_.empty()) return 0;
+  const std::size_t stride = std::min(offset / kStride, code_points_.size() - 1);
+  const auto from = text_.begin() + static_cast<std::ptrdiff_t>(stride * kStride);
+  return code_points_[stride] +
+         static_cast<std::uint32_t>(std::count_if(from, text_.begin() + offset, begins_code_point));
 }
 
 std::string_view Source::line(std::uint32_t number) const {

@@ -31,7 +31,10 @@ class Source {
 
  private:
   std::string name_, text_;
+  std::uint32_t code_points_before(std::uint32_t offset) const;
+
   std::vector<std::uint32_t> line_starts_;
+  std::vector<std::uint32_t> code_points_;  // before every kStride-th byte: positions in long lines cost no more
 };
 
 }  // namespace fathom::compiler

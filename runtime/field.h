@@ -18,6 +18,7 @@ struct Field {
   double far;           // rays end here, scene units; may be infinite when the bound is finite
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
+  float magnitude;  // scene units (compiler/bounds.h)
 };
 
 // `far` empty: infinite in a bounded scene, else kDefaultFar.
@@ -25,12 +26,13 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
 
 inline constexpr double kDefaultFar = 1e4;  // scene units; the horizon of an unbounded scene
 
-// d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * max(1, |p|, |d|)
-// (vm/opcodes.def). The largest error measured over all primitives is 9 of these units; most stay below 6.
+// d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) + magnitude).
+// The largest error measured over all primitives is 9 of these units; most stay below 6 (tests/compiler/shapes_test.cpp).
 inline constexpr float kDistanceError = 10 * 0x1p-24f;
 
-inline float distance_error(float x, float y, float z, float distance) {
-  return kDistanceError * std::max({1.0f, std::abs(x), std::abs(y), std::abs(z), std::abs(distance)});
+inline float distance_error(const Field& field, float x, float y, float z, float distance) {
+  return kDistanceError *
+         (std::max({1.0f, std::abs(x), std::abs(y), std::abs(z), std::abs(distance)}) + field.magnitude);
 }
 
 }  // namespace fathom::runtime

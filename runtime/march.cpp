@@ -97,7 +97,7 @@ void Stream::advance() {
   // Downwards: a lane that ends is replaced by the last one, which has had its turn.
   for (int i = live_ - 1; i >= 0; --i) {
     const std::size_t n = static_cast<std::size_t>(i);
-    const float error = distance_error(x_[n], y_[n], z_[n], distance_[n]);
+    const float error = distance_error(field_, x_[n], y_[n], z_[n], distance_[n]);
     const LaneVerdict verdict = update(lanes_[n], distance_[n], error, rules);
     if (verdict != LaneVerdict::Going) finish(i, verdict);
   }

@@ -12,8 +12,9 @@ namespace {
 
 // The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
 constexpr float kLeastCosine = 1e-4f;
-// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side.
-constexpr float kOffsetErrors = 16;
+// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large numbers
+// cancel d_f's bound is loose, and twice it is enough.
+constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
 
 glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
   const float length = std::sqrt(glm::dot(gradient, gradient));
@@ -45,7 +46,10 @@ void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hi
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
     points[i].normal = oriented({gx[i], gy[i], gz[i]}, hits[i]);
     points[i].material = scene.surfaces[surface[i]].material;
-    points[i].offset = std::max(2 * hits[i].width, kOffsetErrors * distance_error(x[i], y[i], z[i], 0));
+    const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
+    const float magnitude = static_cast<float>(scene.magnitude);
+    points[i].offset =
+        std::max(2 * hits[i].width, kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * magnitude));
   }
 }
 

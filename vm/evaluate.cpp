@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 // SSSE3 machines run the portable code; each target costs compile time and a test run.
@@ -71,6 +72,11 @@ HWY_INLINE void store(std::size_t size, std::size_t used, float* to, const Value
   }
 }
 
+// An overflowing derivative has no direction.
+HWY_INLINE Batch finite_or_zero(Batch a) {
+  return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
+}
+
 void distance_batch(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
                     Workspace& workspace) {
   for_each_block<Batch>(program, points, count, workspace,
@@ -85,9 +91,9 @@ void surface_batch(const VerifiedProgram& program, Points points, std::size_t co
   for_each_block<T>(program, points, count, workspace,
                     [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
     store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v; });
-    store(size, used, out.gradient_x + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dx; });
-    store(size, used, out.gradient_y + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dy; });
-    store(size, used, out.gradient_z + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.dz; });
+    store(size, used, out.gradient_x + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dx); });
+    store(size, used, out.gradient_y + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dy); });
+    store(size, used, out.gradient_z + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dz); });
     float surfaces[kSlot<T> * kLanes];
     store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
     std::transform(surfaces, surfaces + size, out.surface + begin, [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
@@ -115,8 +121,9 @@ void evaluate_surface(const VerifiedProgram& program, Points points, std::size_t
 
 void* Workspace::reserve(std::size_t bytes) {
   if (bytes > size_) {
-    size_ = bytes + bytes / 2;
-    memory_.reset(::operator new(size_, std::align_val_t(64)));
+    const std::size_t larger = bytes + bytes / 2;
+    memory_.reset(::operator new(larger, std::align_val_t(64)));
+    size_ = larger;
   }
   return memory_.get();
 }

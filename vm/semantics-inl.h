@@ -166,7 +166,6 @@ HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t ite
   const T distance = sqrt(m);
   T dw = p.x * zero + one;
   for (std::uint32_t i = 0; i < iterations; ++i) {
-    const auto escaped = m > bailout2;
     const auto active = m < bailout2;
     if (!any(active)) break;
     const T grown = min(huge, integer_power(sqrt(m), power - 1) * dw * n + one);
@@ -178,10 +177,10 @@ HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t ite
     T cos_a = select(on_axis, p.x * zero + one, clamp_unit(w.z / safe_rho));
     T sin_a = select(on_axis, p.x * zero, clamp_unit(w.x / safe_rho));
     complex_power(cos_a, sin_a, power);
-    w.x = select(escaped, w.x, p.x + im * sin_a);
-    w.y = select(escaped, w.y, p.y + re);
-    w.z = select(escaped, w.z, p.z + im * cos_a);
-    dw = select(escaped, dw, grown);
+    w.x = select(active, p.x + im * sin_a, w.x);
+    w.y = select(active, p.y + re, w.y);
+    w.z = select(active, p.z + im * cos_a, w.z);
+    dw = select(active, grown, dw);
     m = sqr(w.x) + sqr(w.y) + sqr(w.z);
   }
   m = max(tiny, m);

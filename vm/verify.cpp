@@ -27,6 +27,9 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
       }
     } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
       return fmt::format("{}: {} is not finite", row.mnemonic, immediate_name(row, i));
+    } else if (static_cast<float>(program.wide[word]) != std::bit_cast<float>(bits)) {
+      return fmt::format("{}: {} is {} in the code but {} in the wide table", row.mnemonic, immediate_name(row, i),
+                         std::bit_cast<float>(bits), program.wide[word]);
     }
   }
   return std::nullopt;

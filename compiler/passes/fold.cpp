@@ -52,7 +52,7 @@ Scene fold(const Scene& scene) {
       case Kind::SmoothIntersection:
       case Kind::SmoothSubtraction:
         if (children.size() == 1) return children[0];
-        if (params[0] == 0) return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
+        if (params[0] <= kLeastBlend) return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
         break;
       default: break;
     }

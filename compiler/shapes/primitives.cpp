@@ -39,7 +39,24 @@ dvec3 area_vector(const std::vector<dvec3>& v) {
 constexpr const char* kCornerNames = "abcd";
 
 // Beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p escapes, for |w| >= |p| grows: the Mandelbulb lies within.
-double escape_radius(double power) { return std::pow(2.0, 1.0 / (power - 1)); }
+// By Newton's method on r^(n-1) = 2: libm's pow differs between machines.
+double escape_radius(double power) {
+  double r = 2;
+  for (int i = 0; i < 64; ++i) {
+    double rest = 1;  // r^(n-2)
+    for (int k = 0; k < static_cast<int>(power) - 2; ++k) rest *= r;
+    r -= (r - 2 / rest) / (power - 1);
+  }
+  return r;
+}
+
+// The corners in one plane exactly: a quad's may be off by the tolerance of check_quad.
+std::vector<dvec3> flat_corners(Params p) {
+  std::vector<dvec3> v = corners(p);
+  const dvec3 normal = glm::normalize(area_vector(v));
+  for (dvec3& corner : v) corner -= glm::dot(corner - v[0], normal) * normal;
+  return v;
+}
 
 Complaint check_sheet(const std::vector<dvec3>& v) {
   const double scale = longest_side(v);
@@ -136,7 +153,7 @@ std::vector<double> rounded_cylinder_immediates(Params p) { return {p[0] - p[2],
 // The side's outward normal in the half-plane (distance from the axis, y), and its length.
 std::vector<double> cone_immediates(Params p) {
   const double bottom = p[0], top = p[1], half_height = p[2];
-  const double slant = std::hypot(2 * half_height, bottom - top);
+  const double slant = std::sqrt(4 * half_height * half_height + (bottom - top) * (bottom - top));
   return {half_height, bottom, top, 2 * half_height / slant, (bottom - top) / slant, slant};
 }
 
@@ -150,7 +167,7 @@ std::vector<double> round_cone_immediates(Params p) {
 // A frame with the first corner at its origin, the first edge along x and the normal along z; the first edge's length;
 // for each further edge its start, its direction and its length in that frame's xy plane; the thickness.
 std::vector<double> sheet_immediates(Params p) {
-  const std::vector<dvec3> v = corners(p);
+  const std::vector<dvec3> v = flat_corners(p);
   const dvec3 z = glm::normalize(area_vector(v));
   const dvec3 x = glm::normalize(v[1] - v[0]);
   const dvec3 y = glm::cross(z, x);
@@ -199,7 +216,7 @@ Box round_cone_bound(Params p) {
 
 Box sheet_bound(Params p) {
   Box box;
-  for (const dvec3& corner : corners(p)) box = unite(box, {corner, corner});
+  for (const dvec3& corner : flat_corners(p)) box = unite(box, {corner, corner});
   return box.grown(p.back());
 }
 

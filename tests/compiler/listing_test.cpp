@@ -55,3 +55,21 @@ TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[
     CHECK(scene->distance.max_values() == 2);
   }
 }
+
+// Once, a long chain of named nodes overflowed the call stack.
+TEST_CASE("nodes too deep within each other are an error", "[compile]") {
+  for (const int links : {4990, 5100, 60000}) {
+    std::string nodes = R"("n0": {"type": "sphere", "radius": 1})";
+    for (int i = 1; i <= links; ++i) {
+      nodes += ", \"n" + std::to_string(i) + R"(": {"type": "onion", "thickness": 0.001, "of": {"use": "n)" +
+               std::to_string(i - 1) + "\"}}";
+    }
+    const Source source("scene.json", R"({"version": 1, "nodes": {)" + nodes + R"(}, "objects": [{"use": "n)" +
+                                          std::to_string(links) + "\"}]}");
+    Diagnostics diagnostics;
+    const auto scene = compile(source, diagnostics);
+    CAPTURE(links);
+    CHECK(scene.has_value() == (links < 5000));
+    if (!scene) CHECK(diagnostics.all()[0].code == "E0305");
+  }
+}

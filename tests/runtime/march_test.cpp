@@ -390,7 +390,8 @@ TEST_CASE("march: far from the origin the error is that of float coordinates", "
 
 TEST_CASE("march: an arrival depends on its ray alone", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "torus", "major_radius": 1, "minor_radius": 0.25},
-      {"type": "box", "half_size": [0.2, 0.4, 0.3], "translate": [0.4, 0.1, 0]}, {"type": "sphere", "radius": 0.3}])");
+      {"type": "box", "half_size": [0.2, 0.4, 0.3], "translate": [0.4, 0.1, 0]},
+      {"type": "sphere", "radius": 0.3}])");
   const Field field = make_field(scene);
   const std::vector<Ray> rays = rays_at_sphere(2000, 4);
   const MarchResult together = march(field, rays);

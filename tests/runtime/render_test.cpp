@@ -215,4 +215,20 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
 }
 
 }  // namespace
+// Once, new rays from the top of a huge box met it again: float knows its surface only to 5e-4 (numbers of 10^4 cancel),
+// and they started closer than that. A plane is the same floor without the large numbers.
+TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render]") {
+  const auto with_floor = [](const std::string& floor) {
+    return scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 1.5, 4], "target": [0, 0.5, 0]},
+        "objects": [)" + floor + R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]}])");
+  };
+  const RenderOptions options = options_of(64, 36, 64);
+  const Estimate plane = estimate(render(with_floor(R"({"type": "plane", "normal": [0, 1, 0]})"), options).film);
+  const RenderResult result =
+      render(with_floor(R"({"type": "box", "half_size": [1e4, 1e4, 1e4], "translate": [0, -1e4, 0]})"), options);
+  const Estimate box = estimate(result.film);
+  INFO("plane " << plane.mean << ", box " << box.mean << " +- " << box.sigma);
+  CHECK(std::abs(box.mean - plane.mean) < 3 * (box.sigma + plane.sigma));
+}
+
 }  // namespace fathom::runtime

@@ -371,4 +371,29 @@ TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][op
   }
 }
 
+// Once, a Mandelbulb's point exactly at the bailout went on iterating when a neighbour did, and overflowing derivatives
+// came out as NaN.
+TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[evaluate]") {
+  const IsaGuard guard;
+  compiler::Scene scene;
+  scene.root = scene.graph.add(compiler::Kind::Mandelbulb, std::vector<double>{8, 256, 4, 0.001}, {});
+  const vm::VerifiedProgram program = plain_lowering(scene);
+  vm::Workspace workspace;
+  for (std::string_view isa : vm::available_isas()) {
+    REQUIRE(vm::force_isa(isa));
+    const float x[2] = {0, 0.1f}, y[2] = {4, 1}, z[2] = {0, 0};
+    float alone, together[2];
+    vm::evaluate_distance(program, {x, y, z}, 1, &alone, workspace);
+    vm::evaluate_distance(program, {x, y, z}, 2, together, workspace);
+    CHECK(alone == together[0]);
+    for (int i = 0; i < 2000; ++i) {
+      const float px = 0, py = -1.104f + 7.7e-5f * static_cast<float>(i), pz = 0;
+      float d, gx, gy, gz;
+      std::uint32_t surface;
+      vm::evaluate_surface(program, {&px, &py, &pz}, 1, {&d, &gx, &gy, &gz, &surface}, workspace);
+      if (!(std::isfinite(gx) && std::isfinite(gy) && std::isfinite(gz))) FAIL("gradient at y = " << py);
+    }
+  }
+}
+
 }  // namespace fathom::test

@@ -37,22 +37,24 @@ HWY_INLINE Batch operator/(Batch a, Batch b) { return {hn::Div(a.v, b.v)}; }
 HWY_INLINE Batch operator-(Batch a) { return {hn::Neg(a.v)}; }
 HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
 HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
-HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }
 HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
 HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
-// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; Highway's emulation would drop the NaN.
+// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; other machines and Highway's emulation have
+// other rules.
+#undef FATHOM_X86_REGISTERS
+#define FATHOM_X86_REGISTERS (HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3)
 HWY_INLINE Batch min(Batch a, Batch b) {
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
-  return select(a < b, a, b);
-#else
+#if FATHOM_X86_REGISTERS
   return {hn::Min(a.v, b.v)};
+#else
+  return select(a < b, a, b);
 #endif
 }
 HWY_INLINE Batch max(Batch a, Batch b) {
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
-  return select(a > b, a, b);
-#else
+#if FATHOM_X86_REGISTERS
   return {hn::Max(a.v, b.v)};
+#else
+  return select(a > b, a, b);
 #endif
 }
 HWY_INLINE Batch abs(Batch a) { return {hn::Abs(a.v)}; }

@@ -36,9 +36,12 @@ HWY_INLINE Interval whole_line() {
 }
 // [lo, hi], each correctly rounded before, widened by at least half an ulp.
 HWY_INLINE Interval outward(double lo, double hi) {
-  constexpr double kUlp = 2.3e-16, kTiny = 5e-324;
+  constexpr double kUlp = 2.3e-16, kTiny = 5e-324, kLargest = std::numeric_limits<double>::max();
   if (!(lo <= hi)) return whole_line();
-  return {lo - std::fabs(lo) * kUlp - kTiny, hi + std::fabs(hi) * kUlp + kTiny};
+  // An overflow is somewhere beyond the largest number, not at infinity.
+  lo = std::min(lo, kLargest);
+  hi = std::max(hi, -kLargest);
+  return {lo < -kLargest ? lo : lo - std::fabs(lo) * kUlp - kTiny, hi > kLargest ? hi : hi + std::fabs(hi) * kUlp + kTiny};
 }
 HWY_INLINE Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
 // 0 * infinity is 0 here: the infinity stands for arbitrarily large finite values.
@@ -59,9 +62,6 @@ HWY_INLINE Interval operator/(Interval a, Interval b) {
 }
 HWY_INLINE IntervalMask operator<(Interval a, Interval b) { return {a.lo < b.hi, a.hi >= b.lo}; }
 HWY_INLINE IntervalMask operator>(Interval a, Interval b) { return b < a; }
-HWY_INLINE IntervalMask operator|(IntervalMask a, IntervalMask b) {
-  return {a.maybe_true || b.maybe_true, a.maybe_false && b.maybe_false};
-}
 HWY_INLINE bool any(IntervalMask mask) { return mask.maybe_true; }
 HWY_INLINE Interval select(IntervalMask mask, Interval yes, Interval no) {
   if (!mask.maybe_false) return yes;

@@ -5,7 +5,7 @@
 //   + - * /  unary -          abs  sqrt  sqr  log
 //   min(a, b) = a < b ? a : b             max(a, b) = a > b ? a : b        (one rule for ties and NaN: b)
 //   length(x, y)  length(x, y, z)         gradient zero where the length is zero
-//   a < b, a > b  -> a mask; mask | mask; any(mask); select(mask, yes, no)
+//   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
 // with either operand a constant. The types: Batch (f32 lanes, batch-inl.h), Real (double, real-inl.h), Interval
 // (interval-inl.h), and over those Dual (derivatives, dual-inl.h) and Tagged (which surface won, tagged-inl.h).

@@ -39,15 +39,19 @@ template <class T>
 HWY_INLINE Tagged<T> sqr(const Tagged<T>& a) { return {sqr(a.v), a.surface}; }
 template <class T>
 HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) { return {max(a, b.v), b.surface}; }
+// Where both are equal the surface with the lower number wins, in whatever order the operands come.
+template <class T, class Mask>
+HWY_INLINE Tagged<T> choose(Mask a_wins, Mask b_wins, const Tagged<T>& a, const Tagged<T>& b) {
+  const Constant<T> at_tie = min(a.surface, b.surface);
+  return {select(a_wins, a.v, b.v), select(a_wins, a.surface, select(b_wins, b.surface, at_tie))};
+}
 template <class T>
 HWY_INLINE Tagged<T> min(const Tagged<T>& a, const Tagged<T>& b) {
-  const auto mask = a.v < b.v;
-  return {select(mask, a.v, b.v), select(mask, a.surface, b.surface)};
+  return choose(a.v < b.v, b.v < a.v, a, b);
 }
 template <class T>
 HWY_INLINE Tagged<T> max(const Tagged<T>& a, const Tagged<T>& b) {
-  const auto mask = b.v < a.v;
-  return {select(mask, a.v, b.v), select(mask, a.surface, b.surface)};
+  return choose(b.v < a.v, a.v < b.v, a, b);
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
