@@ -13,6 +13,10 @@
 
 namespace fathom::compiler {
 
+// Largest settings a render takes, from the scene file or the command line.
+inline constexpr int kMaxSide = 65535;  // pixels; what the image formats can say
+inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
+
 // How a surface scatters light. Colours are linear sRGB in [0,1] unless said.
 struct Material {
   enum class Type { Diffuse, Emissive, Specular, Transparent };

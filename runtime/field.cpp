@@ -39,7 +39,7 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   // Where the bound does not end a ray, `far` has to: certify() needs an end.
   constexpr double kFarthest = 1e12;
   const bool bounded = scene.bound.empty() || scene.bound.finite();
-  field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : kDefaultFar);
+  field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
   if (!bounded) field.far = std::min(field.far, kFarthest);
   return field;
 }

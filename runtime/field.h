@@ -21,10 +21,11 @@ struct Field {
   float magnitude;  // scene units (compiler/bounds.h)
 };
 
-// `far` empty: infinite in a bounded scene, else kDefaultFar.
+// `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least
+// kDefaultFar.
 Field make_field(const compiler::CompiledScene& scene, std::optional<double> far = std::nullopt);
 
-inline constexpr double kDefaultFar = 1e4;  // scene units; the horizon of an unbounded scene
+inline constexpr double kDefaultFar = 1e4;  // scene units
 
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) + magnitude).
 // The largest error measured over all primitives is 9 of these units; most stay below 6 (tests/compiler/shapes_test.cpp).

@@ -49,20 +49,15 @@ Picture normal_picture(const Film& film) {
 }
 
 Picture depth_picture(const Film& film) {
-  constexpr double kDarkest = 1.0 / 16;
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  double nearest = std::numeric_limits<double>::infinity();
   for (int y = 0; y < film.height(); ++y) {
     for (int x = 0; x < film.width(); ++x) {
       const PixelMeans pixel = film.means(x, y);
-      if (pixel.hits == 0) continue;
-      nearest = std::min(nearest, pixel.depth);
-      farthest = std::max(farthest, pixel.depth);
+      if (pixel.hits > 0) nearest = std::min(nearest, pixel.depth);
     }
   }
-  const double range = farthest > nearest ? farthest - nearest : 1;
   return make_picture(film, [&](const PixelMeans& pixel) {
-    if (pixel.hits == 0) return glm::dvec3(0);
-    return glm::dvec3(1 - (1 - kDarkest) * (pixel.depth - nearest) / range);
+    return glm::dvec3(pixel.hits > 0 && pixel.depth > 0 ? nearest / pixel.depth : 0);
   });
 }
 

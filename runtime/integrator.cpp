@@ -94,7 +94,7 @@ void Integrator::shade(std::span<const Arrival> arrivals) {
     hits[i] = {path.origin + arrivals[i].t * path.direction, glm::vec3(-path.direction), arrivals[i].side,
                arrivals[i].width};
   }
-  find_surfaces(world_.scene, std::span(hits).first(arrivals.size()), points, stream_.workspace());
+  find_surfaces(world_.scene, world_.field, std::span(hits).first(arrivals.size()), points, stream_.workspace());
   for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
 }
 

@@ -13,7 +13,8 @@ constexpr float kLargestM = 0.9f;
 // A crossing is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side.
 constexpr float kOvershoot = 1.1f;
 constexpr float kOvershootErrors = 4;
-// ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen.
+// ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
+// widened by d_f may take it to twice that, no further.
 constexpr float kLongestCrossing = 16;
 // A lane that takes more evaluations in float than this is finished by certify().
 constexpr int kBudget = 512;
@@ -26,19 +27,31 @@ float safe_radius(float g, float error, const LaneRules& rules) {
   return (std::abs(g) - error) * rules.inv_lipschitz;
 }
 
+float band_of(float error, const LaneRules& rules) { return std::max(rules.band, 16 * error); }
+
+float longest_crossing(float error, const LaneRules& rules) {
+  return kLongestCrossing * std::min(band_of(error, rules), 2 * rules.band);
+}
+
+// Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what happens
+// near the surface is for double to decide.
+bool float_is_too_coarse(float error, const LaneRules& rules) {
+  return kOvershootErrors * error > longest_crossing(error, rules);
+}
+
 LaneVerdict propose(Lane& a, float error, const LaneRules& rules) {
   if (a.t + a.r >= a.t_max) return LaneVerdict::Miss;
   if (a.evaluations >= kBudget) return LaneVerdict::Certify;
   float z = 2 * a.r / (1 - a.m);
-  const float band = std::max(rules.band, 16 * error);
   a.crossing = false;
-  if (a.g < band && a.slope < 0) {
+  if (a.g < band_of(error, rules) && a.slope < 0) {
+    if (float_is_too_coarse(error, rules)) return LaneVerdict::Certify;
     if (a.patience > 0 && a.r > error) {
       --a.patience;
     } else {
       const float beyond = (kOvershoot * a.g + kOvershootErrors * error) / -a.slope;
       a.crossing = beyond > z;
-      z = std::max(z, std::min(beyond, kLongestCrossing * band));
+      z = std::max(z, std::min(beyond, longest_crossing(error, rules)));
     }
   }
   // Steps that float t can hardly hold lead nowhere.
@@ -126,8 +139,7 @@ LaneVerdict walk(Lane& a, float g, float error, const LaneRules& rules) {
     if (gap <= 0 || plain) return accept(a, g, r, error, rules);
     return retreat(a, error);
   }
-  const float band = std::max(rules.band, 16 * error);
-  if (a.g < band || gap <= band || plain) return begin_refining(a, g, error);
+  if (a.crossing || plain || gap <= std::min(band_of(error, rules), 2 * rules.band)) return begin_refining(a, g, error);
   return retreat(a, error);
 }
 
@@ -139,6 +151,7 @@ LaneVerdict start(Lane& a, float f, float error, const LaneRules& rules) {
   a.r = safe_radius(g, error, rules);
   a.slope = 0;
   if (g > 0) return propose(a, error, rules);
+  if (-g < error && float_is_too_coarse(error, rules)) return LaneVerdict::Certify;
   // Beyond the surface it should have left. One look ahead tells whether it comes out or goes in.
   a.phase = Lane::Phase::Emerge;
   a.t_next = 4 * (-g + 16 * error) * rules.inv_lipschitz;

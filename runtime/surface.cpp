@@ -15,6 +15,8 @@ constexpr float kLeastCosine = 1e-4f;
 // A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large numbers
 // cancel d_f's bound is loose, and twice it is enough.
 constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
+// ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
+constexpr float kMostOffset = 32;
 
 glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
   const float length = std::sqrt(glm::dot(gradient, gradient));
@@ -30,7 +32,7 @@ glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
 
 }  // namespace
 
-void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hits, std::span<SurfacePoint> points,
+void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits, std::span<SurfacePoint> points,
                    vm::Workspace& workspace) {
   CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
   alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz;
@@ -43,13 +45,20 @@ void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hi
   vm::evaluate_surface(scene.surface, {x.data(), y.data(), z.data()}, hits.size(),
                        {distance.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
-    points[i].normal = oriented({gx[i], gy[i], gz[i]}, hits[i]);
-    points[i].material = scene.surfaces[surface[i]].material;
+    glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
-    const float magnitude = static_cast<float>(scene.magnitude);
-    points[i].offset =
-        std::max(2 * hits[i].width, kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * magnitude));
+    const float clear = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.magnitude);
+    const float most = kMostOffset * field.band;
+    if (clear > most) {
+      // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
+      const vm::SurfaceValue exact = vm::evaluate_surface(scene.surface, hits[i].position, workspace);
+      gradient = glm::vec3(exact.gradient);
+      surface[i] = exact.surface;
+    }
+    CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
+    points[i].normal = oriented(gradient, hits[i]);
+    points[i].material = scene.surfaces[surface[i]].material;
+    points[i].offset = std::max(2 * hits[i].width, std::min(clear, most));
   }
 }
 

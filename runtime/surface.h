@@ -8,6 +8,7 @@
 #include <span>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/field.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
@@ -30,8 +31,8 @@ inline constexpr std::size_t kSurfaceBatch = 256;
 
 // points[i] describes hits[i]; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal
 // is wo.
-void find_surfaces(const compiler::CompiledScene& scene, std::span<const Hit> hits, std::span<SurfacePoint> points,
-                   vm::Workspace& workspace);
+void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+                   std::span<SurfacePoint> points, vm::Workspace& workspace);
 
 // Where a ray starts that leaves the surface into the space the ray came through, or past the surface into the other.
 inline glm::dvec3 spawn(const Hit& hit, const SurfacePoint& point, bool through) {

@@ -63,7 +63,12 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   bool number_integer(number_integer_t value) override { return number(static_cast<double>(value)); }
   bool number_unsigned(number_unsigned_t value) override { return number(static_cast<double>(value)); }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
-  bool string(string_t& value) override { return scalar(std::move(value)); }
+  bool string(string_t& value) override {
+    const Span span = token(taken_);
+    refuse_control_characters(value, span);
+    put({span, std::move(value)});
+    return true;
+  }
   bool binary(binary_t&) override { return false; }  // not in JSON
 
   bool start_object(std::size_t) override { return open(syntax::Record{}); }
@@ -77,6 +82,7 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& name) override {
     Open& record = open_.back();
     record.key_span = token(taken_);
+    refuse_control_characters(name, record.key_span);
     record.key = std::move(name);
     record.has_key = true;
     return true;
@@ -114,6 +120,14 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
     const std::size_t begin = skip_to_token(text_, last_end_, end).begin;
     last_end_ = end;
     return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  }
+
+  // Names are printed in listings and messages, a line each.
+  void refuse_control_characters(const std::string& text, Span span) {
+    const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    if (std::none_of(text.begin(), text.end(), control)) return;
+    diagnostics_.error("E0003", span, "a control character in a string", "",
+                       {"leave out line breaks, tabs and escapes such as \\u001b"});
   }
 
   bool scalar(decltype(syntax::Value::data) data) {

@@ -1,5 +1,7 @@
 #include "compiler/frontend/records.h"
 
+#include "compiler/compiled_scene.h"
+
 #include <utility>
 
 namespace fathom::compiler {
@@ -129,7 +131,7 @@ const RecordSpec& film_record() {
       "",
       "`film`",
       "film",
-      {integer("width", "pixels", 640, {1, 65536}), integer("height", "pixels", 360, {1, 65536}),
+      {integer("width", "pixels", 640, {1, kMaxSide}), integer("height", "pixels", 360, {1, kMaxSide}),
        number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100})}};
   return record;
 }
@@ -139,9 +141,9 @@ const RecordSpec& render_record() {
       "",
       "`render`",
       "render",
-      {integer("spp", "samples per pixel", 16, {1, 1 << 20}),
-       integer("bounces", "before Russian roulette may end a path", 10, {0, 4096}),
-       integer("tile", "pixels a side", 16, {1, 1024}),
+      {integer("spp", "samples per pixel", 16, {1, kMaxSpp}),
+       integer("bounces", "before Russian roulette may end a path", 10, {0, kMaxBounces}),
+       integer("tile", "pixels a side", 16, {1, kMaxTile}),
        integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
        number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
   return record;

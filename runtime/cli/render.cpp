@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -47,6 +48,42 @@ std::optional<std::string> check_stats_path(const std::string& path) {
   const std::string folder = parent.empty() ? "." : parent.string();
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return std::nullopt;
   return fmt::format("cannot write to the folder `{}`: {}", folder, std::generic_category().message(errno));
+}
+
+// Every file the run will write, but for streams.
+std::vector<std::string> output_files(const RenderRequest& request) {
+  std::vector<std::string> files;
+  for (const std::string& path : request.outputs) {
+    files.push_back(path);
+    for (const Layer& layer : kLayers) {
+      if (request.*layer.wanted) files.push_back(beside(path, layer.suffix));
+    }
+  }
+  if (request.stats_json && *request.stats_json != "-" && !is_special(*request.stats_json)) {
+    files.push_back(*request.stats_json);
+  }
+  return files;
+}
+
+// One name for a file however it is written, whether it exists or not.
+std::filesystem::path canonical_name(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+}
+
+// Whether no output would overwrite the scene or another output.
+std::optional<ExitCode> check_collisions(const RenderRequest& request, const Streams& streams) {
+  std::vector<std::filesystem::path> taken;
+  if (request.scene.path != "-") taken.push_back(canonical_name(request.scene.path));
+  for (const std::string& file : output_files(request)) {
+    std::filesystem::path path = canonical_name(file);
+    if (std::find(taken.begin(), taken.end(), path) != taken.end()) {
+      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is the scene or another output", file),
+                  {"give each output a name of its own"});
+    }
+    taken.push_back(std::move(path));
+  }
+  return std::nullopt;
 }
 
 // Whether every file could be written, as far as can be known before there is anything to write.
@@ -122,6 +159,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   RenderRequest& request = std::get<RenderRequest>(parsed);
+  if (const auto code = check_collisions(request, streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;

@@ -16,7 +16,6 @@ constexpr const char* kExamples =
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
     "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...";
 
-constexpr double kMaxSide = 65535;            // pixels
 constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes some 100 bytes
 
 Verdict read_output(std::string_view text, std::string& path) {
@@ -31,7 +30,7 @@ void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp; may be repeated",
                    append_to(read_output, request.outputs));
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
-                   whole(request.resolution, 1, static_cast<int>(kMaxSide)));
+                   whole(request.resolution, 1, compiler::kMaxSide));
   arguments.option("--aspect", "W:H", "Width to height, as 16:9 or 4x3; the width stays",
                    into(read_aspect, request.aspect));
   arguments.option("--size", "WxH", "Width and height in pixels, as 1920x1080", into(read_size, request.size));
@@ -46,13 +45,13 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (what is not given comes from the scene file)");
   arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
-                   whole(options.spp, 1, 1 << 24));
+                   whole(options.spp, 1, compiler::kMaxSpp));
   arguments.option("-b,--bounces", "N", "Bounces before a path may end by chance (10)",
-                   whole(options.bounces, 0, 1 << 20));
+                   whole(options.bounces, 0, compiler::kMaxBounces));
   arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
                    into(read_angle, request.fov));
   arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels (16); never changes the picture",
-                   whole(options.tile, 1, 65536));
+                   whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
                    into(read_positive, options.far));
@@ -109,10 +108,10 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     width = request.size->width;
     height = request.size->height;
   }
-  if (height > kMaxSide || width * height > kMaxPixels) {
+  if (height > compiler::kMaxSide || width * height > kMaxPixels) {
     return fail(
         streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
-        {fmt::format("a side may have {:.0f} pixels, and the whole {} million", kMaxSide, kMaxPixels / 1000000)});
+        {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide, kMaxPixels / 1000000)});
   }
   scene.film.width = static_cast<int>(width);
   scene.film.height = static_cast<int>(height);

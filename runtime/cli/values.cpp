@@ -1,5 +1,7 @@
 #include "runtime/cli/values.h"
 
+#include "compiler/compiled_scene.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 namespace fathom::cli {
 namespace {
 
-constexpr int kMaxSide = 65535;  // pixels; what the image formats can say
 
 Verdict complain(std::string problem, std::string help = "") {
   return Complaint{std::move(problem), std::move(help)};
@@ -91,12 +92,12 @@ Verdict read_size(std::string_view text, PixelSize& size) {
   const std::size_t middle = text.find('x');
   if (middle != std::string_view::npos) {
     const auto width = to<int>(text.substr(0, middle)), height = to<int>(text.substr(middle + 1));
-    if (width && height && *width >= 1 && *height >= 1 && *width <= kMaxSide && *height <= kMaxSide) {
+    if (width && height && *width >= 1 && *height >= 1 && *width <= compiler::kMaxSide && *height <= compiler::kMaxSide) {
       size = {*width, *height};
       return std::nullopt;
     }
   }
-  return complain(fmt::format("`{}` is not a size in pixels, each side from 1 to {}", text, kMaxSide),
+  return complain(fmt::format("`{}` is not a size in pixels, each side from 1 to {}", text, compiler::kMaxSide),
                   "write it as 1920x1080");
 }
 

@@ -102,14 +102,14 @@ TEST_CASE("settings are read", "[elaborate]") {
   const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
-      "film": {"width": 65536, "height": 1, "exposure": -1.5},
+      "film": {"width": 65535, "height": 1, "exposure": -1.5},
       "render": {"spp": 1048576, "bounces": 0, "tile": 1024, "seed": 9007199254740992, "far": 100},
       "background": {"top": [0.5, 0.7, 1]})");
   CHECK(e.camera.position == glm::dvec3(1, 2, 3));
   CHECK(e.camera.target == glm::dvec3(4, 5, 6));
   CHECK(e.camera.up == glm::dvec3(0, 0, 1));
   CHECK(e.camera.vertical_fov.value() == Approx(std::numbers::pi / 2));
-  CHECK((e.film.width == 65536 && e.film.height == 1 && e.film.exposure == -1.5));
+  CHECK((e.film.width == 65535 && e.film.height == 1 && e.film.exposure == -1.5));
   CHECK((e.settings.spp == 1048576 && e.settings.bounces == 0 && e.settings.tile == 1024));
   CHECK(e.settings.seed == 9007199254740992u);
   CHECK(e.settings.far.value() == 100);

@@ -106,13 +106,13 @@ TEST_CASE("positions count code points, and a tab as one", "[json]") {
 
 TEST_CASE("values are read as written", "[json]") {
   const Source source("scene.json",
-                      R"({"a": 9007199254740993, "b": -3, "c": 18446744073709551616, "d": "\u00fc\n\ud834\udd1e"})");
+                      R"({"a": 9007199254740993, "b": -3, "c": 18446744073709551616, "d": "\u00fc\\\ud834\udd1e"})");
   const syntax::File file = read(source);
   const auto number = [&](const char* name) { return std::get<double>(record(file.root).find(name)->value->data); };
   CHECK(number("a") == 9007199254740992.0);
   CHECK(number("b") == -3);
   CHECK(number("c") == 18446744073709551616.0);
-  CHECK(std::get<std::string>(record(file.root).find("d")->value->data) == "ü\n𝄞");
+  CHECK(std::get<std::string>(record(file.root).find("d")->value->data) == "ü\\𝄞");
   CHECK(record(file.root).find("e") == nullptr);
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("what is not JSON is one error of the right kind", "[json]") {
 }
 
 TEST_CASE("an error's place lies in the file, wherever it is cut short", "[json]") {
-  const std::string whole = "{\"a\": [1, -2.5e3, \"x\\u00fc\\n\", {\"b\": null}], // c\n \"d\": /* e */ true}";
+  const std::string whole = "{\"a\": [1, -2.5e3, \"x\\u00fc\\\\\", {\"b\": null}], // c\n \"d\": /* e */ true}";
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const Source source("scene.json", whole.substr(0, length));
     CAPTURE(source.text());

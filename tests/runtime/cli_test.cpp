@@ -220,6 +220,17 @@ TEST_CASE("cli: files that cannot be read or written are exit code 74") {
   CHECK(folder.files() == 2);
 }
 
+TEST_CASE("cli: no output may overwrite the scene or another output") {
+  const Folder folder;
+  for (const char* outputs : {"-o out.png --stats-json ball.json", "-o out.png --stats-json ./out.png",
+                              "-o a.png -a -o a-albedo.png", "-o a.png -o ./a.png"}) {
+    const Result result = folder.run(std::string("render ball.json ") + outputs);
+    CHECK(result.code == 2);
+    CHECK_THAT(result.err, Contains("would be overwritten"));
+  }
+  CHECK(folder.run("check ball.json").code == 0);
+}
+
 TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   const Folder folder;
   folder.write("bad.json", R"({"version": 1, "objects": [{"type": "spere", "radius": 1}, {"type": "box"}]})");

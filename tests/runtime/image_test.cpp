@@ -35,7 +35,7 @@ TEST_CASE("image: what lies first along the ray", "[runtime]") {
   const Picture albedo = albedo_picture(film), normal = normal_picture(film), depth = depth_picture(film);
   CHECK(albedo.rgb == std::vector<std::uint8_t>{255, 0, 188, 255, 0, 188, 0, 0, 0});
   CHECK(normal.rgb == std::vector<std::uint8_t>{128, 255, 128, 128, 255, 128, 0, 0, 0});
-  CHECK(depth.rgb == std::vector<std::uint8_t>{255, 255, 255, 16, 16, 16, 0, 0, 0});
+  CHECK(depth.rgb == std::vector<std::uint8_t>{255, 255, 255, 128, 128, 128, 0, 0, 0});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "tests/runtime/scenes.h"
 
@@ -229,6 +230,40 @@ TEST_CASE("render: a floor that is the top of a huge solid is as bright as a pla
   const Estimate box = estimate(result.film);
   INFO("plane " << plane.mean << ", box " << box.mean << " +- " << box.sigma);
   CHECK(std::abs(box.mean - plane.mean) < 3 * (box.sigma + plane.sigma));
+}
+
+// Once, a ball 1e5 from the origin came out in three pieces, without its shadow, for float steps near the surface were
+// longer than the ball.
+TEST_CASE("render: a scene far from the origin looks as it does there", "[render]") {
+  const auto at = [](const std::string& x) {
+    return scene_of(R"("background": [1, 1, 1], "camera": {"position": [)" + x + R"(, 1, 3], "target": [)" + x +
+                    R"(, 0.5, 0]}, "objects": [{"type": "plane", "normal": [0, 1, 0]},
+                    {"type": "sphere", "radius": 0.5, "translate": [)" + x + ", 0.5, 0]}]");
+  };
+  const RenderResult here = render(at("0"), options_of(64, 36, 64));
+  const Estimate expected = estimate(here.film);
+  for (const char* x : {"1000", "10000", "100000"}) {
+    const RenderResult there = render(at(x), options_of(64, 36, 64));
+    const Estimate found = estimate(there.film);
+    INFO("x " << x << ": " << found.mean << " instead of " << expected.mean << " +- " << found.sigma);
+    CHECK(std::abs(found.mean - expected.mean) < 3 * (found.sigma + expected.sigma));
+    // Which of the two a pixel shows, by the normal: only pixels on an edge may differ.
+    int different = 0;
+    for (int y = 0; y < 36; ++y) {
+      for (int i = 0; i < 64; ++i) {
+        different += glm::length(here.film.means(i, y).normal - there.film.means(i, y).normal) > 0.1;
+      }
+    }
+    CHECK(different <= 5);
+  }
+}
+
+// Once, a plane cut every scene off ten thousand units from the camera.
+TEST_CASE("render: a large scene with a plane is not cut off", "[render]") {
+  const auto scene = scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 15000, 40000], "target": [0, 5000, 0]},
+      "objects": [{"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 5000, "translate": [0, 5000, 0]}])");
+  const RenderResult result = render(scene, options_of(64, 36, 1));
+  CHECK(result.stats.primary_hits == result.stats.primary_rays);
 }
 
 }  // namespace fathom::runtime

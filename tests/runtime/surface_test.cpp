@@ -12,7 +12,7 @@ namespace {
 SurfacePoint find(const compiler::CompiledScene& scene, const Hit& hit) {
   vm::Workspace workspace;
   SurfacePoint point;
-  find_surfaces(scene, std::span(&hit, 1), std::span(&point, 1), workspace);
+  find_surfaces(scene, make_field(scene), std::span(&hit, 1), std::span(&point, 1), workspace);
   return point;
 }
 
