@@ -32,7 +32,6 @@ constexpr Pass kPasses[] = {
 };
 
 constexpr std::size_t kMaxInstructions = 1'000'000;
-constexpr std::size_t kMaxDepth = 5000;  // lower() recurses once a level
 
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
@@ -47,21 +46,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   return scene;
 }
 
-// Of the longest chain of nodes from the root.
-std::size_t depth(const Scene& scene) {
-  std::vector<std::size_t> depths(scene.root + 1, 1);
-  for (NodeId id = 0; id <= scene.root; ++id) {
-    for (NodeId child : scene.graph.children(id)) depths[id] = std::max(depths[id], depths[child] + 1);
-  }
-  return depths[scene.root];
-}
-
 std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, Diagnostics& diagnostics) {
-  if (const std::size_t deep = depth(scene); deep > kMaxDepth) {
-    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                      fmt::format("nodes lie {} deep within each other; at most {} are allowed", deep, kMaxDepth));
-    return std::nullopt;
-  }
   std::optional<vm::Program> program = lower(scene, source, kMaxInstructions);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,

@@ -44,22 +44,43 @@ class Lowering {
   }
 
  private:
-  // Counts uses and computes heights, operands before operators; stops early when there are too many.
-  std::uint32_t plan(Use use) {
-    if (plans_.size() > max_instructions_) return 1;
-    const auto [entry, fresh] = plans_.try_emplace(use);
-    ++entry->second.uses;
-    if (!fresh) return entry->second.height;
-    std::vector<std::uint32_t> heights;
-    for (const Use& operand : operands(use)) heights.push_back(plan(operand));
-    std::uint32_t height = 1;
-    const std::vector<std::size_t> order = evaluation_order(graph_.kind(use.node), heights);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      // After the first two, a fold holds one value while it evaluates the next.
-      const std::uint32_t held = i == 0 ? 0 : 1;
-      height = std::max(height, heights[order[i]] + held);
+  // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be as
+  // deep as it has nodes, so neither this nor emit() recurses.
+  void plan(Use root) {
+    struct Visit {
+      Use use;
+      std::vector<Use> operands;
+      std::size_t next = 0;
+    };
+    std::vector<Visit> path;
+    const auto enter = [&](Use use) {
+      const auto [entry, fresh] = plans_.try_emplace(use);
+      ++entry->second.uses;
+      if (fresh) path.push_back({use, operands(use)});
+    };
+    enter(root);
+    while (!path.empty() && plans_.size() <= max_instructions_) {
+      Visit& visit = path.back();
+      if (visit.next < visit.operands.size()) {
+        const Use operand = visit.operands[visit.next++];
+        enter(operand);
+      } else {
+        plans_[visit.use].height = height(visit.use, visit.operands);
+        path.pop_back();
+      }
     }
-    return plans_[use].height = height;
+  }
+
+  std::uint32_t height(Use use, const std::vector<Use>& operands) const {
+    std::vector<std::uint32_t> heights;
+    for (const Use& operand : operands) heights.push_back(plans_.at(operand).height);
+    const std::vector<std::size_t> order = evaluation_order(graph_.kind(use.node), heights);
+    std::uint32_t result = 1;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      // After the first, a fold holds one value while it evaluates the next.
+      result = std::max(result, heights[order[i]] + (i == 0 ? 0 : 1));
+    }
+    return result;
   }
 
   std::vector<Use> operands(Use use) {
@@ -90,40 +111,70 @@ class Lowering {
     return order;
   }
 
-  void emit(Use use) {
-    if (program_.debug.size() > max_instructions_) return;
-    Plan& plan = plans_.at(use);
-    if (plan.local) return append(use.node, Opcode::Load, *plan.local, {});
-    const Kind kind = graph_.kind(use.node);
-    if (const NodeSpec& row = spec(kind); row.opcode) {
-      append(use.node, *row.opcode, 0, row.immediates(graph_.params(use.node)));
-    } else if (kind == Kind::Transform) {
-      emit_transform(use);
-    } else if (graph_.children(use.node).size() == 1) {
-      emit(operands(use)[0]);
-      emit_unary(use.node);
-    } else {
-      emit_fold(use);
-    }
-    if (plan.uses > 1) {
-      plan.local = program_.locals++;
-      append(use.node, Opcode::Tee, *plan.local, {});
+  // What is still to be done for a value, in the order of a stack.
+  enum class Step { Visit, Finish, LeaveTransform, Negate, Combine, CombineNegated, Share };
+  struct Task {
+    Use use;
+    Step step;
+  };
+
+  void emit(Use root) {
+    tasks_ = {{root, Step::Visit}};
+    while (!tasks_.empty() && program_.debug.size() <= max_instructions_) {
+      const Task task = tasks_.back();
+      tasks_.pop_back();
+      perform(task);
     }
   }
 
-  void emit_transform(Use use) {
-    const auto params = graph_.params(use.node);
-    const Affine map = Affine::from_params(params);
+  void perform(Task task) {
+    const NodeId node = task.use.node;
+    switch (task.step) {
+      case Step::Visit: return visit(task.use);
+      case Step::Finish: return emit_unary(node);
+      case Step::LeaveTransform:
+        append(node, Opcode::Drop, 0, {});
+        if (const double factor = graph_.params(node)[12]; factor != 1) append(node, Opcode::Scale, 0, {factor});
+        return;
+      case Step::Negate: return append(node, Opcode::Negate, 0, {});
+      case Step::Combine: return emit_combinator(node, false);
+      case Step::CombineNegated: return emit_combinator(node, true);
+      case Step::Share: {
+        Plan& plan = plans_.at(task.use);
+        plan.local = program_.locals++;
+        return append(node, Opcode::Tee, *plan.local, {});
+      }
+    }
+  }
+
+  void visit(Use use) {
+    const Plan& plan = plans_.at(use);
+    if (plan.local) return append(use.node, Opcode::Load, *plan.local, {});
+    const Kind kind = graph_.kind(use.node);
+    std::vector<Task> steps;
+    if (const NodeSpec& row = spec(kind); row.opcode) {
+      append(use.node, *row.opcode, 0, row.immediates(graph_.params(use.node)));
+    } else if (kind == Kind::Transform) {
+      enter_transform(use.node);
+      steps = {{operands(use)[0], Step::Visit}, {use, Step::LeaveTransform}};
+    } else if (graph_.children(use.node).size() == 1) {
+      steps = {{operands(use)[0], Step::Visit}, {use, Step::Finish}};
+    } else {
+      steps = fold_steps(use);
+    }
+    if (plan.uses > 1) steps.push_back({use, Step::Share});
+    tasks_.insert(tasks_.end(), steps.rbegin(), steps.rend());
+  }
+
+  void enter_transform(NodeId node) {
+    const Affine map = Affine::from_params(graph_.params(node));
     const Affine identity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
     if (map.rows == identity.rows) {
-      append(use.node, Opcode::Translate, 0, {-map.translation.x, -map.translation.y, -map.translation.z});
+      append(node, Opcode::Translate, 0, {-map.translation.x, -map.translation.y, -map.translation.z});
     } else {
       const auto twelve = map.params();
-      append(use.node, Opcode::Affine, 0, {twelve.begin(), twelve.end()});
+      append(node, Opcode::Affine, 0, {twelve.begin(), twelve.end()});
     }
-    emit(operands(use)[0]);
-    append(use.node, Opcode::Drop, 0, {});
-    if (params[12] != 1) append(use.node, Opcode::Scale, 0, {params[12]});
   }
 
   void emit_unary(NodeId node) {
@@ -136,18 +187,19 @@ class Lowering {
     }
   }
 
-  void emit_fold(Use use) {
+  std::vector<Task> fold_steps(Use use) {
     const std::vector<Use> all = operands(use);
     std::vector<std::uint32_t> heights;
     for (const Use& operand : all) heights.push_back(plans_.at(operand).height);
     const std::vector<std::size_t> order = evaluation_order(graph_.kind(use.node), heights);
-    emit(all[order[0]]);
     const bool cut_first = is_subtraction(use.node) && order[0] == 1;
-    if (cut_first) append(use.node, Opcode::Negate, 0, {});
+    std::vector<Task> steps = {{all[order[0]], Step::Visit}};
+    if (cut_first) steps.push_back({use, Step::Negate});
     for (std::size_t i = 1; i < order.size(); ++i) {
-      emit(all[order[i]]);
-      emit_combinator(use.node, cut_first && i == 1);
+      steps.push_back({all[order[i]], Step::Visit});
+      steps.push_back({use, cut_first && i == 1 ? Step::CombineNegated : Step::Combine});
     }
+    return steps;
   }
 
   bool is_subtraction(NodeId node) const {
@@ -190,6 +242,7 @@ class Lowering {
   const Source& source_;
   const std::size_t max_instructions_;
   std::map<Use, Plan> plans_;
+  std::vector<Task> tasks_;
   std::map<std::pair<std::uint32_t, std::vector<double>>, std::uint32_t> points_;
   vm::Program program_;
 };
