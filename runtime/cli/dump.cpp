@@ -77,6 +77,9 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (request.stage == kGraph) streams.out << graph;
   if (request.stage == kBytecode) {
     const vm::VerifiedProgram& program = request.program == 1 ? scene->surface : scene->distance;
+    if (!request.stats) {
+      streams.out << fmt::format("; {}: {}\n", request.program == 1 ? "surface" : "distance", scene->summary);
+    }
     streams.out << (request.stats ? operation_table(program) : vm::disassemble(program));
   }
   return kDone;
