@@ -51,24 +51,26 @@ void measure(const char* name, const std::string& file, bench::Field by_hand, co
   }
   vm::Workspace workspace;
   std::vector<float> interpreted(kPoints), hand(kPoints);
-  const auto seconds = bench::time_interleaved(
-      {[&] {
-         for (int i = 0; i < kRepeats; ++i) {
-           vm::evaluate_distance(scene->distance, cloud.points(), kPoints, interpreted.data(), workspace);
-         }
-       },
-       [&] {
-         for (int i = 0; i < kRepeats; ++i) by_hand(cloud.points(), kPoints, hand.data());
-       }},
-      rounds);
+  const auto seconds = bench::time_interleaved({[&] {
+                                                  for (int i = 0; i < kRepeats; ++i) {
+                                                    vm::evaluate_distance(scene->distance, cloud.points(), kPoints,
+                                                                          interpreted.data(), workspace);
+                                                  }
+                                                },
+                                                [&] {
+                                                  for (int i = 0; i < kRepeats; ++i)
+                                                    by_hand(cloud.points(), kPoints, hand.data());
+                                                }},
+                                               rounds);
   float largest = 0;
   for (std::size_t i = 0; i < kPoints; ++i) largest = std::max(largest, std::fabs(interpreted[i] - hand[i]));
   const double per_point = 1e9 / (kPoints * kRepeats);
   const bench::Spread vm_time = bench::spread(seconds[0]), hand_time = bench::spread(seconds[1]),
                       ratio = bench::ratio(seconds[0], seconds[1]);
-  fmt::print("{:<12} {:4} ops  machine {:6.2f}  by hand {:6.2f}  ratio {:.2f} ({:.2f}..{:.2f})  largest difference {:.1e}\n",
-             name, scene->distance.instructions(), vm_time.median * per_point, hand_time.median * per_point, ratio.median,
-             ratio.least, ratio.most, largest);
+  fmt::print(
+      "{:<12} {:4} ops  machine {:6.2f}  by hand {:6.2f}  ratio {:.2f} ({:.2f}..{:.2f})  largest difference {:.1e}\n",
+      name, scene->distance.instructions(), vm_time.median * per_point, hand_time.median * per_point, ratio.median,
+      ratio.least, ratio.most, largest);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/hand_written.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-
 #include "vm/number/batch-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,8 +89,8 @@ HWY_INLINE B primitives(P p) {
   d = min(d, cone(at(p, -2.4, 1, 1.2), 0.8, 0.7, 0.3));
   d = min(d, round_cone(at(p, 0, 0.6, 1.2), 0.55, 0.25, 0.8));
   d = min(d, polygon(at(p, 2.4, 1, 1.2), {{-0.8, -0.7, 0.3}, {0.8, -0.6, -0.2}, {0, 0.8, 0.1}}, 0.03));
-  return min(d, polygon(at(p, 4.8, 1, 1.2), {{-0.8, -0.7, 0.3}, {0.7, -0.7, -0.3}, {0.8, 0.7, -0.1}, {-0.7, 0.7, 0.5}},
-                        0.03));
+  return min(d, polygon(at(p, 4.8, 1, 1.2),
+                        {{-0.8, -0.7, 0.3}, {0.7, -0.7, -0.3}, {0.8, 0.7, -0.1}, {-0.7, 0.7, 0.5}}, 0.03));
 }
 
 HWY_INLINE B smin(B a, B b) {

@@ -1,5 +1,5 @@
-// How far off are the hits? Rays by area on a sphere, a plane, a box and a torus of unit scale, followed for ten units,
-// against closed forms (the torus against bisection in long double on a fine grid).
+// How far off are the hits? Rays by area on a sphere, a plane, a box and a torus of unit scale, followed for ten
+// units, against closed forms (the torus against bisection in long double on a fine grid).
 //
 //     build/release/bench_hits [rays]
 #include <fmt/format.h>
@@ -108,12 +108,13 @@ void measure(const char* name, const char* node, std::optional<Real> (*truth)(co
     const bool expected = t && *t <= kFar;
     false_hits += hit && !expected;
     false_misses += !hit && expected;
-    if (hit && expected) errors.push_back(std::abs(static_cast<double>(static_cast<Real>(result.arrivals[i].t) - *t)));
+    if (hit && expected)
+      errors.push_back(std::abs(static_cast<double>(static_cast<Real>(result.arrivals[i].t) - *t)));
   }
   std::sort(errors.begin(), errors.end());
-  fmt::print("{:<8} {:8} {:8} {:9.1e} {:9.1e} {:9.1e} {:6} {:7} {:9} {:6} {:7.2f}\n", name, rays.size(), errors.size(),
-             errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back(), false_hits, false_misses,
-             result.counters.certified, result.counters.exhausted,
+  fmt::print("{:<8} {:8} {:8} {:9.1e} {:9.1e} {:9.1e} {:6} {:7} {:9} {:6} {:7.2f}\n", name, rays.size(),
+             errors.size(), errors[errors.size() / 2], errors[errors.size() * 99 / 100], errors.back(), false_hits,
+             false_misses, result.counters.certified, result.counters.exhausted,
              static_cast<double>(result.counters.evaluations) / static_cast<double>(rays.size()));
 }
 
@@ -121,8 +122,8 @@ void measure(const char* name, const char* node, std::optional<Real> (*truth)(co
 
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 200000;
-  fmt::print("{:<8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>6} {:>7} {:>9} {:>6} {:>7}\n", "shape", "rays", "hits", "p50", "p99",
-             "max", "false", "missed", "in double", "lost", "evals");
+  fmt::print("{:<8} {:>8} {:>8} {:>9} {:>9} {:>9} {:>6} {:>7} {:>9} {:>6} {:>7}\n", "shape", "rays", "hits", "p50",
+             "p99", "max", "false", "missed", "in double", "lost", "evals");
   measure("sphere", R"({"type": "sphere", "radius": 1})", sphere, 1.05, count);
   measure("plane", R"({"type": "plane", "normal": [0, 1, 0]})", plane, 4.9, count);
   measure("box", R"({"type": "box", "half_size": [0.75, 0.5, 1]})", box, 1.2, count);

@@ -36,7 +36,8 @@ inline Spread spread(std::vector<double> values) {
 }
 
 // Seconds of each variant in each round. [variant][round]
-inline std::vector<std::vector<double>> time_interleaved(const std::vector<std::function<void()>>& variants, int rounds) {
+inline std::vector<std::vector<double>> time_interleaved(const std::vector<std::function<void()>>& variants,
+                                                         int rounds) {
   std::vector<std::vector<double>> seconds(variants.size());
   for (const auto& variant : variants) variant();  // warm-up
   for (int round = 0; round < rounds; ++round) {

@@ -13,8 +13,8 @@ Affine Affine::from_params(std::span<const double> m) {
 }
 
 std::array<double, 12> Affine::params() const {
-  return {rows[0].x, rows[0].y, rows[0].z, translation.x, rows[1].x, rows[1].y,
-          rows[1].z, translation.y, rows[2].x, rows[2].y, rows[2].z, translation.z};
+  return {rows[0].x, rows[0].y,     rows[0].z, translation.x, rows[1].x, rows[1].y,
+          rows[1].z, translation.y, rows[2].x, rows[2].y,     rows[2].z, translation.z};
 }
 
 dvec3 Affine::operator()(dvec3 p) const {

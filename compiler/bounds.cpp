@@ -55,7 +55,8 @@ Knowledge of_transform(std::span<const double> params, const Knowledge& child) {
   const Stretch s = stretch(to_child);
   Knowledge k = child;
   k.box = image(inverse(to_child), child.box);
-  // In the child's space a point lies as far off as the translation adds, but near the surface within the child's box.
+  // In the child's space a point lies as far off as the translation adds, but near the surface within the child's
+  // box.
   const glm::dvec3 t = glm::abs(to_child.translation);
   k.magnitude = factor * (std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box)) + child.magnitude);
   // A product that is 1 but for rounding is 1: the factor is the smallest scale, the most stretch its inverse.
@@ -140,26 +141,38 @@ Knowledge of_node(const Graph& graph, NodeId id, const std::vector<Knowledge>& k
       k.inside = std::max(k.inside, Exactness::Bound);
       return k;
     }
-    case Kind::Transform: return of_transform(params, known[children[0]]);
-    case Kind::Paint: return known[children[0]];
-    case Kind::Union: return of_union(children, known);
+    case Kind::Transform:
+      return of_transform(params, known[children[0]]);
+    case Kind::Paint:
+      return known[children[0]];
+    case Kind::Union:
+      return of_union(children, known);
     case Kind::SmoothUnion:
       // One blend lowers the distance by at most k/4; many by at most k, for an operand k away changes nothing.
       return blended(offset(of_union(children, known),
-                            std::min(1.0, 0.25 * static_cast<double>(children.size() - 1)) * params[0]), params[0]);
-    case Kind::Intersection: return of_intersection(children, known);
-    case Kind::SmoothIntersection: return blended(of_intersection(children, known), params[0]);
-    case Kind::Subtraction: return of_subtraction(children, known);
-    case Kind::SmoothSubtraction: return blended(of_subtraction(children, known), params[0]);
-    default: return of_primitive(spec(kind), params);
+                            std::min(1.0, 0.25 * static_cast<double>(children.size() - 1)) * params[0]),
+                     params[0]);
+    case Kind::Intersection:
+      return of_intersection(children, known);
+    case Kind::SmoothIntersection:
+      return blended(of_intersection(children, known), params[0]);
+    case Kind::Subtraction:
+      return of_subtraction(children, known);
+    case Kind::SmoothSubtraction:
+      return blended(of_subtraction(children, known), params[0]);
+    default:
+      return of_primitive(spec(kind), params);
   }
 }
 
 std::string_view name(Exactness e) {
   switch (e) {
-    case Exactness::Exact: return "exact";
-    case Exactness::Bound: return "a lower bound";
-    default: return "an estimate";
+    case Exactness::Exact:
+      return "exact";
+    case Exactness::Bound:
+      return "a lower bound";
+    default:
+      return "an estimate";
   }
 }
 

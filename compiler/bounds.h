@@ -16,8 +16,8 @@ struct Knowledge {
   double lipschitz = 1;  // |f(p) - f(q)| <= lipschitz |p - q|, where certified
   Exactness outside = Exactness::Exact, inside = Exactness::Exact;
   bool certified = true;
-  // f(p) >= reach_max * (largest per-axis distance from the box) and f(p) >= reach * (Euclidean distance from the box):
-  // how far an offset by r can move the surface out of the box, r / reach_max. Per-axis distances survive
+  // f(p) >= reach_max * (largest per-axis distance from the box) and f(p) >= reach * (Euclidean distance from the
+  // box): how far an offset by r can move the surface out of the box, r / reach_max. Per-axis distances survive
   // intersection, Euclidean ones rotation; reach <= reach_max <= sqrt 3 reach whenever both are known.
   double reach_max = 1, reach = 1;
   // Near the surface at p, evaluating f meets no coordinate or distance larger than |p| + magnitude, scene units: its

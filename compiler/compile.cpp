@@ -24,11 +24,7 @@ struct Pass {
 
 // What is done to the distance, in order. The surface program keeps its Paint and takes the others.
 constexpr Pass kPasses[] = {
-    {"unpaint", unpaint},
-    {"fold", fold},
-    {"affine", affine},
-    {"flatten", flatten},
-    {"share", share},
+    {"unpaint", unpaint}, {"fold", fold}, {"affine", affine}, {"flatten", flatten}, {"share", share},
 };
 
 constexpr std::size_t kMaxInstructions = 1'000'000;
@@ -50,8 +46,8 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
   std::optional<vm::Program> program = lower(scene, source, kMaxInstructions);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                      fmt::format("the scene needs more than {} instructions", kMaxInstructions),
-                      "", {"a node used under different transforms is evaluated once for each; use it less often"});
+                      fmt::format("the scene needs more than {} instructions", kMaxInstructions), "",
+                      {"a node used under different transforms is evaluated once for each; use it less often"});
     return std::nullopt;
   }
   auto verified = vm::verify(std::move(*program));

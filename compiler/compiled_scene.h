@@ -22,11 +22,11 @@ struct Material {
   enum class Type { Diffuse, Emissive, Specular, Transparent };
   std::string name;
   Type type = Type::Diffuse;
-  glm::dvec3 color{0.8};        // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;
-                                // emissive: albedo of the lamp's own surface
-  glm::dvec3 emission{0.0};     // radiance Le, both sides; emissive only
-  double ior = 1.5;             // transparent: index of refraction inside relative to outside
-  glm::dvec3 absorption{0.0};   // transparent: absorption coefficient inside, per scene unit
+  glm::dvec3 color{0.8};       // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;
+                               // emissive: albedo of the lamp's own surface
+  glm::dvec3 emission{0.0};    // radiance Le, both sides; emissive only
+  double ior = 1.5;            // transparent: index of refraction inside relative to outside
+  glm::dvec3 absorption{0.0};  // transparent: absorption coefficient inside, per scene unit
 };
 
 // What a `tag` in the surface program numbers: a part of the scene with a name and a material.
@@ -41,9 +41,9 @@ struct Camera {
   glm::dvec3 position{0, 0, 5};
   glm::dvec3 target{0, 0, 0};
   glm::dvec3 up{0, 1, 0};
-  double fov = 0.7853981633974483;  // perspective: horizontal field of view, radians
+  double fov = 0.7853981633974483;     // perspective: horizontal field of view, radians
   std::optional<double> vertical_fov;  // instead of fov when the file gives fov_y, radians
-  double width = 4;                 // orthographic: width of the picture, scene units
+  double width = 4;                    // orthographic: width of the picture, scene units
 };
 
 struct Film {
@@ -52,9 +52,9 @@ struct Film {
 };
 
 struct RenderSettings {
-  int spp = 16;       // samples per pixel
-  int bounces = 10;   // before Russian roulette may end a path
-  int tile = 16;      // pixels a side
+  int spp = 16;      // samples per pixel
+  int bounces = 10;  // before Russian roulette may end a path
+  int tile = 16;     // pixels a side
   std::uint64_t seed = 0;
   std::optional<double> far;  // how far from the camera rays are followed, scene units; default: see render
 };
@@ -79,10 +79,10 @@ struct CompiledScene : SceneTables {
   vm::VerifiedProgram distance;  // the field
   vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
 
-  Box bound;            // the field is positive outside
-  double lipschitz = 1; // |f(p) - f(q)| <= lipschitz * |p - q|
-  double magnitude = 0;   // of the numbers that cancel in the field, scene units (compiler/bounds.h)
-  bool certified = true;  // whether that constant is proved, or an estimate (a Mandelbulb is in the scene)
+  Box bound;                   // the field is positive outside
+  double lipschitz = 1;        // |f(p) - f(q)| <= lipschitz * |p - q|
+  double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
+  bool certified = true;       // whether that constant is proved, or an estimate (a Mandelbulb is in the scene)
   std::size_t node_count = 0;  // distinct nodes after the passes
   std::string summary;         // e.g. "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
 };

@@ -34,7 +34,8 @@ enum class ErrorFormat { Text, Short, Json };
 
 class Diagnostics {
  public:
-  void error(std::string code, Span span, std::string message, std::string label = "", std::vector<std::string> help = {});
+  void error(std::string code, Span span, std::string message, std::string label = "",
+             std::vector<std::string> help = {});
   void warning(std::string code, Span span, std::string message, std::string label = "",
                std::vector<std::string> help = {});
 

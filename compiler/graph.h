@@ -20,14 +20,31 @@ namespace fathom::compiler {
 
 enum class Kind : std::uint8_t {
   // primitives
-  Sphere, Box, RoundBox, Torus, Plane, Cylinder, RoundedCylinder, Cone, RoundCone, Triangle, Quad, Mandelbulb,
+  Sphere,
+  Box,
+  RoundBox,
+  Torus,
+  Plane,
+  Cylinder,
+  RoundedCylinder,
+  Cone,
+  RoundCone,
+  Triangle,
+  Quad,
+  Mandelbulb,
   // alterations of one child
-  Round, Onion,
+  Round,
+  Onion,
   // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
   // distance is multiplied by. Written in files as the properties scale, rotate and translate.
   Transform,
   // combinators; n children, smooth ones fold from the left
-  Union, Intersection, Subtraction, SmoothUnion, SmoothIntersection, SmoothSubtraction,
+  Union,
+  Intersection,
+  Subtraction,
+  SmoothUnion,
+  SmoothIntersection,
+  SmoothSubtraction,
   // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless painted further in.
   Paint,
 };
@@ -49,8 +66,8 @@ class Graph {
 
   std::size_t size() const { return nodes_.size(); }
   Kind kind(NodeId id) const { return nodes_[id].kind; }
-  std::span<const double> params(NodeId id) const;      // valid until the next add()
-  std::span<const NodeId> children(NodeId id) const;    // valid until the next add()
+  std::span<const double> params(NodeId id) const;    // valid until the next add()
+  std::span<const NodeId> children(NodeId id) const;  // valid until the next add()
   const Origin& origin(NodeId id) const { return nodes_[id].origin; }
 
  private:

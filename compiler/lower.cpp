@@ -44,8 +44,8 @@ class Lowering {
   }
 
  private:
-  // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be as
-  // deep as it has nodes, so neither this nor emit() recurses.
+  // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be
+  // as deep as it has nodes, so neither this nor emit() recurses.
   void plan(Use root) {
     struct Visit {
       Use use;
@@ -94,11 +94,12 @@ class Lowering {
   std::uint32_t transformed(Use use) {
     const auto params = graph_.params(use.node);
     std::vector<double> key(params.begin(), params.begin() + 12);
-    return points_.try_emplace({use.point, std::move(key)}, static_cast<std::uint32_t>(points_.size() + 1)).first->second;
+    return points_.try_emplace({use.point, std::move(key)}, static_cast<std::uint32_t>(points_.size() + 1))
+        .first->second;
   }
 
-  // Which operand goes first. The one that needs most stack first keeps the stack low (Sethi & Ullman, "The generation
-  // of optimal code for arithmetic expressions", 1970); blends of more than two keep their order.
+  // Which operand goes first. The one that needs most stack first keeps the stack low (Sethi & Ullman, "The
+  // generation of optimal code for arithmetic expressions", 1970); blends of more than two keep their order.
   static std::vector<std::size_t> evaluation_order(Kind kind, const std::vector<std::uint32_t>& heights) {
     std::vector<std::size_t> order(heights.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,15 +131,20 @@ class Lowering {
   void perform(Task task) {
     const NodeId node = task.use.node;
     switch (task.step) {
-      case Step::Visit: return visit(task.use);
-      case Step::Finish: return emit_unary(node);
+      case Step::Visit:
+        return visit(task.use);
+      case Step::Finish:
+        return emit_unary(node);
       case Step::LeaveTransform:
         append(node, Opcode::Drop, 0, {});
         if (const double factor = graph_.params(node)[12]; factor != 1) append(node, Opcode::Scale, 0, {factor});
         return;
-      case Step::Negate: return append(node, Opcode::Negate, 0, {});
-      case Step::Combine: return emit_combinator(node, false);
-      case Step::CombineNegated: return emit_combinator(node, true);
+      case Step::Negate:
+        return append(node, Opcode::Negate, 0, {});
+      case Step::Combine:
+        return emit_combinator(node, false);
+      case Step::CombineNegated:
+        return emit_combinator(node, true);
       case Step::Share: {
         Plan& plan = plans_.at(task.use);
         plan.local = program_.locals++;
@@ -180,10 +186,14 @@ class Lowering {
   void emit_unary(NodeId node) {
     const auto params = graph_.params(node);
     switch (graph_.kind(node)) {
-      case Kind::Round: return append(node, Opcode::Offset, 0, {params[0]});
-      case Kind::Onion: return append(node, Opcode::Onion, 0, {params[0]});
-      case Kind::Paint: return append(node, Opcode::Tag, static_cast<std::uint32_t>(params[0]), {});
-      default: return;  // a combinator of one is that one
+      case Kind::Round:
+        return append(node, Opcode::Offset, 0, {params[0]});
+      case Kind::Onion:
+        return append(node, Opcode::Onion, 0, {params[0]});
+      case Kind::Paint:
+        return append(node, Opcode::Tag, static_cast<std::uint32_t>(params[0]), {});
+      default:
+        return;  // a combinator of one is that one
     }
   }
 
@@ -211,17 +221,25 @@ class Lowering {
     const auto params = graph_.params(node);
     const auto blend = [&](Opcode opcode) {
       const double k = params[0];
-      // A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by it.
+      // A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by
+      // it.
       append(node, opcode, 0, {k, k > kLeastBlend ? 0.25 / k : 0});
     };
     switch (graph_.kind(node)) {
-      case Kind::Union: return append(node, Opcode::Min, 0, {});
-      case Kind::Intersection: return append(node, Opcode::Max, 0, {});
-      case Kind::Subtraction: return append(node, negated ? Opcode::Max : Opcode::Subtract, 0, {});
-      case Kind::SmoothUnion: return blend(Opcode::SmoothMin);
-      case Kind::SmoothIntersection: return blend(Opcode::SmoothMax);
-      case Kind::SmoothSubtraction: return blend(negated ? Opcode::SmoothMax : Opcode::SmoothSubtract);
-      default: CHECK(false, "only combinators have several children");
+      case Kind::Union:
+        return append(node, Opcode::Min, 0, {});
+      case Kind::Intersection:
+        return append(node, Opcode::Max, 0, {});
+      case Kind::Subtraction:
+        return append(node, negated ? Opcode::Max : Opcode::Subtract, 0, {});
+      case Kind::SmoothUnion:
+        return blend(Opcode::SmoothMin);
+      case Kind::SmoothIntersection:
+        return blend(Opcode::SmoothMax);
+      case Kind::SmoothSubtraction:
+        return blend(negated ? Opcode::SmoothMax : Opcode::SmoothSubtract);
+      default:
+        CHECK(false, "only combinators have several children");
     }
   }
 

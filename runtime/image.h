@@ -24,8 +24,8 @@ Picture albedo_picture(const Film& film);
 // sample hit; pixels that hit with a part of their samples show the mean of those.
 Picture normal_picture(const Film& film);
 
-// The film's nearest distance over the pixel's, along the rays, not sRGB encoded: white is nearest, half as bright twice
-// as far, black infinitely far or nothing. A horizon leaves the foreground its greys.
+// The film's nearest distance over the pixel's, along the rays, not sRGB encoded: white is nearest, half as bright
+// twice as far, black infinitely far or nothing. A horizon leaves the foreground its greys.
 Picture depth_picture(const Film& film);
 
 }  // namespace fathom::runtime

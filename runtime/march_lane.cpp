@@ -33,8 +33,8 @@ float longest_crossing(float error, const LaneRules& rules) {
   return kLongestCrossing * std::min(band_of(error, rules), 2 * rules.band);
 }
 
-// Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what happens
-// near the surface is for double to decide.
+// Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
+// happens near the surface is for double to decide.
 bool float_is_too_coarse(float error, const LaneRules& rules) {
   return kOvershootErrors * error > longest_crossing(error, rules);
 }
@@ -139,7 +139,8 @@ LaneVerdict walk(Lane& a, float g, float error, const LaneRules& rules) {
     if (gap <= 0 || plain) return accept(a, g, r, error, rules);
     return retreat(a, error);
   }
-  if (a.crossing || plain || gap <= std::min(band_of(error, rules), 2 * rules.band)) return begin_refining(a, g, error);
+  if (a.crossing || plain || gap <= std::min(band_of(error, rules), 2 * rules.band))
+    return begin_refining(a, g, error);
   return retreat(a, error);
 }
 

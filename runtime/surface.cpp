@@ -12,8 +12,8 @@ namespace {
 
 // The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
 constexpr float kLeastCosine = 1e-4f;
-// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large numbers
-// cancel d_f's bound is loose, and twice it is enough.
+// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large
+// numbers cancel d_f's bound is loose, and twice it is enough.
 constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
 // ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
 constexpr float kMostOffset = 32;
@@ -32,8 +32,8 @@ glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
 
 }  // namespace
 
-void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits, std::span<SurfacePoint> points,
-                   vm::Workspace& workspace) {
+void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+                   std::span<SurfacePoint> points, vm::Workspace& workspace) {
   CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
   alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz;
   alignas(64) std::array<std::uint32_t, kSurfaceBatch> surface;

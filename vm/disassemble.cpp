@@ -33,9 +33,9 @@ std::string height(int before, int change) {
 std::string disassemble(const VerifiedProgram& verified) {
   const Program& program = verified.program();
   std::string text = fmt::format("; {}  {} ops  {} words  max stack {} values, {} points  {} locals  cost {}\n",
-                                 program.source_name.empty() ? "program" : program.source_name, verified.instructions(),
-                                 program.words.size(), verified.max_values(), verified.max_points(), program.locals,
-                                 verified.cost());
+                                 program.source_name.empty() ? "program" : program.source_name,
+                                 verified.instructions(), program.words.size(), verified.max_values(),
+                                 verified.max_points(), program.locals, verified.cost());
   text += "; off  words  values  points  cost  op                               ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
@@ -45,8 +45,8 @@ std::string disassemble(const VerifiedProgram& verified) {
     values += row.effect.values_change;
     points += row.effect.points_change;
     const std::string source = i < program.debug.size() ? place(program, program.debug[i]) : "";
-    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, 1 + row.immediates, value_stack, point_stack,
-                        row.cost, operation(program, at, row), source);
+    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, 1 + row.immediates, value_stack,
+                        point_stack, row.cost, operation(program, at, row), source);
     at += 1 + static_cast<std::size_t>(row.immediates);
   }
   return text;

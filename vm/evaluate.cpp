@@ -14,7 +14,6 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-
 #include "vm/interpret-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,14 +89,18 @@ void surface_batch(const VerifiedProgram& program, Points points, std::size_t co
   using T = Tagged<Dual<Batch>>;
   for_each_block<T>(program, points, count, workspace,
                     [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
-    store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v; });
-    store(size, used, out.gradient_x + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dx); });
-    store(size, used, out.gradient_y + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dy); });
-    store(size, used, out.gradient_z + begin, [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dz); });
-    float surfaces[kSlot<T> * kLanes];
-    store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
-    std::transform(surfaces, surfaces + size, out.surface + begin, [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
-  });
+                      store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v; });
+                      store(size, used, out.gradient_x + begin,
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dx); });
+                      store(size, used, out.gradient_y + begin,
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dy); });
+                      store(size, used, out.gradient_z + begin,
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dz); });
+                      float surfaces[kSlot<T> * kLanes];
+                      store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
+                      std::transform(surfaces, surfaces + size, out.surface + begin,
+                                     [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
+                    });
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
@@ -138,8 +141,7 @@ struct Isa {
 };
 
 // Best first.
-constexpr Isa kIsas[] = {
-    {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
+constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
 
 // Highway's choice without any mock.
 std::int64_t supported_targets() {

@@ -73,8 +73,8 @@ struct Range {
 // Analysis", 1966.
 Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
-// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best first.
-// The environment variable FATHOM_ISA forces one.
+// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best
+// first. The environment variable FATHOM_ISA forces one.
 std::string_view isa_name();
 std::vector<std::string_view> available_isas();
 

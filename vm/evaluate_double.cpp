@@ -25,7 +25,9 @@ SurfaceValue surface(const VerifiedProgram& program, glm::dvec3 p, Workspace& wo
   const auto result = run_once<Tagged<D>>(program, point, workspace);
   const D& d = result.v;
   const auto finite_or_zero = [](Real a) { return std::isfinite(a.v) ? a.v : 0; };
-  return {d.v.v, {finite_or_zero(d.dx), finite_or_zero(d.dy), finite_or_zero(d.dz)}, result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v)};
+  return {d.v.v,
+          {finite_or_zero(d.dx), finite_or_zero(d.dy), finite_or_zero(d.dz)},
+          result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v)};
 }
 
 Range range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {

@@ -1,8 +1,8 @@
 // The interpreter: one loop, a template over the number type.
 //
 // A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (128 with 16 f32 lanes); all
-// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is verified:
-// nothing is checked here.
+// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is
+// verified: nothing is checked here.
 #if defined(FATHOM_VM_INTERPRET_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERPRET_INL
 #undef FATHOM_VM_INTERPRET_INL
@@ -21,34 +21,34 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 // One struct per opcode with its meaning as a function; the form decides what it may use.
-#define OP_Point(Name, meaning)                                                                                    \
-  struct Name##Op {                                                                                                \
-    template <class T>                                                                                             \
-    static HWY_INLINE Vec3<T> apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k) {                     \
-      return meaning;                                                                                              \
-    }                                                                                                              \
+#define OP_Point(Name, meaning)                                                                \
+  struct Name##Op {                                                                            \
+    template <class T>                                                                         \
+    static HWY_INLINE Vec3<T> apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                                          \
+    }                                                                                          \
   };
-#define OP_Shape(Name, meaning)                                                                                    \
-  struct Name##Op {                                                                                                \
-    template <class T>                                                                                             \
-    static HWY_INLINE T apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k,                             \
-                              [[maybe_unused]] const std::uint32_t* w) {                                           \
-      return meaning;                                                                                              \
-    }                                                                                                              \
+#define OP_Shape(Name, meaning)                                                        \
+  struct Name##Op {                                                                    \
+    template <class T>                                                                 \
+    static HWY_INLINE T apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k, \
+                              [[maybe_unused]] const std::uint32_t* w) {               \
+      return meaning;                                                                  \
+    }                                                                                  \
   };
-#define OP_Unary(Name, meaning)                                                                                    \
-  struct Name##Op {                                                                                                \
-    template <class T>                                                                                             \
-    static HWY_INLINE T apply(const T& a, [[maybe_unused]] const Constant<T>* k) {                                 \
-      return meaning;                                                                                              \
-    }                                                                                                              \
+#define OP_Unary(Name, meaning)                                                    \
+  struct Name##Op {                                                                \
+    template <class T>                                                             \
+    static HWY_INLINE T apply(const T& a, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                              \
+    }                                                                              \
   };
-#define OP_Binary(Name, meaning)                                                                                   \
-  struct Name##Op {                                                                                                \
-    template <class T>                                                                                             \
-    static HWY_INLINE T apply(const T& a, const T& b, [[maybe_unused]] const Constant<T>* k) {                     \
-      return meaning;                                                                                              \
-    }                                                                                                              \
+#define OP_Binary(Name, meaning)                                                               \
+  struct Name##Op {                                                                            \
+    template <class T>                                                                         \
+    static HWY_INLINE T apply(const T& a, const T& b, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                                          \
+    }                                                                                          \
   };
 #define OP_Machine(Name, meaning)
 #define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
@@ -60,8 +60,8 @@ namespace fathom::vm::HWY_NAMESPACE {
 #undef OP_Binary
 #undef OP_Machine
 
-// How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs to
-// no surface, kNoSurface; a tag claims what no tag within has claimed.
+// How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs
+// to no surface, kNoSurface; a tag claims what no tag within has claimed.
 inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits {
@@ -126,10 +126,22 @@ class Machine {
       const std::uint32_t word = program_.words[at_];
       ++at_;
       switch (static_cast<Opcode>(word & 0xff)) {
-#define OP_Point(Name) case Opcode::Name: apply_point<Name##Op, info_##Name>(); break;
-#define OP_Shape(Name) case Opcode::Name: apply_shape<Name##Op, info_##Name>(); break;
-#define OP_Unary(Name) case Opcode::Name: apply_unary<Name##Op, info_##Name>(); break;
-#define OP_Binary(Name) case Opcode::Name: apply_binary<Name##Op, info_##Name>(); break;
+#define OP_Point(Name)                    \
+  case Opcode::Name:                      \
+    apply_point<Name##Op, info_##Name>(); \
+    break;
+#define OP_Shape(Name)                    \
+  case Opcode::Name:                      \
+    apply_shape<Name##Op, info_##Name>(); \
+    break;
+#define OP_Unary(Name)                    \
+  case Opcode::Name:                      \
+    apply_unary<Name##Op, info_##Name>(); \
+    break;
+#define OP_Binary(Name)                    \
+  case Opcode::Name:                       \
+    apply_binary<Name##Op, info_##Name>(); \
+    break;
 #define OP_Machine(Name)
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
@@ -139,8 +151,12 @@ class Machine {
 #undef OP_Unary
 #undef OP_Binary
 #undef OP_Machine
-        case Opcode::Drop: point_ -= kBlock; break;
-        case Opcode::Tee: copy(locals_ + operand_of(word) * kBlock, top_); break;
+        case Opcode::Drop:
+          point_ -= kBlock;
+          break;
+        case Opcode::Tee:
+          copy(locals_ + operand_of(word) * kBlock, top_);
+          break;
         case Opcode::Load:
           top_ += kBlock;
           copy(top_, locals_ + operand_of(word) * kBlock);
@@ -190,7 +206,8 @@ class Machine {
     const auto immediates = take<Count>();
     const Vec3<P>* from = point_;
     T* to = top_ += kBlock;
-    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], immediates.k, immediates.words)); });
+    for_used([&](std::size_t i)
+                 HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], immediates.k, immediates.words)); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_unary() {

@@ -7,23 +7,37 @@ namespace {
 
 constexpr StackEffect effect_of(Opcode opcode, Form form) {
   switch (form) {
-    case Form::Point: return {0, 0, 1, +1};
-    case Form::Shape: return {0, +1, 1, 0};
-    case Form::Unary: return {1, 0, 0, 0};
-    case Form::Binary: return {2, -1, 0, 0};
-    case Form::Machine: break;
+    case Form::Point:
+      return {0, 0, 1, +1};
+    case Form::Shape:
+      return {0, +1, 1, 0};
+    case Form::Unary:
+      return {1, 0, 0, 0};
+    case Form::Binary:
+      return {2, -1, 0, 0};
+    case Form::Machine:
+      break;
   }
   switch (opcode) {
-    case Opcode::Drop: return {0, 0, 2, -1};  // the first point is the caller's and stays
-    case Opcode::Load: return {0, +1, 0, 0};
-    default: return {1, 0, 0, 0};  // Tee, Tag
+    case Opcode::Drop:
+      return {0, 0, 2, -1};  // the first point is the caller's and stays
+    case Opcode::Load:
+      return {0, +1, 0, 0};
+    default:
+      return {1, 0, 0, 0};  // Tee, Tag
   }
 }
 
 constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning)                              \
-  {Opcode::Name, mnemonic, Form::form, immediates, count_names(immediates), Choice::choice, cost, \
-   effect_of(Opcode::Name, Form::form),                                                          \
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
+  {Opcode::Name,                                                    \
+   mnemonic,                                                        \
+   Form::form,                                                      \
+   immediates,                                                      \
+   count_names(immediates),                                         \
+   Choice::choice,                                                  \
+   cost,                                                            \
+   effect_of(Opcode::Name, Form::form),                             \
    Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag},
 #include "vm/opcodes.def"
 #undef OP

@@ -17,7 +17,8 @@ void Program::append(Opcode opcode, std::uint32_t operand, const std::vector<dou
   for (int i = 0; i < row.immediates; ++i) {
     const double value = immediates[static_cast<std::size_t>(i)] + 0.0;  // -0 becomes 0
     const bool integer = is_integer_immediate(row, i);
-    words.push_back(integer ? static_cast<std::uint32_t>(value) : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    words.push_back(integer ? static_cast<std::uint32_t>(value)
+                            : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     wide.push_back(integer ? 0.0 : value);
   }
   debug.push_back(std::move(entry));

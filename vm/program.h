@@ -7,8 +7,8 @@
 //     sphere 0.5          ; p p'   -> value |p'| - 0.5
 //     drop                ; p p'   -> p
 //
-// Immediates are f32 in the words; `wide` holds the same constants unrounded for evaluation in double, so that a scene
-// far from the origin keeps its features. A Program is data from anywhere; only vm/verify.h makes it runnable.
+// Immediates are f32 in the words; `wide` holds the same constants unrounded for evaluation in double, so that a
+// scene far from the origin keeps its features. A Program is data from anywhere; only vm/verify.h makes it runnable.
 #pragma once
 
 #include <cstdint>

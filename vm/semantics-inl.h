@@ -1,9 +1,9 @@
 // Meanings of the opcodes that are longer than a line (vm/opcodes.def), over any number type of vm/number/.
 //
-// T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is that
-// of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after Inigo
-// Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign failed; derivations beside.
-// Tested by: tests/compiler/shapes_test.cpp, tests/vm/evaluate_test.cpp
+// T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is
+// that of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after
+// Inigo Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign failed; derivations
+// beside. Tested by: tests/compiler/shapes_test.cpp, tests/vm/evaluate_test.cpp
 #if defined(FATHOM_VM_SEMANTICS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SEMANTICS_INL
 #undef FATHOM_VM_SEMANTICS_INL
@@ -62,8 +62,8 @@ HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_hei
 
 // k: half height, bottom radius, top radius, the side's outward normal (nx, ny) in the half-plane (distance from the
 // axis, y), the side's length. Inside, a convex profile: the largest of the planes' distances. Outside, the nearer of
-// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface, where
-// the planes' branch is taken.
+// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface,
+// where the planes' branch is taken.
 template <class T>
 HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -76,12 +76,13 @@ HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
   const T past_rim = max(zero, rho - select(p.y < zero, k[1], k[2]));
   const T outside = sqrt(min(sqr(side) + sqr(beyond), sqr(past_rim) + sqr(cap)));
   const T inside = max(side, cap);
-  // Never less than `inside`, but on a rim rounding can leave `outside` 0 and without a gradient where `inside` is not.
+  // Never less than `inside`, but on a rim rounding can leave `outside` 0 and without a gradient where `inside` is
+  // not.
   return select(zero < inside, max(outside, inside), inside);
 }
 
-// k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis, y).
-// Gradient undefined at the balls' centres and on the axis inside.
+// k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis,
+// y). Gradient undefined at the balls' centres and on the axis inside.
 template <class T>
 HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -93,10 +94,10 @@ HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
   return select(along < zero, lower, select(k[3] * k[2] < along, upper, side));
 }
 
-// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts the polygon into the xy plane
-// with its first edge on the x axis, corners counter-clockwise; the first edge's length; for each further edge its
-// start x y, its direction ux uy and its length; the thickness. The distance to the flat polygon is |z| over its inside
-// and the distance to the nearest edge elsewhere. Gradient undefined in the polygon's plane.
+// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts the polygon into the xy
+// plane with its first edge on the x axis, corners counter-clockwise; the first edge's length; for each further edge
+// its start x y, its direction ux uy and its length; the thickness. The distance to the flat polygon is |z| over its
+// inside and the distance to the nearest edge elsewhere. Gradient undefined in the polygon's plane.
 template <int N, class T>
 HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -188,8 +189,8 @@ HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t ite
   return select(distance > bound + bound, min(estimate, distance - bound), estimate);
 }
 
-// Polynomial blend of width k: within |a - b| < k the result dips below the lesser by (k - |a-b|)^2 / (4k), at most k/4
-// (Inigo Quilez, "Smooth minimum"). The gradient is a convex combination of a's and b's, so 1-Lipschitz stays so.
+// Polynomial blend of width k: within |a - b| < k the result dips below the lesser by (k - |a-b|)^2 / (4k), at most
+// k/4 (Inigo Quilez, "Smooth minimum"). The gradient is a convex combination of a's and b's, so 1-Lipschitz stays so.
 template <class T>
 HWY_INLINE T smooth_min(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
   const T h = max(constant<T>(0.0), k - abs(a - b));
@@ -201,14 +202,15 @@ HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k
   return max(a, b) + h * h * inv4k;
 }
 
-// Smooth minimum and maximum rise in both operands, so their ranges are those of the ends; the formula above would use
-// a and b several times and widen the result by up to k.
+// Smooth minimum and maximum rise in both operands, so their ranges are those of the ends; the formula above would
+// use a and b several times and widen the result by up to k.
 HWY_INLINE Interval smooth_min(Interval a, Interval b, Interval k, Interval inv4k) {
   const auto end = [&](double x, double y) HWY_ATTR {
     const Interval h = max(Interval{0, 0}, k - abs(Interval{x, x} - Interval{y, y}));
     return Interval{std::min(x, y), std::min(x, y)} - h * h * inv4k;
   };
-  if (!(std::isfinite(a.lo) && std::isfinite(a.hi) && std::isfinite(b.lo) && std::isfinite(b.hi))) return whole_line();
+  if (!(std::isfinite(a.lo) && std::isfinite(a.hi) && std::isfinite(b.lo) && std::isfinite(b.hi)))
+    return whole_line();
   return {end(a.lo, b.lo).lo, end(a.hi, b.hi).hi};
 }
 HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4k) {

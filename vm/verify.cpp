@@ -23,7 +23,8 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
     const std::uint32_t bits = program.words[word];
     if (is_integer_immediate(row, i)) {
       if (bits == 0 || bits > limits.loop_count) {
-        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, immediate_name(row, i), bits, limits.loop_count);
+        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, immediate_name(row, i), bits,
+                           limits.loop_count);
       }
     } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
       return fmt::format("{}: {} is not finite", row.mnemonic, immediate_name(row, i));
@@ -37,7 +38,8 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
 
 std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
   const std::uint32_t operand = operand_of(word);
-  if (!row.has_operand && operand != 0) return fmt::format("{} has no operand, but {} is given", row.mnemonic, operand);
+  if (!row.has_operand && operand != 0)
+    return fmt::format("{} has no operand, but {} is given", row.mnemonic, operand);
   if (row.opcode != Opcode::Tee && row.opcode != Opcode::Load) return std::nullopt;
   if (operand >= state.written.size()) {
     return fmt::format("{} {}: the program declares {} locals", row.mnemonic, operand, state.written.size());
@@ -78,11 +80,14 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
   State state;
   state.written.assign(program.locals, false);
   for (std::size_t at = 0; at < size;) {
-    const auto fail = [&](std::string reason) { return VerifyError{static_cast<std::uint32_t>(at), std::move(reason)}; };
+    const auto fail = [&](std::string reason) {
+      return VerifyError{static_cast<std::uint32_t>(at), std::move(reason)};
+    };
     const std::uint32_t word = program.words[at];
     const OpcodeInfo* row = find_opcode(word & 0xff);
     if (row == nullptr) return fail(fmt::format("no opcode {}", word & 0xff));
-    if (size - at - 1 < static_cast<std::size_t>(row->immediates)) return fail(fmt::format("{} is cut off", row->mnemonic));
+    if (size - at - 1 < static_cast<std::size_t>(row->immediates))
+      return fail(fmt::format("{} is cut off", row->mnemonic));
     if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
     if (auto reason = check_stacks(*row, limits, state)) return fail(std::move(*reason));
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
@@ -91,8 +96,8 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
     result.cost_ += static_cast<std::uint32_t>(row->cost);
   }
   if (state.values != 1 || state.points != 1) {
-    return VerifyError{static_cast<std::uint32_t>(size), fmt::format("ends with {} values and {} points, not one of each",
-                                                                     state.values, state.points)};
+    return VerifyError{static_cast<std::uint32_t>(size),
+                       fmt::format("ends with {} values and {} points, not one of each", state.values, state.points)};
   }
   result.max_values_ = static_cast<std::uint32_t>(state.max_values);
   result.max_points_ = static_cast<std::uint32_t>(state.max_points);

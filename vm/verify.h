@@ -1,10 +1,10 @@
-// The verifier: one linear pass that turns an untrusted Program into a VerifiedProgram, which evaluators run unchecked.
+// The verifier: one linear pass that turns an untrusted Program into a VerifiedProgram, which evaluators run
+// unchecked.
 //
 // Proved: every opcode exists; no instruction is cut off; both stacks always hold what an instruction needs; the
-// program ends with exactly one value and the caller's point; locals are written before they are read and are below the
-// declared count; float immediates are finite and the wide ones round to them; integer immediates and sizes are within the limits below. There are no
-// jumps, so every program ends.
-// Tested by: tests/vm/verify_test.cpp
+// program ends with exactly one value and the caller's point; locals are written before they are read and are below
+// the declared count; float immediates are finite and the wide ones round to them; integer immediates and sizes are
+// within the limits below. There are no jumps, so every program ends. Tested by: tests/vm/verify_test.cpp
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ namespace fathom::vm {
 // Sizes a program may not exceed. They bound memory and time before anything is allocated.
 struct Limits {
   std::uint32_t words = 16u << 20;
-  std::uint32_t stack = 4096;       // values, and points
+  std::uint32_t stack = 4096;  // values, and points
   std::uint32_t locals = 65536;
   std::uint32_t loop_count = 4096;  // of an integer immediate
 };

@@ -13,8 +13,9 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Exact at whole quarter turns, and the same on every machine, which libm's functions are not: the angle's rest from the
-// nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall below 2^-53 after x^18/18!.
+// Exact at whole quarter turns, and the same on every machine, which libm's functions are not: the angle's rest from
+// the nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall below 2^-53 after
+// x^18/18!.
 SineCosine sine_cosine(double degrees) {
   const double turned = std::fmod(degrees, 360.0);
   const double quarters = std::floor(turned / 90.0 + 0.5);
@@ -27,10 +28,14 @@ SineCosine sine_cosine(double degrees) {
     term *= -x / (n + 2);
   }
   switch ((static_cast<int>(quarters) + 4) % 4) {
-    case 0: return {sine, cosine};
-    case 1: return {cosine, -sine};
-    case 2: return {-sine, -cosine};
-    default: return {-cosine, sine};
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
   }
 }
 

@@ -1,8 +1,8 @@
 #include "compiler/frontend/records.h"
 
-#include "compiler/compiled_scene.h"
-
 #include <utility>
+
+#include "compiler/compiled_scene.h"
 
 namespace fathom::compiler {
 namespace {

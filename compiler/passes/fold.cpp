@@ -27,9 +27,12 @@ NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId 
 
 Kind hard(Kind smooth) {
   switch (smooth) {
-    case Kind::SmoothUnion: return Kind::Union;
-    case Kind::SmoothIntersection: return Kind::Intersection;
-    default: return Kind::Subtraction;
+    case Kind::SmoothUnion:
+      return Kind::Union;
+    case Kind::SmoothIntersection:
+      return Kind::Intersection;
+    default:
+      return Kind::Subtraction;
   }
 }
 
@@ -39,7 +42,8 @@ Scene fold(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     const auto params = scene.graph.params(id);
     switch (scene.graph.kind(id)) {
-      case Kind::Round: return fold_round(scene, out, id, params[0], children[0]);
+      case Kind::Round:
+        return fold_round(scene, out, id, params[0], children[0]);
       case Kind::Transform:
         if (is_identity(params)) return children[0];
         break;
@@ -52,9 +56,11 @@ Scene fold(const Scene& scene) {
       case Kind::SmoothIntersection:
       case Kind::SmoothSubtraction:
         if (children.size() == 1) return children[0];
-        if (params[0] <= kLeastBlend) return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
+        if (params[0] <= kLeastBlend)
+          return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
         break;
-      default: break;
+      default:
+        break;
     }
     return keep(scene, out, id, children);
   });

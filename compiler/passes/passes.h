@@ -21,8 +21,8 @@ Scene affine(const Scene& scene);
 // ones: their result depends on the order.
 Scene flatten(const Scene& scene);
 
-// Puts the operands of unions, intersections and cuts in one order and drops repeated ones, so that equal nodes become
-// one node, which is evaluated once.
+// Puts the operands of unions, intersections and cuts in one order and drops repeated ones, so that equal nodes
+// become one node, which is evaluated once.
 Scene share(const Scene& scene);
 
 }  // namespace fathom::compiler

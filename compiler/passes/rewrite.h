@@ -18,8 +18,8 @@ inline std::vector<bool> reachable(const Scene& scene) {
   return reached;
 }
 
-// make(out, id, children) returns the node of `out` that takes the place of node `id` of `in`; `children` are those of
-// `id` as already rebuilt.
+// make(out, id, children) returns the node of `out` that takes the place of node `id` of `in`; `children` are those
+// of `id` as already rebuilt.
 template <class Make>
 Scene rewrite(const Scene& in, const Make& make) {
   Scene out;

@@ -78,8 +78,8 @@ Complaint check_sheet(const std::vector<dvec3>& v) {
 Complaint check_round_box(Params p) {
   const double smallest = std::min({p[0], p[1], p[2]});
   if (p[3] <= smallest) return std::nullopt;
-  return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size", p[3],
-                     smallest);
+  return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size",
+                     p[3], smallest);
 }
 
 Complaint check_rounded_cylinder(Params p) {
@@ -114,8 +114,10 @@ Complaint check_quad(Params p) {
   for (std::size_t i = 0; i < 4; ++i) {
     const dvec3 before = v[i] - v[(i + 3) % 4], after = v[(i + 1) % 4] - v[i];
     if (glm::dot(glm::cross(before, after), normal) <= 0) {
-      return fmt::format("the corner at `{}` is not convex; give the corners in order around a convex shape, or use two "
-                         "triangles", kCornerNames[i]);
+      return fmt::format(
+          "the corner at `{}` is not convex; give the corners in order around a convex shape, or use two "
+          "triangles",
+          kCornerNames[i]);
     }
   }
   return std::nullopt;
@@ -134,9 +136,7 @@ Complaint check_mandelbulb(Params p) {
 
 std::vector<double> same_immediates(Params p) { return {p.begin(), p.end()}; }
 
-std::vector<double> mandelbulb_immediates(Params p) {
-  return {p[0], p[1], p[2], escape_radius(p[0]), p[3]};
-}
+std::vector<double> mandelbulb_immediates(Params p) { return {p[0], p[1], p[2], escape_radius(p[0]), p[3]}; }
 
 std::vector<double> round_box_immediates(Params p) { return {p[0] - p[3], p[1] - p[3], p[2] - p[3], p[3]}; }
 
@@ -164,8 +164,8 @@ std::vector<double> round_cone_immediates(Params p) {
   return {p[0], p[1], p[2], std::max(1e-30, std::sqrt((1 - b) * (1 + b))), b};
 }
 
-// A frame with the first corner at its origin, the first edge along x and the normal along z; the first edge's length;
-// for each further edge its start, its direction and its length in that frame's xy plane; the thickness.
+// A frame with the first corner at its origin, the first edge along x and the normal along z; the first edge's
+// length; for each further edge its start, its direction and its length in that frame's xy plane; the thickness.
 std::vector<double> sheet_immediates(Params p) {
   const std::vector<dvec3> v = flat_corners(p);
   const dvec3 z = glm::normalize(area_vector(v));

@@ -1,5 +1,5 @@
-// What the compiler knows of each primitive beside its opcode: which parameters fit together, the immediates its opcode
-// takes, and a box around it. All take the parameters in the order of the node table.
+// What the compiler knows of each primitive beside its opcode: which parameters fit together, the immediates its
+// opcode takes, and a box around it. All take the parameters in the order of the node table.
 #pragma once
 
 #include <optional>

@@ -109,9 +109,9 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     height = request.size->height;
   }
   if (height > compiler::kMaxSide || width * height > kMaxPixels) {
-    return fail(
-        streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
-        {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide, kMaxPixels / 1000000)});
+    return fail(streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
+                {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide,
+                             kMaxPixels / 1000000)});
   }
   scene.film.width = static_cast<int>(width);
   scene.film.height = static_cast<int>(height);

@@ -1,7 +1,5 @@
 #include "runtime/cli/values.h"
 
-#include "compiler/compiled_scene.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
 
 namespace fathom::cli {
 namespace {
-
 
 Verdict complain(std::string problem, std::string help = "") {
   return Complaint{std::move(problem), std::move(help)};
@@ -92,7 +90,8 @@ Verdict read_size(std::string_view text, PixelSize& size) {
   const std::size_t middle = text.find('x');
   if (middle != std::string_view::npos) {
     const auto width = to<int>(text.substr(0, middle)), height = to<int>(text.substr(middle + 1));
-    if (width && height && *width >= 1 && *height >= 1 && *width <= compiler::kMaxSide && *height <= compiler::kMaxSide) {
+    if (width && height && *width >= 1 && *height >= 1 && *width <= compiler::kMaxSide &&
+        *height <= compiler::kMaxSide) {
       size = {*width, *height};
       return std::nullopt;
     }

@@ -30,7 +30,8 @@ double largest_error(const compiler::CompiledScene& scene, double size) {
   vm::Workspace workspace;
   double largest = 0;
   for (int i = 0; i < 3000; ++i) {
-    const float x = static_cast<float>(random.uniform(-size, size)), z = static_cast<float>(random.uniform(-size, size));
+    const float x = static_cast<float>(random.uniform(-size, size)),
+                z = static_cast<float>(random.uniform(-size, size));
     float y = 0;
     for (int step = 0; step < 8; ++step) {  // onto the surface below or above
       const double d = vm::evaluate_distance(scene.distance, glm::dvec3(x, y, z), workspace);
@@ -52,21 +53,29 @@ TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
   for (const char* r : {"1", "100", "10000", "1000000"}) {
     const std::string s(r);
     CAPTURE(s);
-    CHECK(largest_error(scene_of(R"({"type": "sphere", "radius": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"), 3) <= 1);
+    CHECK(largest_error(scene_of(R"({"type": "sphere", "radius": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"),
+                        3) <= 1);
     CHECK(largest_error(scene_of(R"({"type": "union", "translate": [-)" + s + R"(, 0, 0], "of": [
-        {"type": "box", "half_size": [3, 1, 3], "translate": [)" + s + R"(, -1, 0]}, {"type": "sphere", "radius": 1}]})"), 2) <= 1);
+        {"type": "box", "half_size": [3, 1, 3], "translate": [)" +
+                                 s + R"(, -1, 0]}, {"type": "sphere", "radius": 1}]})"),
+                        2) <= 1);
     CHECK(largest_error(scene_of(R"({"type": "round", "radius": )" + s + R"(, "of": {"type": "sphere", "radius": 1,
-        "translate": [0, -)" + s + R"(, 0]}})"), 2) <= 1);
+        "translate": [0, -)" + s +
+                                 R"(, 0]}})"),
+                        2) <= 1);
     CHECK(largest_error(scene_of(R"({"type": "smooth_union", "k": )" + s + R"(, "of": [
-        {"type": "plane", "normal": [0, 1, 0]}, {"type": "plane", "normal": [0.1, 1, 0]}]})"), 2) <= 1);
-    CHECK(largest_error(scene_of(R"({"type": "sphere", "radius": 1, "scale": )" + s + R"(, "translate": [0, -)" + s +
-                                 ", 0]}"), 2) <= 1);
+        {"type": "plane", "normal": [0, 1, 0]}, {"type": "plane", "normal": [0.1, 1, 0]}]})"),
+                        2) <= 1);
+    CHECK(largest_error(
+              scene_of(R"({"type": "sphere", "radius": 1, "scale": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"),
+              2) <= 1);
   }
 }
 
 // Once, a lamp far away would have made every distance look uncertain.
 TEST_CASE("what is far away costs nothing here", "[bounds]") {
-  CHECK(scene_of(R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})").magnitude <= 2);
+  CHECK(scene_of(R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
+            .magnitude <= 2);
   CHECK(scene_of(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").magnitude <= 0.1);
 }
 

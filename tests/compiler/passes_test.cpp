@@ -1,8 +1,9 @@
 // Every pass leaves the field and the surfaces as they were, and has nothing left to do on its own result; the code
 // that lowering makes of a graph means what the graph means.
-#include <catch2/catch.hpp>
+#include "compiler/passes/passes.h"
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -11,7 +12,6 @@
 #include "compiler/bounds.h"
 #include "compiler/compile.h"
 #include "compiler/lower.h"
-#include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
@@ -103,7 +103,9 @@ TEST_CASE("all passes together leave the field as it was, and so does lowering",
         if (!(keep_paint && !pass.keeps_paint)) after = pass.run(after);
       }
       Random random(seed);
-      INFO("seed " << seed << (keep_paint ? ", painted" : "") << '\n' << print(before) << "becomes\n" << print(after));
+      INFO("seed " << seed << (keep_paint ? ", painted" : "") << '\n'
+                   << print(before) << "becomes\n"
+                   << print(after));
       check_same(before, after, keep_paint, random, 20);
       auto code = compiler::lower(after, compiler::Source{}, 100000);
       REQUIRE(code);
@@ -132,7 +134,8 @@ TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
       const dvec3 p = random.in_box(3);
       const double judged = judge_distance(scene.graph, scene.root, p);
       INFO("seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z << '\n' << print(scene));
-      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - judged) <= 1e-12 * std::max(1.0, std::abs(judged)));
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - judged) <=
+            1e-12 * std::max(1.0, std::abs(judged)));
     }
   }
 }

@@ -1,8 +1,7 @@
 // What a shape is: the judge against brute force, then the machine against the judge, then what every distance field
 // owes the renderer: a Lipschitz constant, a bounding box, gradients.
-#include <catch2/catch.hpp>
-
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>

@@ -216,12 +216,13 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
 }
 
 }  // namespace
-// Once, new rays from the top of a huge box met it again: float knows its surface only to 5e-4 (numbers of 10^4 cancel),
-// and they started closer than that. A plane is the same floor without the large numbers.
+// Once, new rays from the top of a huge box met it again: float knows its surface only to 5e-4 (numbers of 10^4
+// cancel), and they started closer than that. A plane is the same floor without the large numbers.
 TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render]") {
   const auto with_floor = [](const std::string& floor) {
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 1.5, 4], "target": [0, 0.5, 0]},
-        "objects": [)" + floor + R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]}])");
+        "objects": [)" +
+                    floor + R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]}])");
   };
   const RenderOptions options = options_of(64, 36, 64);
   const Estimate plane = estimate(render(with_floor(R"({"type": "plane", "normal": [0, 1, 0]})"), options).film);
@@ -232,13 +233,14 @@ TEST_CASE("render: a floor that is the top of a huge solid is as bright as a pla
   CHECK(std::abs(box.mean - plane.mean) < 3 * (box.sigma + plane.sigma));
 }
 
-// Once, a ball 1e5 from the origin came out in three pieces, without its shadow, for float steps near the surface were
-// longer than the ball.
+// Once, a ball 1e5 from the origin came out in three pieces, without its shadow, for float steps near the surface
+// were longer than the ball.
 TEST_CASE("render: a scene far from the origin looks as it does there", "[render]") {
   const auto at = [](const std::string& x) {
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [)" + x + R"(, 1, 3], "target": [)" + x +
                     R"(, 0.5, 0]}, "objects": [{"type": "plane", "normal": [0, 1, 0]},
-                    {"type": "sphere", "radius": 0.5, "translate": [)" + x + ", 0.5, 0]}]");
+                    {"type": "sphere", "radius": 0.5, "translate": [)" +
+                    x + ", 0.5, 0]}]");
   };
   const RenderResult here = render(at("0"), options_of(64, 36, 64));
   const Estimate expected = estimate(here.film);
@@ -260,7 +262,8 @@ TEST_CASE("render: a scene far from the origin looks as it does there", "[render
 
 // Once, a plane cut every scene off ten thousand units from the camera.
 TEST_CASE("render: a large scene with a plane is not cut off", "[render]") {
-  const auto scene = scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 15000, 40000], "target": [0, 5000, 0]},
+  const auto scene =
+      scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 15000, 40000], "target": [0, 5000, 0]},
       "objects": [{"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 5000, "translate": [0, 5000, 0]}])");
   const RenderResult result = render(scene, options_of(64, 36, 1));
   CHECK(result.stats.primary_hits == result.stats.primary_rays);

@@ -1,4 +1,5 @@
-// Every shipped scene: it compiles without a warning, and its picture agrees with a stored mean (tests/images/README.md).
+// Every shipped scene: it compiles without a warning, and its picture agrees with a stored mean
+// (tests/images/README.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -128,9 +129,9 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
       continue;
     }
     const Estimate reference = load(file), now = estimate(scene, 8, 1);
-    // Welch's t with at least 7 degrees of freedom: |t| > 4.8 has probability 0.002, so more than 2 % of cells beyond it
-    // does not happen by chance; and no cell may be beyond 25 (probability 2e-5 for any of 432).
-    // 1e-5 is allowed for the rounding of the stored digits, where nothing varies.
+    // Welch's t with at least 7 degrees of freedom: |t| > 4.8 has probability 0.002, so more than 2 % of cells beyond
+    // it does not happen by chance; and no cell may be beyond 25 (probability 2e-5 for any of 432). 1e-5 is allowed
+    // for the rounding of the stored digits, where nothing varies.
     std::size_t far_off = 0;
     double worst = 0, brighter = 0, variance = 0;
     for (std::size_t v = 0; v < kValues; ++v) {

@@ -17,7 +17,7 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kGrid = 16;             // nodes a side; two minima of one patch are never nearer than two cells
+constexpr int kGrid = 16;                // nodes a side; two minima of one patch are never nearer than two cells
 constexpr double kSmallestStep = 1e-12;  // of the patch's side: what is left of it is below 1e-10 of the distance
 
 // Least |map(u,v) - p| near (u, v): try the eight neighbours at a step, halve the step when none is nearer.
@@ -58,13 +58,26 @@ dvec3 vec(std::span<const double> k, std::size_t i) { return {k[i], k[i + 1], k[
 
 BruteForce::BruteForce(Kind kind, std::span<const double> k) {
   switch (kind) {
-    case Kind::Box: build_box(vec(k, 0), 0); break;
-    case Kind::RoundBox: build_box(vec(k, 0), k[3]); break;
-    case Kind::Plane: build_plane(vec(k, 0), k[3]); break;
-    case Kind::RoundCone: build_round_cone(k[0], k[1], k[2]); break;
-    case Kind::Triangle: build_sheet(k.first(9), k[9]); break;
-    case Kind::Quad: build_sheet(k.first(12), k[12]); break;
-    default: build_revolved(kind, k);
+    case Kind::Box:
+      build_box(vec(k, 0), 0);
+      break;
+    case Kind::RoundBox:
+      build_box(vec(k, 0), k[3]);
+      break;
+    case Kind::Plane:
+      build_plane(vec(k, 0), k[3]);
+      break;
+    case Kind::RoundCone:
+      build_round_cone(k[0], k[1], k[2]);
+      break;
+    case Kind::Triangle:
+      build_sheet(k.first(9), k[9]);
+      break;
+    case Kind::Quad:
+      build_sheet(k.first(12), k[12]);
+      break;
+    default:
+      build_revolved(kind, k);
   }
 }
 
@@ -124,7 +137,9 @@ void BruteForce::build_box(dvec3 half, double rounding) {
     if (fixed == 0 || (fixed > 1 && rounding == 0)) continue;
     add([=](double u, double v) {
       const double a = u * kPi / 2, b = v * kPi / 2;  // normals that fan out between the fixed axes
-      const double fan[4][3] = {{}, {1, 0, 0}, {std::cos(a), std::sin(a), 0},
+      const double fan[4][3] = {{},
+                                {1, 0, 0},
+                                {std::cos(a), std::sin(a), 0},
                                 {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)}};
       const double along[2] = {fixed == 2 ? v : u, v};
       dvec3 point(0);
@@ -229,8 +244,7 @@ void BruteForce::build_plane(dvec3 normal, double offset) {
 void BruteForce::build_sheet(std::span<const double> corners, double thickness) {
   const dvec3 a = vec(corners, 0), b = vec(corners, 3), c = vec(corners, 6);
   const dvec3 d = corners.size() == 12 ? vec(corners, 9) : c;
-  add(
-      [=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * d + u * c); });
+  add([=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * d + u * c); });
   inside_ = [](dvec3) { return false; };
   thickness_ = thickness;
 }

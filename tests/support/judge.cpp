@@ -56,8 +56,8 @@ double box(dvec3 p, dvec3 half) {
   return -std::min({half.x - p.x, half.x + p.x, half.y - p.y, half.y + p.y, half.z - p.z, half.z + p.z});
 }
 
-// The points within `minor` of the circle of radius `major` around the y axis (the definition of a torus). The nearest
-// point of the circle has p's azimuth; on the axis every point of it is equally near.
+// The points within `minor` of the circle of radius `major` around the y axis (the definition of a torus). The
+// nearest point of the circle has p's azimuth; on the axis every point of it is equally near.
 double torus(dvec3 p, double major, double minor) {
   const double rho = std::hypot(p.x, p.z);
   const dvec3 nearest = rho > 0 ? dvec3(p.x / rho * major, 0, p.z / rho * major) : dvec3(major, 0, 0);
@@ -93,11 +93,11 @@ double polygon(dvec3 p, std::initializer_list<dvec3> corners) {
   return projects_inside ? std::abs(glm::dot(p - v[0], normal)) : to_edge;
 }
 
-// Distance estimate 0.5 ln|w| |w| / |w'| of the escaping orbit of w -> w^n + p in White and Nylander's triplex algebra,
-// polar axis y; the derivative's length follows |w'| -> n |w|^(n-1) |w'| + 1. Source: Hart, Sandin, Kauffman, "Ray
-// Tracing Deterministic 3-D Fractals", 1989, equation 8, with ln|w| = ln(|w|^2) / 2. Far out, where the estimate grows
-// like |p| ln|p|, the distance to the ball of radius 2^(1/(n-1)) limits it: beyond that ball |w^n + p| >= |p|^n - |p| >
-// |p|, so every orbit escapes.
+// Distance estimate 0.5 ln|w| |w| / |w'| of the escaping orbit of w -> w^n + p in White and Nylander's triplex
+// algebra, polar axis y; the derivative's length follows |w'| -> n |w|^(n-1) |w'| + 1. Source: Hart, Sandin,
+// Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989, equation 8, with ln|w| = ln(|w|^2) / 2. Far out, where
+// the estimate grows like |p| ln|p|, the distance to the ball of radius 2^(1/(n-1)) limits it: beyond that ball |w^n
+// + p| >= |p|^n - |p| > |p|, so every orbit escapes.
 double mandelbulb(dvec3 p, double power, int iterations, double bailout) {
   dvec3 w = p;
   double r = glm::length(w), derivative = 1;
@@ -105,8 +105,8 @@ double mandelbulb(dvec3 p, double power, int iterations, double bailout) {
     const double polar = power * std::atan2(std::hypot(w.x, w.z), w.y);
     const double azimuth = power * std::atan2(w.x, w.z);
     derivative = power * std::pow(r, power - 1) * derivative + 1;
-    w = p + std::pow(r, power) * dvec3(std::sin(polar) * std::sin(azimuth), std::cos(polar),
-                                       std::sin(polar) * std::cos(azimuth));
+    w = p + std::pow(r, power) *
+                dvec3(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth));
     r = glm::length(w);
   }
   const double estimate = r > 0 ? 0.5 * std::log(r) * r / derivative : 0.0;
@@ -116,19 +116,33 @@ double mandelbulb(dvec3 p, double power, int iterations, double bailout) {
 
 double primitive(Kind kind, Params k, dvec3 p) {
   switch (kind) {
-    case Kind::Sphere: return std::hypot(p.x, p.y, p.z) - k[0];
-    case Kind::Box: return box(p, vec(k, 0));
-    case Kind::RoundBox: return box(p, vec(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
-    case Kind::Torus: return torus(p, k[0], k[1]);
-    case Kind::Plane: return glm::dot(p, vec(k, 0)) / std::hypot(k[0], k[1], k[2]) - k[3];
-    case Kind::Cylinder: return frustum(p, k[0], k[0], k[1]);
-    case Kind::RoundedCylinder: return frustum(p, k[0] - k[2], k[0] - k[2], k[1] - k[2]) - k[2];
-    case Kind::Cone: return frustum(p, k[0], k[1], k[2]);
-    case Kind::RoundCone: return round_cone(p, k[0], k[1], k[2]);
-    case Kind::Triangle: return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
-    case Kind::Quad: return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
-    case Kind::Mandelbulb: return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]) - k[3];
-    default: CHECK(false, "a primitive"); return 0;
+    case Kind::Sphere:
+      return std::hypot(p.x, p.y, p.z) - k[0];
+    case Kind::Box:
+      return box(p, vec(k, 0));
+    case Kind::RoundBox:
+      return box(p, vec(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
+    case Kind::Torus:
+      return torus(p, k[0], k[1]);
+    case Kind::Plane:
+      return glm::dot(p, vec(k, 0)) / std::hypot(k[0], k[1], k[2]) - k[3];
+    case Kind::Cylinder:
+      return frustum(p, k[0], k[0], k[1]);
+    case Kind::RoundedCylinder:
+      return frustum(p, k[0] - k[2], k[0] - k[2], k[1] - k[2]) - k[2];
+    case Kind::Cone:
+      return frustum(p, k[0], k[1], k[2]);
+    case Kind::RoundCone:
+      return round_cone(p, k[0], k[1], k[2]);
+    case Kind::Triangle:
+      return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
+    case Kind::Quad:
+      return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
+    case Kind::Mandelbulb:
+      return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]) - k[3];
+    default:
+      CHECK(false, "a primitive");
+      return 0;
   }
 }
 
@@ -143,9 +157,9 @@ Verdict transform(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint)
   return {child.distance * factor, child.surface, child.margin * std::abs(factor)};
 }
 
-// The blend of a and b: the least of h a + (1-h) b - k h (1-h) over the weights h in [0,1]. It is a parabola in h with
-// its minimum at h = 1/2 + (b-a) / (2k); k = 0 leaves the lesser of a and b. Known as the quadratic polynomial smooth
-// minimum (Quilez, "Smooth minimum", 2013).
+// The blend of a and b: the least of h a + (1-h) b - k h (1-h) over the weights h in [0,1]. It is a parabola in h
+// with its minimum at h = 1/2 + (b-a) / (2k); k = 0 leaves the lesser of a and b. Known as the quadratic polynomial
+// smooth minimum (Quilez, "Smooth minimum", 2013).
 double blend(double a, double b, double k) {
   if (k == 0) return std::min(a, b);
   const double h = std::clamp(0.5 + (b - a) / (2 * k), 0.0, 1.0);
@@ -153,7 +167,8 @@ double blend(double a, double b, double k) {
 }
 
 // Every combinator is a blended union of its operands or of their complements: A intersected with B is the complement
-// of the union of the complements, A minus B the intersection of A with B's complement. Smooth ones fold from the left.
+// of the union of the complements, A minus B the intersection of A with B's complement. Smooth ones fold from the
+// left.
 Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const Kind kind = graph.kind(node);
   const bool smooth =

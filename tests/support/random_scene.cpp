@@ -25,10 +25,14 @@ std::vector<double> torus(Random& random) {
 std::vector<double> cone(Random& random) {
   const double a = random.length(0.05, 1.5), b = random.length(0.05, 1.5), h = random.length(0.05, 1.5);
   switch (random.below(5)) {
-    case 0: return {a, 0, h};
-    case 1: return {0, b, h};
-    case 2: return {a, a, h};
-    default: return {a, b, h};
+    case 0:
+      return {a, 0, h};
+    case 1:
+      return {0, b, h};
+    case 2:
+      return {a, a, h};
+    default:
+      return {a, b, h};
   }
 }
 
@@ -45,8 +49,8 @@ std::vector<double> round_cone(Random& random) {
 double eighths(Random& random, int reach) { return (random.below(2 * reach + 1) - reach) / 8.0; }
 dvec3 corner(Random& random) { return {eighths(random, 12), eighths(random, 12), eighths(random, 12)}; }
 
-// Corners on a grid of eighths, far enough from collinear; the fourth is a + s u + t v, exactly in the plane and convex
-// for s, t > 0, s + t > 1.
+// Corners on a grid of eighths, far enough from collinear; the fourth is a + s u + t v, exactly in the plane and
+// convex for s, t > 0, s + t > 1.
 std::vector<double> sheet(Random& random, bool quad) {
   dvec3 a, u, v;
   double area;
@@ -136,7 +140,9 @@ std::uint64_t Random::bits() {
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
   return z ^ (z >> 31);
 }
-double Random::uniform(double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(bits() >> 11) * 0x1p-53); }
+double Random::uniform(double lo, double hi) {
+  return lo + (hi - lo) * (static_cast<double>(bits() >> 11) * 0x1p-53);
+}
 double Random::length(double lo, double hi) { return rounded(std::exp(uniform(std::log(lo), std::log(hi)))); }
 int Random::below(int n) { return static_cast<int>(bits() % static_cast<std::uint64_t>(n)); }
 dvec3 Random::in_box(double half) {
@@ -159,26 +165,35 @@ std::vector<double> random_params(Kind kind, Random& random) {
     return rounded(outer * share[random.below(4)]);
   };
   switch (kind) {
-    case Kind::Sphere: return {size()};
-    case Kind::Box: return {size(), size(), size()};
+    case Kind::Sphere:
+      return {size()};
+    case Kind::Box:
+      return {size(), size(), size()};
     case Kind::RoundBox: {
       const double x = size(), y = size(), z = size();
       return {x, y, z, rounding(std::min({x, y, z}))};
     }
-    case Kind::Torus: return torus(random);
+    case Kind::Torus:
+      return torus(random);
     case Kind::Plane: {
-      const dvec3 n = random.chance(0.3) ? dvec3(0, random.chance(0.5) ? 2 : -1, 0) : random.in_box(2) + dvec3(0, 3, 0);
+      const dvec3 n =
+          random.chance(0.3) ? dvec3(0, random.chance(0.5) ? 2 : -1, 0) : random.in_box(2) + dvec3(0, 3, 0);
       return {rounded(n.x), rounded(n.y), rounded(n.z), rounded(random.uniform(-1, 1))};
     }
-    case Kind::Cylinder: return {size(), size()};
+    case Kind::Cylinder:
+      return {size(), size()};
     case Kind::RoundedCylinder: {
       const double radius = size(), half_height = size();
       return {radius, half_height, rounding(std::min(radius, half_height))};
     }
-    case Kind::Cone: return cone(random);
-    case Kind::RoundCone: return round_cone(random);
-    case Kind::Triangle: return sheet(random, false);
-    case Kind::Quad: return sheet(random, true);
+    case Kind::Cone:
+      return cone(random);
+    case Kind::RoundCone:
+      return round_cone(random);
+    case Kind::Triangle:
+      return sheet(random, false);
+    case Kind::Quad:
+      return sheet(random, true);
     default: {  // Mandelbulb
       const double detail[] = {0, 0x1p-10, 0x1p-6};
       const double power = 2.0 + random.below(8), iterations = 1.0 + random.below(10);

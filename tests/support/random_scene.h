@@ -18,12 +18,12 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   std::uint64_t bits();
-  double uniform(double lo, double hi);       // [lo, hi)
-  double length(double lo, double hi);        // log-uniform, exact in float
-  int below(int n);                           // 0 .. n-1
+  double uniform(double lo, double hi);  // [lo, hi)
+  double length(double lo, double hi);   // log-uniform, exact in float
+  int below(int n);                      // 0 .. n-1
   bool chance(double probability) { return uniform(0, 1) < probability; }
-  glm::dvec3 in_box(double half);             // uniform, exact in float
-  glm::dvec3 direction();                     // uniform on the unit sphere
+  glm::dvec3 in_box(double half);  // uniform, exact in float
+  glm::dvec3 direction();          // uniform on the unit sphere
 
  private:
   std::uint64_t state_;
@@ -35,9 +35,9 @@ std::vector<double> random_params(compiler::Kind kind, Random& random);
 struct GraphOptions {
   int depth = 4;
   bool mandelbulbs = false;
-  bool planes = true;         // unbounded parts
-  bool paints = true;         // surface numbers 1 .. 6
-  bool squash = true;         // three different scales
+  bool planes = true;  // unbounded parts
+  bool paints = true;  // surface numbers 1 .. 6
+  bool squash = true;  // three different scales
 };
 compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
 

@@ -1,9 +1,10 @@
-// The evaluators against each other (the same bits on every instruction set, in every place of a block) and against the
-// judge (ranges contain, surfaces agree).
-#include <catch2/catch.hpp>
+// The evaluators against each other (the same bits on every instruction set, in every place of a block) and against
+// the judge (ranges contain, surfaces agree).
+#include "vm/evaluate.h"
 
 #include <algorithm>
 #include <bit>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -13,7 +14,6 @@
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
-#include "vm/evaluate.h"
 
 namespace fathom::test {
 namespace {
@@ -207,7 +207,8 @@ TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
     Random random(seed);
     const bool primitive = seed % 3 == 0;
     const Kind kind = static_cast<Kind>(random.below(static_cast<int>(Kind::Mandelbulb) + 1));
-    const compiler::Scene scene = primitive ? single(kind, random_params(kind, random)) : scene_of(seed, seed % 7 == 0);
+    const compiler::Scene scene =
+        primitive ? single(kind, random_params(kind, random)) : scene_of(seed, seed % 7 == 0);
     const vm::VerifiedProgram program = plain_lowering(scene);
     for (int box = 0; box < 20; ++box) {
       const dvec3 side = dvec3(sides[random.below(7)], sides[random.below(7)], sides[random.below(7)]);
@@ -228,8 +229,8 @@ TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
         const double judged = judge_distance(scene.graph, scene.root, p);
         const double slack = 1e-12 * std::max(1.0, std::abs(judged));  // of the judge's own rounding
         if (!(judged >= range.lo - slack && judged <= range.hi + slack)) {
-          FAIL_CHECK("judged " << judged << " not in " << range.lo << " .. " << range.hi << " at " << p.x << ' ' << p.y
-                               << ' ' << p.z);
+          FAIL_CHECK("judged " << judged << " not in " << range.lo << " .. " << range.hi << " at " << p.x << ' '
+                               << p.y << ' ' << p.z);
         }
       }
     }
@@ -371,8 +372,8 @@ TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][op
   }
 }
 
-// Once, a Mandelbulb's point exactly at the bailout went on iterating when a neighbour did, and overflowing derivatives
-// came out as NaN.
+// Once, a Mandelbulb's point exactly at the bailout went on iterating when a neighbour did, and overflowing
+// derivatives came out as NaN.
 TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[evaluate]") {
   const IsaGuard guard;
   compiler::Scene scene;

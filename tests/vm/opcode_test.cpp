@@ -1,10 +1,9 @@
 // The table of opcodes agrees with itself.
-#include <catch2/catch.hpp>
+#include "vm/opcode.h"
 
+#include <catch2/catch.hpp>
 #include <set>
 #include <string>
-
-#include "vm/opcode.h"
 
 namespace fathom::test {
 

@@ -1,20 +1,19 @@
 // Each of the verifier's rules broken alone, by the smallest program that breaks it; and each limit at its edge.
-#include <catch2/catch.hpp>
+#include "vm/verify.h"
 
 #include <bit>
+#include <catch2/catch.hpp>
 #include <limits>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "vm/verify.h"
-
 namespace fathom::test {
 namespace {
 
+using Catch::Matchers::Contains;
 using vm::Opcode;
 using vm::Program;
-using Catch::Matchers::Contains;
 
 struct Instruction {
   Opcode opcode;
@@ -59,8 +58,14 @@ vm::Limits limits_with(const Change& change) {
 }  // namespace
 
 TEST_CASE("a program that keeps the rules passes with its stack heights", "[verify]") {
-  auto result = vm::verify(program_of({kMove, kSphere, {Opcode::Tee, {}, 0}, kDrop, {Opcode::Load, {}, 0}, kMin,
-                                       {Opcode::Scale, {2}}, {Opcode::Tag, {}, 7}},
+  auto result = vm::verify(program_of({kMove,
+                                       kSphere,
+                                       {Opcode::Tee, {}, 0},
+                                       kDrop,
+                                       {Opcode::Load, {}, 0},
+                                       kMin,
+                                       {Opcode::Scale, {2}},
+                                       {Opcode::Tag, {}, 7}},
                                       1));
   REQUIRE(std::holds_alternative<vm::VerifiedProgram>(result));
   const auto& program = std::get<vm::VerifiedProgram>(result);

@@ -39,8 +39,8 @@ HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
 HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
 HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
 HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
-// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; other machines and Highway's emulation have
-// other rules.
+// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; other machines and Highway's emulation
+// have other rules.
 #undef FATHOM_X86_REGISTERS
 #define FATHOM_X86_REGISTERS (HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3)
 HWY_INLINE Batch min(Batch a, Batch b) {

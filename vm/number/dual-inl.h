@@ -70,13 +70,21 @@ HWY_INLINE Dual<N> operator*(const Dual<N>& a, N b) {
 }
 
 template <class N>
-HWY_INLINE auto operator<(const Dual<N>& a, const Dual<N>& b) { return a.v < b.v; }
+HWY_INLINE auto operator<(const Dual<N>& a, const Dual<N>& b) {
+  return a.v < b.v;
+}
 template <class N>
-HWY_INLINE auto operator<(const Dual<N>& a, N b) { return a.v < b; }
+HWY_INLINE auto operator<(const Dual<N>& a, N b) {
+  return a.v < b;
+}
 template <class N>
-HWY_INLINE auto operator<(N a, const Dual<N>& b) { return a < b.v; }
+HWY_INLINE auto operator<(N a, const Dual<N>& b) {
+  return a < b.v;
+}
 template <class N>
-HWY_INLINE auto operator>(const Dual<N>& a, N b) { return a.v > b; }
+HWY_INLINE auto operator>(const Dual<N>& a, N b) {
+  return a.v > b;
+}
 template <class Mask, class N>
 HWY_INLINE Dual<N> select(Mask m, const Dual<N>& yes, const Dual<N>& no) {
   return {select(m, yes.v, no.v), select(m, yes.dx, no.dx), select(m, yes.dy, no.dy), select(m, yes.dz, no.dz)};
@@ -129,8 +137,7 @@ HWY_INLINE Dual<N> length(const Dual<N>& x, const Dual<N>& y) {
 template <class N>
 HWY_INLINE Dual<N> length(const Dual<N>& x, const Dual<N>& y, const Dual<N>& z) {
   const N l = length(x.v, y.v, z.v), s = inverse_or_zero(l), ux = x.v * s, uy = y.v * s, uz = z.v * s;
-  return {l, ux * x.dx + uy * y.dx + uz * z.dx, ux * x.dy + uy * y.dy + uz * z.dy,
-          ux * x.dz + uy * y.dz + uz * z.dz};
+  return {l, ux * x.dx + uy * y.dx + uz * z.dx, ux * x.dy + uy * y.dy + uz * z.dy, ux * x.dz + uy * y.dz + uz * z.dz};
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE

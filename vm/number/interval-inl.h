@@ -1,6 +1,6 @@
-// Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation by
-// one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a NaN
-// bound gives the whole line. Source: Moore, "Interval Analysis", 1966.
+// Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation
+// by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a
+// NaN bound gives the whole line. Source: Moore, "Interval Analysis", 1966.
 #if defined(FATHOM_VM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_INL
 #undef FATHOM_VM_INTERVAL_INL
@@ -41,7 +41,8 @@ HWY_INLINE Interval outward(double lo, double hi) {
   // An overflow is somewhere beyond the largest number, not at infinity.
   lo = std::min(lo, kLargest);
   hi = std::max(hi, -kLargest);
-  return {lo < -kLargest ? lo : lo - std::fabs(lo) * kUlp - kTiny, hi > kLargest ? hi : hi + std::fabs(hi) * kUlp + kTiny};
+  return {lo < -kLargest ? lo : lo - std::fabs(lo) * kUlp - kTiny,
+          hi > kLargest ? hi : hi + std::fabs(hi) * kUlp + kTiny};
 }
 HWY_INLINE Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
 // 0 * infinity is 0 here: the infinity stands for arbitrarily large finite values.

@@ -36,8 +36,9 @@ HWY_INLINE Constant<T> constant(double value) {
   return Constant<T>::broadcast(value);
 }
 
-// Terms of log((1+s)/(1-s)) / (2s) - 1 = z/3 + z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz & Stegun,
-// "Handbook of Mathematical Functions", 1964, 4.1.27), summed from the last: 5 terms err by 3e-9, 11 by 1e-18.
+// Terms of log((1+s)/(1-s)) / (2s) - 1 = z/3 + z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz &
+// Stegun, "Handbook of Mathematical Functions", 1964, 4.1.27), summed from the last: 5 terms err by 3e-9, 11 by
+// 1e-18.
 template <class N>
 HWY_INLINE N log_series(N z, int terms) {
   N sum = N::broadcast(0.0);

@@ -1,5 +1,5 @@
-// Tagged<T>: a number and the surface it belongs to. min, max and select hand on the chosen operand's surface; sums and
-// products keep the left operand's. So the program that computes the distance also tells whose distance it is.
+// Tagged<T>: a number and the surface it belongs to. min, max and select hand on the chosen operand's surface; sums
+// and products keep the left operand's. So the program that computes the distance also tells whose distance it is.
 #if defined(FATHOM_VM_TAGGED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_TAGGED_INL
 #undef FATHOM_VM_TAGGED_INL
@@ -20,25 +20,45 @@ struct Tagged {
 };
 
 template <class T>
-HWY_INLINE Tagged<T> operator-(const Tagged<T>& a) { return {-a.v, a.surface}; }
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a) {
+  return {-a.v, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, const Tagged<T>& b) { return {a.v + b.v, a.surface}; }
+HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, const Tagged<T>& b) {
+  return {a.v + b.v, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, const Tagged<T>& b) { return {a.v - b.v, a.surface}; }
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, const Tagged<T>& b) {
+  return {a.v - b.v, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, const Tagged<T>& b) { return {a.v * b.v, a.surface}; }
+HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, const Tagged<T>& b) {
+  return {a.v * b.v, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, Constant<T> b) { return {a.v - b, a.surface}; }
+HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, Constant<T> b) {
+  return {a.v - b, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator-(Constant<T> a, const Tagged<T>& b) { return {a - b.v, b.surface}; }
+HWY_INLINE Tagged<T> operator-(Constant<T> a, const Tagged<T>& b) {
+  return {a - b.v, b.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, Constant<T> b) { return {a.v * b, a.surface}; }
+HWY_INLINE Tagged<T> operator*(const Tagged<T>& a, Constant<T> b) {
+  return {a.v * b, a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> abs(const Tagged<T>& a) { return {abs(a.v), a.surface}; }
+HWY_INLINE Tagged<T> abs(const Tagged<T>& a) {
+  return {abs(a.v), a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> sqr(const Tagged<T>& a) { return {sqr(a.v), a.surface}; }
+HWY_INLINE Tagged<T> sqr(const Tagged<T>& a) {
+  return {sqr(a.v), a.surface};
+}
 template <class T>
-HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) { return {max(a, b.v), b.surface}; }
+HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) {
+  return {max(a, b.v), b.surface};
+}
 // Where both are equal the surface with the lower number wins, in whatever order the operands come.
 template <class T, class Mask>
 HWY_INLINE Tagged<T> choose(Mask a_wins, Mask b_wins, const Tagged<T>& a, const Tagged<T>& b) {
