@@ -12,7 +12,7 @@
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
-#include "vm/check.h"
+#include "vm/opcode.h"
 
 namespace fathom::compiler {
 namespace {
@@ -68,8 +68,7 @@ std::size_t count_nodes(const Scene& scene) {
 // Warns when float32 knows distances near the surface less well than a ten-thousandth of what the camera looks at.
 void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
                           Diagnostics& diagnostics) {
-  constexpr double kRoundings = 10 * 0x1p-24;  // the float error per unit of magnitude (vm/opcodes.def)
-  const double error = kRoundings * known[scene.root].magnitude;
+  const double error = vm::kFloatError * known[scene.root].magnitude;
   if (error <= 1e-4 * glm::length(camera.target - camera.position)) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {

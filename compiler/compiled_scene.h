@@ -82,7 +82,7 @@ struct CompiledScene : SceneTables {
   Box bound;                   // the field is positive outside
   double lipschitz = 1;        // |f(p) - f(q)| <= lipschitz * |p - q|
   double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
-  bool certified = true;       // whether that constant is proved, or an estimate (a Mandelbulb is in the scene)
+  bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
   std::size_t node_count = 0;  // distinct nodes after the passes
   std::string summary;         // e.g. "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
 };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "vm/opcode.h"
 
 namespace fathom::runtime {
 
@@ -30,7 +31,7 @@ inline constexpr double kDefaultFar = 1e4;  // scene units
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6
 // (tests/compiler/shapes_test.cpp).
-inline constexpr float kDistanceError = 10 * 0x1p-24f;
+inline constexpr float kDistanceError = static_cast<float>(vm::kFloatError);
 
 inline float distance_error(const Field& field, float x, float y, float z, float distance) {
   return kDistanceError *

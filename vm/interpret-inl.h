@@ -126,22 +126,12 @@ class Machine {
       const std::uint32_t word = program_.words[at_];
       ++at_;
       switch (static_cast<Opcode>(word & 0xff)) {
-#define OP_Point(Name)                    \
-  case Opcode::Name:                      \
-    apply_point<Name##Op, info_##Name>(); \
-    break;
-#define OP_Shape(Name)                    \
-  case Opcode::Name:                      \
-    apply_shape<Name##Op, info_##Name>(); \
-    break;
-#define OP_Unary(Name)                    \
-  case Opcode::Name:                      \
-    apply_unary<Name##Op, info_##Name>(); \
-    break;
-#define OP_Binary(Name)                    \
-  case Opcode::Name:                       \
-    apply_binary<Name##Op, info_##Name>(); \
-    break;
+// clang-format off
+#define APPLY(Name, apply) case Opcode::Name: apply<Name##Op, count_##Name>(); break;
+#define OP_Point(Name) APPLY(Name, apply_point)
+#define OP_Shape(Name) APPLY(Name, apply_shape)
+#define OP_Unary(Name) APPLY(Name, apply_unary)
+#define OP_Binary(Name) APPLY(Name, apply_binary)
 #define OP_Machine(Name)
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
@@ -151,6 +141,8 @@ class Machine {
 #undef OP_Unary
 #undef OP_Binary
 #undef OP_Machine
+#undef APPLY
+        // clang-format on
         case Opcode::Drop:
           point_ -= kBlock;
           break;
@@ -171,7 +163,7 @@ class Machine {
  private:
   // Immediate counts as compile-time constants.
   enum : int {
-#define OP(Name, mnemonic, form, immediates, ...) info_##Name = count_names(immediates),
+#define OP(Name, mnemonic, form, immediates, ...) count_##Name = count_names(immediates),
 #include "vm/opcodes.def"
 #undef OP
   };

@@ -61,13 +61,6 @@ const OpcodeInfo& info(Opcode opcode) { return kTable[static_cast<std::size_t>(o
 
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
 
-const OpcodeInfo* find_mnemonic(std::string_view mnemonic) {
-  for (const OpcodeInfo& row : kTable) {
-    if (row.mnemonic == mnemonic) return &row;
-  }
-  return nullptr;
-}
-
 bool is_integer_immediate(const OpcodeInfo& opcode, int index) {
   return nth_name(opcode.immediate_names, index).ends_with(":i");
 }

@@ -55,11 +55,13 @@ const OpcodeInfo& info(Opcode opcode);
 
 // The i-th row, or nullptr when `byte` names no opcode.
 const OpcodeInfo* find_opcode(std::uint32_t byte);
-const OpcodeInfo* find_mnemonic(std::string_view mnemonic);
 
 // Whether immediate `index` of `opcode` is an unsigned integer rather than a float.
 bool is_integer_immediate(const OpcodeInfo& opcode, int index);
 std::string_view immediate_name(const OpcodeInfo& opcode, int index);
+
+// What the head of vm/opcodes.def promises of a Shape's float error, per unit of max(1, |p|, |d|).
+inline constexpr double kFloatError = 10 * 0x1p-24;
 
 inline constexpr std::uint32_t opcode_word(Opcode opcode, std::uint32_t operand = 0) {
   return static_cast<std::uint32_t>(opcode) | operand << 8;

@@ -1,5 +1,5 @@
-// The tables of properties: what each record of a scene file may hold. Checking, "did you mean", the defaults and the
-// later a JSON schema read them; the parameters of nodes come from compiler/shapes/node_table.h.
+// The tables of properties: what each record of a scene file may hold. Checking, "did you mean" and the
+// defaults read them; the parameters of nodes come from compiler/shapes/node_table.h.
 // Tested by: tests/compiler/elaborate_test.cpp
 #pragma once
 
