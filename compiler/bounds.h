@@ -1,35 +1,18 @@
-// What the compiler knows of every node: where it can be solid, how fast its distance changes, how far to trust it.
+// What is known of every node of a graph (compiler/knowledge.h), by the rows of the node table.
 // Tested by: tests/compiler/bounds_test.cpp, tests/compiler/passes_test.cpp
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "compiler/box.h"
 #include "compiler/graph.h"
-#include "compiler/shapes/node_table.h"
+#include "compiler/knowledge.h"
 
 namespace fathom::compiler {
 
-struct Knowledge {
-  Box box;               // the distance is positive outside it
-  double lipschitz = 1;  // |f(p) - f(q)| <= lipschitz |p - q|, where certified
-  Exactness outside = Exactness::Exact, inside = Exactness::Exact;
-  bool certified = true;
-  // f(p) >= reach_max * (largest per-axis distance from the box) and f(p) >= reach * (Euclidean distance from the
-  // box): how far an offset by r can move the surface out of the box, r / reach_max. Per-axis distances survive
-  // intersection, Euclidean ones rotation; reach <= reach_max <= sqrt 3 reach whenever both are known.
-  double reach_max = 1, reach = 1;
-  // Near the surface at p, evaluating f meets no coordinate or distance larger than |p| + magnitude, scene units: its
-  // float error is at most 10 * 2^-24 * (max(1, |p|, |f|) + magnitude). Large where large numbers cancel: a ball of
-  // radius 1000 whose top is the ground, a group moved far away and back.
-  double magnitude = 0;
-};
+// Given what is known of its children. [child]
+Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& known);
 
 // One entry per node id, children first.
 std::vector<Knowledge> analyse(const Graph& graph);
-
-// e.g. "bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
-std::string describe(const Knowledge& knowledge);
 
 }  // namespace fathom::compiler

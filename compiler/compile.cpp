@@ -43,7 +43,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
 }
 
 std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, Diagnostics& diagnostics) {
-  std::optional<vm::Program> program = lower(scene, source, kMaxInstructions);
+  std::optional<vm::Program> program = lower(scene.graph, scene.root, source, kMaxInstructions);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
                       fmt::format("the scene needs more than {} instructions", kMaxInstructions), "",

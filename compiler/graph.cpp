@@ -31,10 +31,13 @@ std::string print_params(Kind kind, std::span<const double> params) {
     return fmt::format(" rows=[{}] factor={}", fmt::join(params.first(12), ","), params[12]);
   }
   if (kind == Kind::Paint && params.size() == 1) return fmt::format(" surface={}", params[0]);
+  if (kind == Kind::Scaled && params.size() == 1) return fmt::format(" factor={}", params[0]);
   std::string out;
   std::size_t at = 0;
   for (const ParamSpec& param : spec(kind).params) {
-    const std::size_t count = static_cast<std::size_t>(width(param.type));
+    const bool rest = param.type == ParamType::Points;
+    const std::size_t count = rest ? params.size() - at : static_cast<std::size_t>(width(param.type));
+    if (count == 0) continue;
     if (at + count > params.size()) break;
     if (count == 1) {
       out += fmt::format(" {}={}", param.name, params[at]);
@@ -43,6 +46,7 @@ std::string print_params(Kind kind, std::span<const double> params) {
     }
     at += count;
   }
+  if (at < params.size()) out += fmt::format(" derived=[{}]", fmt::join(params.subspan(at), ","));
   return out;
 }
 

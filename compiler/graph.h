@@ -4,10 +4,12 @@
 // one node whatever names the scene gave them. Children are always made before their parents: a loop over ids in
 // ascending order sees every child first, and no pass needs recursion.
 //
-// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three).
+// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three); what
+// the compiler derives for the row follows them.
 // Tested by: tests/compiler/graph_test.cpp
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -19,35 +21,149 @@
 namespace fathom::compiler {
 
 enum class Kind : std::uint8_t {
-  // primitives
+  // solids
   Sphere,
+  Ellipsoid,
   Box,
   RoundBox,
+  BoxFrame,
   Torus,
+  CappedTorus,
+  Link,
   Plane,
   Cylinder,
   RoundedCylinder,
+  InfiniteCylinder,
+  Capsule,
   Cone,
   RoundCone,
+  InfiniteCone,
+  SolidAngle,
+  CutSphere,
+  CutHollowSphere,
+  DeathStar,
+  Vesica,
+  Rhombus,
+  HexagonalPrism,
+  TriangularPrism,
+  Tetrahedron,
+  Octahedron,
+  Dodecahedron,
+  Icosahedron,
+  Pyramid,
   Triangle,
   Quad,
+  Gyroid,
+  SchwarzP,
+  SchwarzD,
+  MengerSponge,
   Mandelbulb,
+  Julia,
+  // outlines: shapes in the xy plane, for extrude and revolve
+  Circle,
+  Rectangle,
+  RoundedRectangle,
+  Segment,
+  Polygon,
+  RegularPolygon,
+  Star,
+  Trapezoid,
+  Parallelogram,
+  RhombusOutline,
+  IsoscelesTriangle,
+  UnevenCapsule,
+  Arc,
+  Ring,
+  Pie,
+  CutDisk,
+  Horseshoe,
+  VesicaOutline,
+  Moon,
+  Egg,
+  Heart,
+  Cross,
+  RoundedX,
+  Ellipse,
   // alterations of one child
   Round,
   Onion,
+  Complement,
+  Elongate,
+  Extrude,
+  Revolve,
+  Mirror,
+  Repetition,
+  PolarRepetition,
+  Shear,
+  Twist,
+  Bend,
+  Taper,
+  Displacement,
+  Expression,
   // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
   // distance is multiplied by. Written in files as the properties scale, rotate and translate.
   Transform,
-  // combinators; n children, smooth ones fold from the left
+  // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes faster.
+  Scaled,
+  // combinators; n children, all but the hard ones fold from the left
   Union,
   Intersection,
   Subtraction,
+  Xor,
   SmoothUnion,
   SmoothIntersection,
   SmoothSubtraction,
+  ChamferUnion,
+  ChamferIntersection,
+  ChamferSubtraction,
+  RoundUnion,
+  RoundIntersection,
+  RoundSubtraction,
+  StairsUnion,
+  StairsIntersection,
+  StairsSubtraction,
+  Morph,
   // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless painted further in.
   Paint,
+  // functions of numbers, for formulas
+  X,
+  Y,
+  Z,
+  Constant,
+  Negate,
+  Abs,
+  Square,
+  Sqrt,
+  Sin,
+  Cos,
+  Tan,
+  Asin,
+  Acos,
+  Atan,
+  Exp,
+  Log,
+  Floor,
+  Ceil,
+  Nearest,
+  Sign,
+  Not,
+  Add,
+  Minus,
+  Multiply,
+  Divide,
+  Modulo,
+  ModuloEuclid,
+  Minimum,
+  Maximum,
+  Atan2,
+  Power,
+  Compare,
+  And,
+  Or,
+  Step,
 };
+
+inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Step) + 1;
 
 // A blend narrower than this changes no float and counts as none.
 inline constexpr double kLeastBlend = 1e-30;

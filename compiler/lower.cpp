@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
+#include <tuple>
 
-#include "compiler/affine.h"
 #include "compiler/shapes/node_table.h"
-#include "vm/check.h"
 
 namespace fathom::compiler {
 namespace {
@@ -31,8 +31,8 @@ struct Plan {
 
 class Lowering {
  public:
-  Lowering(const Scene& scene, const Source& source, std::size_t max_instructions)
-      : graph_(scene.graph), source_(source), max_instructions_(max_instructions) {}
+  Lowering(const Graph& graph, const Source& source, std::size_t max_instructions)
+      : graph_(graph), source_(source), max_instructions_(max_instructions) {}
 
   std::optional<vm::Program> run(NodeId root) {
     plan({root, 0});
@@ -56,7 +56,7 @@ class Lowering {
     const auto enter = [&](Use use) {
       const auto [entry, fresh] = plans_.try_emplace(use);
       ++entry->second.uses;
-      if (fresh) path.push_back({use, operands(use)});
+      if (fresh) path.push_back({use, operands(use, code(use.node))});
     };
     enter(root);
     while (!path.empty() && plans_.size() <= max_instructions_) {
@@ -65,185 +65,137 @@ class Lowering {
         const Use operand = visit.operands[visit.next++];
         enter(operand);
       } else {
-        plans_[visit.use].height = height(visit.use, visit.operands);
+        plans_[visit.use].height = height(code(visit.use.node), visit.operands);
         path.pop_back();
       }
     }
   }
 
-  std::uint32_t height(Use use, const std::vector<Use>& operands) const {
-    std::vector<std::uint32_t> heights;
-    for (const Use& operand : operands) heights.push_back(plans_.at(operand).height);
-    const std::vector<std::size_t> order = evaluation_order(graph_.kind(use.node), heights);
+  Code code(NodeId node) const { return spec(graph_.kind(node)).code(graph_.params(node)); }
+
+  std::uint32_t height(const Code& code, const std::vector<Use>& operands) const {
+    const std::vector<std::size_t> order = evaluation_order(code, operands);
     std::uint32_t result = 1;
     for (std::size_t i = 0; i < order.size(); ++i) {
       // After the first, a fold holds one value while it evaluates the next.
-      result = std::max(result, heights[order[i]] + (i == 0 ? 0 : 1));
+      result = std::max(result, plans_.at(operands[order[i]]).height + (i == 0 ? 0 : 1));
+    }
+    // What follows may push one value of its own.
+    const bool pushes = std::any_of(code.after.begin(), code.after.end(), [](const Instruction& i) {
+      return vm::info(i.opcode).effect.values_change > 0;
+    });
+    return std::max(result, pushes && !operands.empty() ? 2u : 1u);
+  }
+
+  // A combinator's children at the caller's point; an only child at each of the node's points.
+  std::vector<Use> operands(Use use, const Code& code) {
+    const std::span<const NodeId> children = graph_.children(use.node);
+    std::vector<Use> result;
+    if (children.size() == 1) {
+      for (const std::vector<Instruction>& chain : code.points)
+        result.push_back({children[0], mapped(use.point, chain)});
+    } else {
+      for (NodeId child : children) result.push_back({child, use.point});
     }
     return result;
   }
 
-  std::vector<Use> operands(Use use) {
-    const std::uint32_t point = graph_.kind(use.node) == Kind::Transform ? transformed(use) : use.point;
-    std::vector<Use> result;
-    for (NodeId child : graph_.children(use.node)) result.push_back({child, point});
-    return result;
-  }
-
-  // The number of the point a Transform node makes of `use.point`.
-  std::uint32_t transformed(Use use) {
-    const auto params = graph_.params(use.node);
-    std::vector<double> key(params.begin(), params.begin() + 12);
-    return points_.try_emplace({use.point, std::move(key)}, static_cast<std::uint32_t>(points_.size() + 1))
-        .first->second;
+  // The number of the point that a chain of instructions makes of `point`.
+  std::uint32_t mapped(std::uint32_t point, const std::vector<Instruction>& chain) {
+    for (const Instruction& instruction : chain) {
+      const auto next = static_cast<std::uint32_t>(points_.size() + 1);
+      point = points_.try_emplace({point, instruction.opcode, instruction.immediates}, next).first->second;
+    }
+    return point;
   }
 
   // Which operand goes first. The one that needs most stack first keeps the stack low (Sethi & Ullman, "The
-  // generation of optimal code for arithmetic expressions", 1970); blends of more than two keep their order.
-  static std::vector<std::size_t> evaluation_order(Kind kind, const std::vector<std::uint32_t>& heights) {
-    std::vector<std::size_t> order(heights.size());
+  // generation of optimal code for arithmetic expressions", 1970); what folds from the left keeps its order but for
+  // the first two.
+  std::vector<std::size_t> evaluation_order(const Code& code, const std::vector<Use>& operands) const {
+    std::vector<std::size_t> order(operands.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto higher = [&](std::size_t a, std::size_t b) { return heights[a] > heights[b]; };
-    if (kind == Kind::Union || kind == Kind::Intersection) {
+    const auto higher = [&](std::size_t a, std::size_t b) {
+      return plans_.at(operands[a]).height > plans_.at(operands[b]).height;
+    };
+    if (code.any_order) {
       std::stable_sort(order.begin(), order.end(), higher);
-    } else if (order.size() > 1 && higher(1, 0)) {
+    } else if (order.size() > 1 && !code.swapped_join.empty() && higher(1, 0)) {
       std::swap(order[0], order[1]);
     }
     return order;
   }
 
-  // What is still to be done for a value, in the order of a stack.
-  enum class Step { Visit, Finish, LeaveTransform, Negate, Combine, CombineNegated, Share };
+  // What is still to be done, in the order of a stack: evaluate `use`; append `instructions` for its node; or remember
+  // its value in a local.
+  enum class Step { Visit, Append, Share };
   struct Task {
     Use use;
-    Step step;
+    Step step = Step::Visit;
+    std::vector<Instruction> instructions = {};
   };
 
   void emit(Use root) {
-    tasks_ = {{root, Step::Visit}};
+    tasks_.push_back({root});
     while (!tasks_.empty() && program_.debug.size() <= max_instructions_) {
-      const Task task = tasks_.back();
+      Task task = std::move(tasks_.back());
       tasks_.pop_back();
-      perform(task);
-    }
-  }
-
-  void perform(Task task) {
-    const NodeId node = task.use.node;
-    switch (task.step) {
-      case Step::Visit:
-        return visit(task.use);
-      case Step::Finish:
-        return emit_unary(node);
-      case Step::LeaveTransform:
-        append(node, Opcode::Drop, 0, {});
-        if (const double factor = graph_.params(node)[12]; factor != 1) append(node, Opcode::Scale, 0, {factor});
-        return;
-      case Step::Negate:
-        return append(node, Opcode::Negate, 0, {});
-      case Step::Combine:
-        return emit_combinator(node, false);
-      case Step::CombineNegated:
-        return emit_combinator(node, true);
-      case Step::Share: {
+      if (task.step == Step::Visit) {
+        visit(task.use);
+      } else if (task.step == Step::Append) {
+        for (const Instruction& instruction : task.instructions) append(task.use.node, instruction);
+      } else {
         Plan& plan = plans_.at(task.use);
         plan.local = program_.locals++;
-        return append(node, Opcode::Tee, *plan.local, {});
+        append(task.use.node, {Opcode::Tee, {}, *plan.local});
       }
     }
   }
 
   void visit(Use use) {
     const Plan& plan = plans_.at(use);
-    if (plan.local) return append(use.node, Opcode::Load, *plan.local, {});
-    const Kind kind = graph_.kind(use.node);
+    if (plan.local) return append(use.node, {Opcode::Load, {}, *plan.local});
+    const Code code = this->code(use.node);
     std::vector<Task> steps;
-    if (const NodeSpec& row = spec(kind); row.opcode) {
-      append(use.node, *row.opcode, 0, row.immediates(graph_.params(use.node)));
-    } else if (kind == Kind::Transform) {
-      enter_transform(use.node);
-      steps = {{operands(use)[0], Step::Visit}, {use, Step::LeaveTransform}};
-    } else if (graph_.children(use.node).size() == 1) {
-      steps = {{operands(use)[0], Step::Visit}, {use, Step::Finish}};
+    if (graph_.children(use.node).size() > 1) {
+      steps = combine(use, code);
     } else {
-      steps = fold_steps(use);
+      steps = alter(use, code);
     }
     if (plan.uses > 1) steps.push_back({use, Step::Share});
-    tasks_.insert(tasks_.end(), steps.rbegin(), steps.rend());
+    tasks_.insert(tasks_.end(), std::make_move_iterator(steps.rbegin()), std::make_move_iterator(steps.rend()));
   }
 
-  void enter_transform(NodeId node) {
-    const Affine map = Affine::from_params(graph_.params(node));
-    const Affine identity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
-    if (map.rows == identity.rows) {
-      append(node, Opcode::Translate, 0, {-map.translation.x, -map.translation.y, -map.translation.z});
-    } else {
-      const auto twelve = map.params();
-      append(node, Opcode::Affine, 0, {twelve.begin(), twelve.end()});
+  std::vector<Task> alter(Use use, const Code& code) {
+    const std::vector<Use> all = operands(use, code);
+    std::vector<Task> steps;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::vector<Instruction>& chain = code.points[i];
+      steps.push_back({use, Step::Append, chain});
+      steps.push_back({all[i]});
+      steps.push_back({use, Step::Append, std::vector<Instruction>(chain.size(), {Opcode::Drop})});
+      if (i > 0) steps.push_back({use, Step::Append, {{Opcode::Min}}});
     }
+    // A combinator of one is that one.
+    if (spec(graph_.kind(use.node)).category != Category::Combinator)
+      steps.push_back({use, Step::Append, code.after});
+    return steps;
   }
 
-  void emit_unary(NodeId node) {
-    const auto params = graph_.params(node);
-    switch (graph_.kind(node)) {
-      case Kind::Round:
-        return append(node, Opcode::Offset, 0, {params[0]});
-      case Kind::Onion:
-        return append(node, Opcode::Onion, 0, {params[0]});
-      case Kind::Paint:
-        return append(node, Opcode::Tag, static_cast<std::uint32_t>(params[0]), {});
-      default:
-        return;  // a combinator of one is that one
-    }
-  }
-
-  std::vector<Task> fold_steps(Use use) {
-    const std::vector<Use> all = operands(use);
-    std::vector<std::uint32_t> heights;
-    for (const Use& operand : all) heights.push_back(plans_.at(operand).height);
-    const std::vector<std::size_t> order = evaluation_order(graph_.kind(use.node), heights);
-    const bool cut_first = is_subtraction(use.node) && order[0] == 1;
-    std::vector<Task> steps = {{all[order[0]], Step::Visit}};
-    if (cut_first) steps.push_back({use, Step::Negate});
+  std::vector<Task> combine(Use use, const Code& code) {
+    const std::vector<Use> all = operands(use, code);
+    const std::vector<std::size_t> order = evaluation_order(code, all);
+    const bool swapped = !code.any_order && order[0] == 1;
+    std::vector<Task> steps = {{all[order[0]]}};
+    if (swapped) steps.push_back({use, Step::Append, code.swapped_first});
     for (std::size_t i = 1; i < order.size(); ++i) {
-      steps.push_back({all[order[i]], Step::Visit});
-      steps.push_back({use, cut_first && i == 1 ? Step::CombineNegated : Step::Combine});
+      steps.push_back({all[order[i]]});
+      steps.push_back({use, Step::Append, swapped && i == 1 ? code.swapped_join : code.after});
     }
     return steps;
   }
 
-  bool is_subtraction(NodeId node) const {
-    return graph_.kind(node) == Kind::Subtraction || graph_.kind(node) == Kind::SmoothSubtraction;
-  }
-
-  // `negated`: the cut lies below, already negated, so that a - b is the maximum of both.
-  void emit_combinator(NodeId node, bool negated) {
-    const auto params = graph_.params(node);
-    const auto blend = [&](Opcode opcode) {
-      const double k = params[0];
-      // A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by
-      // it.
-      append(node, opcode, 0, {k, k > kLeastBlend ? 0.25 / k : 0});
-    };
-    switch (graph_.kind(node)) {
-      case Kind::Union:
-        return append(node, Opcode::Min, 0, {});
-      case Kind::Intersection:
-        return append(node, Opcode::Max, 0, {});
-      case Kind::Subtraction:
-        return append(node, negated ? Opcode::Max : Opcode::Subtract, 0, {});
-      case Kind::SmoothUnion:
-        return blend(Opcode::SmoothMin);
-      case Kind::SmoothIntersection:
-        return blend(Opcode::SmoothMax);
-      case Kind::SmoothSubtraction:
-        return blend(negated ? Opcode::SmoothMax : Opcode::SmoothSubtract);
-      default:
-        CHECK(false, "only combinators have several children");
-    }
-  }
-
-  void append(NodeId node, Opcode opcode, std::uint32_t operand, const std::vector<double>& immediates) {
+  void append(NodeId node, const Instruction& instruction) {
     const Origin& origin = graph_.origin(node);
     vm::DebugEntry entry{};
     if (origin.span.end > 0) {
@@ -253,7 +205,7 @@ class Lowering {
     }
     entry.symbol = std::string(spec(graph_.kind(node)).name);
     if (!origin.name.empty()) entry.symbol += fmt::format(" \"{}\"", origin.name);
-    program_.append(opcode, operand, immediates, std::move(entry));
+    program_.append(instruction.opcode, instruction.operand, instruction.immediates, std::move(entry));
   }
 
   const Graph& graph_;
@@ -261,14 +213,15 @@ class Lowering {
   const std::size_t max_instructions_;
   std::map<Use, Plan> plans_;
   std::vector<Task> tasks_;
-  std::map<std::pair<std::uint32_t, std::vector<double>>, std::uint32_t> points_;
+  std::map<std::tuple<std::uint32_t, Opcode, std::vector<double>>, std::uint32_t> points_;
   vm::Program program_;
 };
 
 }  // namespace
 
-std::optional<vm::Program> lower(const Scene& scene, const Source& source, std::size_t max_instructions) {
-  return Lowering(scene, source, max_instructions).run(scene.root);
+std::optional<vm::Program> lower(const Graph& graph, NodeId root, const Source& source,
+                                 std::size_t max_instructions) {
+  return Lowering(graph, source, max_instructions).run(root);
 }
 
 }  // namespace fathom::compiler

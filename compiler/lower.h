@@ -1,4 +1,4 @@
-// DAG to stack code: the order of operands, locals for shared nodes, points for transforms.
+// DAG to stack code: the order of operands, locals for shared nodes, points for what moves, folds or bends space.
 // Tested by: tests/compiler/passes_test.cpp, tests/golden (dumps)
 #pragma once
 
@@ -11,6 +11,10 @@ namespace fathom::compiler {
 
 // nullopt when the code would exceed `max_instructions`: a node used under different transforms is evaluated anew for
 // each, so a small file can stand for a huge program.
-std::optional<vm::Program> lower(const Scene& scene, const Source& source, std::size_t max_instructions);
+std::optional<vm::Program> lower(const Graph& graph, NodeId root, const Source& source, std::size_t max_instructions);
+
+inline std::optional<vm::Program> lower(const Scene& scene, const Source& source, std::size_t max_instructions) {
+  return lower(scene.graph, scene.root, source, max_instructions);
+}
 
 }  // namespace fathom::compiler

@@ -43,6 +43,30 @@ HWY_INLINE Vec3<T> affine(const Vec3<T>& p, const Constant<T>* m) {
   return {affine_row(p, m), affine_row(p, m + 4), affine_row(p, m + 8)};
 }
 
+// Takes out the middle: what lies within x, y, z of the origin's planes goes to the plane.
+template <class T>
+HWY_INLINE T pull(const T& a, Constant<T> by) {
+  return a - max(-by, min(by, a));
+}
+template <class T>
+HWY_INLINE Vec3<T> elongate(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
+  return {pull(p.x, x), pull(p.y, y), pull(p.z, z)};
+}
+
+// k: unit normal, offset. What lies behind the plane is seen in front of it.
+template <class T>
+HWY_INLINE Vec3<T> mirror(const Vec3<T>& p, const Constant<T>* k) {
+  const T behind = min(constant<T>(0.0), p.x * k[0] + p.y * k[1] + p.z * k[2] - k[3]);
+  const T twice = behind + behind;
+  return {p.x - twice * k[0], p.y - twice * k[1], p.z - twice * k[2]};
+}
+
+// The half-plane about the y axis that p lies in, as an outline's plane.
+template <class T>
+HWY_INLINE Vec3<T> revolve(const Vec3<T>& p, Constant<T> offset) {
+  return {length(p.x, p.z) - offset, p.y, p.z};
+}
+
 // Half extents x, y, z. Gradient undefined on the edges' and the inside's medial planes. The order of min's and max's
 // operands matters: on the surface both terms are 0, and the tie must go to the one with a gradient.
 template <class T>
@@ -200,6 +224,30 @@ template <class T>
 HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
   const T h = max(constant<T>(0.0), k - abs(a - b));
   return max(a, b) + h * h * inv4k;
+}
+
+// Where the surfaces are within `radius` of each other's edge, the plane at 45 degrees through their edge's neighbours;
+// halved, so that two parallel surfaces' gradients add up to no more than 1 (MERCURY's hg_sdf divides by sqrt 2, which
+// is exact for orthogonal surfaces and too much for others).
+template <class T>
+HWY_INLINE T chamfer_min(const T& a, const T& b, Constant<T> radius) {
+  const T lesser = min(a, b);  // on the left of the sum, so that the chamfer belongs to the nearer surface
+  return min(lesser, (lesser + max(a, b) - radius) * constant<T>(0.5));
+}
+
+// A quarter circle that touches both surfaces. Its gradient reaches sqrt 2 where they are parallel.
+template <class T>
+HWY_INLINE T round_min(const T& a, const T& b, Constant<T> radius) {
+  const Constant<T> zero = constant<T>(0.0);
+  return max(radius, min(a, b)) - length(max(zero, radius - a), max(zero, radius - b));
+}
+
+// The intersection of two bodies whose distances are measured in directions at right angles to each other: an outline
+// and a slab, a profile and a disc. Exact where both are.
+template <class T>
+HWY_INLINE T meet(const T& a, const T& b) {
+  const Constant<T> zero = constant<T>(0.0);
+  return length(max(zero, a), max(zero, b)) + min(zero, max(a, b));
 }
 
 // Smooth minimum and maximum rise in both operands, so their ranges are those of the ends; the formula above would

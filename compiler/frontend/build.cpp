@@ -18,8 +18,13 @@ bool gives_material(const CheckedNode& node) {
 }  // namespace
 
 SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-                           const std::vector<std::uint32_t>& order, std::vector<Material>& materials)
-    : named_(named), uses_(uses), materials_(materials), has_paint_(named.size(), false) {
+                           const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
+                           Diagnostics& diagnostics)
+    : named_(named),
+      uses_(uses),
+      materials_(materials),
+      has_paint_(named.size(), false),
+      diagnostics_(diagnostics) {
   for (const std::uint32_t name : order) {
     has_paint_[name] = gives_material(named[name]) || std::any_of(uses[name].begin(), uses[name].end(),
                                                                   [&](const Use& u) { return has_paint_[u.target]; });
@@ -87,7 +92,12 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& node, Context context
       children.push_back(inner.id);
       built.painted = built.painted && inner.painted;
     }
-    built.id = scene_.graph.add(node.kind, node.params, children, origin);
+    if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
+      const NodeSpec& row = spec(node.kind);
+      diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
+      return {children[0], true};  // something to go on with
+    }
+    built.id = maker_.make(node.kind, node.params, children, origin);
   }
   if (node.transform) {
     const NodeId child[] = {built.id};

@@ -14,9 +14,11 @@
 #include <vector>
 
 #include "compiler/compiled_scene.h"
+#include "compiler/diagnostics.h"
 #include "compiler/frontend/checked_node.h"
 #include "compiler/frontend/name_order.h"
 #include "compiler/graph.h"
+#include "compiler/make_node.h"
 
 namespace fathom::compiler {
 
@@ -25,8 +27,10 @@ class SceneBuilder {
   // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
   // material is added to `materials` when an object needs it. All must outlive the builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-               const std::vector<std::uint32_t>& order, std::vector<Material>& materials);
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
+               Diagnostics& diagnostics);
 
+  // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);
 
   // The union of the objects; the builder is empty afterwards.
@@ -55,7 +59,9 @@ class SceneBuilder {
   const std::vector<std::vector<Use>>& uses_;
   std::vector<Material>& materials_;
   std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
+  Diagnostics& diagnostics_;
   Scene scene_;
+  NodeMaker maker_{scene_.graph};
   std::vector<Surface> surfaces_;
   std::vector<std::string> object_names_;
   std::vector<NodeId> objects_;

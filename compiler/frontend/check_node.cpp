@@ -16,7 +16,7 @@ const std::string* text(const syntax::Value* value) {
 std::vector<std::string_view> node_types() {
   std::vector<std::string_view> names;
   for (const NodeSpec& row : node_table()) {
-    if (row.category != Category::Internal) names.push_back(row.name);
+    if (row.category != Category::Internal && row.category != Category::Function) names.push_back(row.name);
   }
   return names;
 }
@@ -138,6 +138,7 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
   if (row == nullptr) return report_unknown_type(record, type, *name, node);
   node.word = *name;
   node.kind = row->kind;
+  node.type_span = type.value->span;
   const RecordReader reader(node_record(row->kind), record, type.value->span, diagnostics_, "E0301");
   for (const ParamSpec& param : row->params) {
     const std::vector<double> numbers = reader.numbers(param.name);

@@ -17,6 +17,7 @@ struct CheckedNode {
   std::string name;                  // its `name`, or what it is called under `nodes`; "" when neither
   std::string word;                  // its `use` or else its `type`
   Kind kind = Kind::Union;           // of no meaning when `use` is there
+  Span type_span;                    // of the value of `type`; of no meaning likewise
   std::optional<std::uint32_t> use;  // which of the named nodes
   std::vector<double> params;
   std::vector<CheckedNode> children;

@@ -118,8 +118,9 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   if (diagnostics.has_errors()) return std::nullopt;
   warn_of_unused(scene, diagnostics);
 
-  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials);
+  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);
+  if (diagnostics.has_errors()) return std::nullopt;
   out.scene = builder.finish();
   out.surfaces = builder.take_surfaces();
   return out;

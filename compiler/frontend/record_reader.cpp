@@ -19,8 +19,14 @@ std::string_view expected(ValueType type) {
       return "a number";
     case ValueType::Integer:
       return "a whole number";
+    case ValueType::Vec2:
+      return "two numbers [x, y]";
     case ValueType::Vec3:
       return "three numbers [x, y, z]";
+    case ValueType::Points:
+      return "a list of three or more points [[x, y], ...]";
+    case ValueType::Formula:
+      return "a formula \"...\" or a list of them";
     case ValueType::Color:
       return "three numbers [red, green, blue]";
     case ValueType::Text:
@@ -46,6 +52,21 @@ std::string_view expected(ValueType type) {
   return "anything";
 }
 
+template <typename Each>
+bool is_list(const Value& value, std::size_t least, const Each& each) {
+  const auto* list = std::get_if<syntax::List>(&value.data);
+  return list != nullptr && list->size() >= least && std::all_of(list->begin(), list->end(), each);
+}
+bool is_pair(const Value& value) {
+  const auto number = [](const Value& item) { return std::holds_alternative<double>(item.data); };
+  return is_list(value, 2, number) && std::get<syntax::List>(value.data).size() == 2;
+}
+bool is_points(const Value& value) { return is_list(value, 3, is_pair); }
+bool is_formula(const Value& value) {
+  const auto text = [](const Value& item) { return std::holds_alternative<std::string>(item.data); };
+  return text(value) || is_list(value, 1, text);
+}
+
 bool has_type(const Value& value, ValueType type) {
   const double* number = std::get_if<double>(&value.data);
   const bool record = std::holds_alternative<syntax::Record>(value.data);
@@ -55,9 +76,15 @@ bool has_type(const Value& value, ValueType type) {
       return number != nullptr;
     case ValueType::Integer:
       return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));
+    case ValueType::Vec2:
+      return is_pair(value);
     case ValueType::Vec3:
     case ValueType::Color:
       return three;
+    case ValueType::Points:
+      return is_points(value);
+    case ValueType::Formula:
+      return is_formula(value);
     case ValueType::Text:
     case ValueType::Choice:
       return std::holds_alternative<std::string>(value.data);
@@ -107,6 +134,9 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
   if (list == nullptr) return std::nullopt;
   bool all_zero = true;
   for (const Value& item : *list) {
+    if (std::holds_alternative<syntax::List>(item.data)) {
+      if (auto broken = first_broken(item, spec)) return broken;
+    }
     const double* number = std::get_if<double>(&item.data);
     if (number == nullptr) continue;
     const std::string rule = broken_rule(*number, spec);
@@ -158,8 +188,8 @@ std::string owner(const RecordSpec& spec, std::string_view property) {
 }
 
 bool is_numeric(ValueType type) {
-  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec3 ||
-         type == ValueType::Color;
+  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec2 ||
+         type == ValueType::Vec3 || type == ValueType::Color || type == ValueType::Points;
 }
 
 }  // namespace
@@ -193,6 +223,14 @@ std::optional<glm::dvec3> three_numbers(const Value& value) {
     out[i] = *number;
   }
   return out;
+}
+
+// The numbers of a number, a list or a list of lists, in order.
+void append_numbers(const Value& value, std::vector<double>& out) {
+  if (const double* number = std::get_if<double>(&value.data)) out.push_back(*number);
+  if (const auto* list = std::get_if<syntax::List>(&value.data)) {
+    for (const Value& item : *list) append_numbers(item, out);
+  }
 }
 
 RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, Diagnostics& diagnostics,
@@ -243,9 +281,10 @@ std::vector<double> RecordReader::numbers(std::string_view name) const {
   const Value* given = value(name);
   const bool single = row->type == ValueType::Number || row->type == ValueType::Integer;
   if (given == nullptr) return !row->fallback.empty() ? row->fallback : std::vector<double>(single ? 1 : 3, 0.0);
-  if (single) return {std::get<double>(given->data)};
-  const glm::dvec3 v = *three_numbers(*given);
-  return {v.x, v.y, v.z};
+  std::vector<double> all;
+  append_numbers(*given, all);
+  if (row->type == ValueType::Color && all.size() == 1) all.assign(3, all[0]);
+  return all;
 }
 
 glm::dvec3 RecordReader::vec3(std::string_view name) const {

@@ -77,25 +77,39 @@ void add_placement(RecordSpec& record) {
 PropertySpec parameter(const ParamSpec& param) {
   PropertySpec property{param.name, ValueType::Number, param.doc, {}, !param.fallback, param.rule, {}, {}};
   if (param.type == ParamType::Integer) property.type = ValueType::Integer;
-  if (param.type == ParamType::Vec3) property.type = ValueType::Vec3;
+  if (param.type == ParamType::Vec2) property.type = ValueType::Vec2;
+  if (param.type == ParamType::Vec3 || param.type == ParamType::Counts) property.type = ValueType::Vec3;
+  if (param.type == ParamType::Points) property.type = ValueType::Points;
+  if (param.type == ParamType::Formula) property.type = ValueType::Formula;
   if (param.fallback) property.fallback.assign(static_cast<std::size_t>(width(param.type)), *param.fallback);
   return property;
 }
 
+// Two end points in place of a length.
+void add_between(RecordSpec& record, const Between& between) {
+  for (PropertySpec& property : record.properties) property.required &= property.name != between.length;
+  for (const char* end : {"a", "b"}) {
+    record.properties.push_back(other(end, ValueType::Vec3, "an end of the axis, in place of the length"));
+  }
+}
+
+// [kind]
 std::vector<RecordSpec> make_node_records() {
-  std::vector<RecordSpec> records;
+  std::vector<RecordSpec> records(kKindCount);
   for (const NodeSpec& node : node_table()) {
     const std::string type(node.name);
     RecordSpec record{type, "`" + type + "`", type, {}};
     record.properties.push_back(other("type", ValueType::Text, "the type of node", true));
     for (const ParamSpec& param : node.params) record.properties.push_back(parameter(param));
-    if (node.category == Category::Alteration) {
+    if (node.between) add_between(record, *node.between);
+    const bool of_formula = !node.params.empty() && node.params.back().type == ParamType::Formula;
+    if (node.category == Category::Alteration && !(of_formula && node.operand == Sort::Number)) {
       record.properties.push_back(other("of", ValueType::Node, "the node that is altered", true));
     } else if (node.category == Category::Combinator) {
       record.properties.push_back(other("of", ValueType::Nodes, "the nodes that are combined", true));
     }
     add_placement(record);
-    records.push_back(std::move(record));
+    records[static_cast<std::size_t>(node.kind)] = std::move(record);
   }
   return records;
 }

@@ -15,7 +15,10 @@ namespace fathom::compiler {
 enum class ValueType {
   Number,
   Integer,
+  Vec2,   // two numbers
   Vec3,   // three numbers
+  Points,  // a list of [x, y], three or more
+  Formula,  // a string, or a list of them (formula.h)
   Color,  // three numbers
   Text,
   Choice,  // one of PropertySpec::choices

@@ -173,6 +173,8 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
   std::sort(sorted.begin(), sorted.end());
   const std::size_t listed = std::min(sorted.size(), kMostListed);
   const std::string_view meant = suggest(word, known);
+  // Among many the list would bury the answer.
+  if (!meant.empty() && known.size() > kMostListed) return fmt::format("did you mean `{}`?", meant);
   std::string out = meant.empty() ? "" : fmt::format("did you mean `{}`? ", meant);
   out +=
       fmt::format("known: {}", fmt::join(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(listed), ", "));

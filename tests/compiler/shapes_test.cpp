@@ -64,7 +64,7 @@ vm::SurfaceValue evaluate_float(const vm::VerifiedProgram& program, dvec3 p, vm:
 }
 
 // Whether the estimate of a Mandelbulb is being judged, for which "distance" means less.
-bool estimated(Kind kind) { return kind == Kind::Mandelbulb; }
+bool estimated(Kind kind) { return compiler::spec(kind).facts.outside == compiler::Exactness::Estimate; }
 
 // Largest errors of a kind: the machine's double and float evaluators against the judge.
 struct Errors {
@@ -132,7 +132,8 @@ bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::i
 template <typename Check>
 void for_each_primitive(const Check& check) {
   for (const NodeSpec& row : compiler::node_table()) {
-    if (row.category == compiler::Category::Primitive) check(row);
+    const bool own_code = row.category == compiler::Category::Primitive && row.code;
+    if (own_code && row.sort == compiler::Sort::Solid) check(row);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
 namespace fathom::test {
@@ -197,8 +198,9 @@ Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
 
 Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const Kind kind = graph.kind(node);
-  if (kind <= Kind::Mandelbulb) return {primitive(kind, graph.params(node), p), paint, kInfinity};
-  if (kind >= Kind::Union && kind != Kind::Paint) return combinator(graph, node, p, paint);
+  const compiler::Category category = compiler::spec(kind).category;
+  if (category == compiler::Category::Primitive) return {primitive(kind, graph.params(node), p), paint, kInfinity};
+  if (category == compiler::Category::Combinator) return combinator(graph, node, p, paint);
   if (kind == Kind::Transform) return transform(graph, node, p, paint);
   const double k = graph.params(node)[0];
   const NodeId child = graph.children(node)[0];

@@ -51,40 +51,36 @@ class Lowering {
   void append(Opcode opcode, const std::vector<double>& immediates = {}, std::uint32_t operand = 0) {
     program_.append(opcode, operand, immediates, {});
   }
+  void append(const std::vector<compiler::Instruction>& instructions) {
+    for (const compiler::Instruction& i : instructions) append(i.opcode, i.immediates, i.operand);
+  }
 
   void emit_node(NodeId node, std::uint32_t frame, std::uint32_t paint) {
-    const Kind kind = graph_.kind(node);
-    const auto params = graph_.params(node);
-    const compiler::NodeSpec& row = compiler::spec(kind);
-    if (row.opcode) {
-      append(*row.opcode, row.immediates(params));
+    const compiler::Code code = compiler::spec(graph_.kind(node)).code(graph_.params(node));
+    const auto children = graph_.children(node);
+    if (children.empty()) {
+      append(code.after);
       if (painted_) append(Opcode::Tag, {}, paint);
-    } else if (kind == Kind::Transform) {
-      append(Opcode::Affine, {params.begin(), params.begin() + 12});
-      emit(graph_.children(node)[0], ++frames_, paint);
-      append(Opcode::Drop);
-      append(Opcode::Scale, {params[12]});
-    } else if (row.category == compiler::Category::Combinator) {
-      combine(node, frame, paint);
+    } else if (children.size() == 1) {
+      alter(node, code, frame, paint);
     } else {
-      emit(graph_.children(node)[0], frame, paint);
-      append(kind == Kind::Round ? Opcode::Offset : Opcode::Onion, {params[0]});
+      emit(children[0], frame, paint);
+      for (NodeId child : children.subspan(1)) {
+        emit(child, frame, paint);
+        append(code.after);
+      }
     }
   }
 
-  void combine(NodeId node, std::uint32_t frame, std::uint32_t paint) {
-    static const Opcode kHard[] = {Opcode::Min, Opcode::Max, Opcode::Subtract};
-    static const Opcode kSmooth[] = {Opcode::SmoothMin, Opcode::SmoothMax, Opcode::SmoothSubtract};
-    const bool smooth = graph_.kind(node) >= Kind::SmoothUnion;
-    const double k = smooth ? graph_.params(node)[0] : 0;
-    const int which = (static_cast<int>(graph_.kind(node)) - static_cast<int>(Kind::Union)) % 3;
+  void alter(NodeId node, const compiler::Code& code, std::uint32_t frame, std::uint32_t paint) {
     bool first = true;
-    for (NodeId child : graph_.children(node)) {
-      emit(child, frame, paint);
-      if (!std::exchange(first, false)) {
-        k > 0 ? append(kSmooth[which], {k, 1 / (4 * k)}) : append(kHard[which]);
-      }
+    for (const auto& chain : code.points) {
+      append(chain);
+      emit(graph_.children(node)[0], chain.empty() ? frame : ++frames_, paint);
+      for (std::size_t i = 0; i < chain.size(); ++i) append(Opcode::Drop);
+      if (!std::exchange(first, false)) append(Opcode::Min);
     }
+    if (compiler::spec(graph_.kind(node)).category != compiler::Category::Combinator) append(code.after);
   }
 
   const Graph& graph_;

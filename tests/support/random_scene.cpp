@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "compiler/make_node.h"
+
 namespace fathom::test {
 namespace {
 
@@ -88,10 +90,10 @@ class Maker {
   }
 
   NodeId primitive() {
-    const int kinds = static_cast<int>(Kind::Mandelbulb) + (options_.mandelbulbs ? 1 : 0);
+    const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, options_.mandelbulbs);
     Kind kind;
     do {
-      kind = static_cast<Kind>(random_.below(kinds));
+      kind = kinds[static_cast<std::size_t>(random_.below(static_cast<int>(kinds.size())))];
     } while (kind == Kind::Plane && !options_.planes);
     return add(kind, random_params(kind, random_), {});
   }
@@ -118,7 +120,9 @@ class Maker {
   }
 
   NodeId combinator(int depth) {
-    const Kind kind = static_cast<Kind>(static_cast<int>(Kind::Union) + random_.below(6));
+    const Kind kinds[] = {Kind::Union,       Kind::Intersection,       Kind::Subtraction,
+                          Kind::SmoothUnion, Kind::SmoothIntersection, Kind::SmoothSubtraction};
+    const Kind kind = kinds[random_.below(6)];
     std::vector<double> params;
     if (kind >= Kind::SmoothUnion) params.push_back(random_.chance(0.2) ? 0 : random_.length(0.01, 1));
     std::vector<NodeId> children;
@@ -155,6 +159,15 @@ dvec3 Random::direction() {
     const double length = glm::length(v);
     if (length > 0.1 && length <= 1) return v / length;
   }
+}
+
+std::vector<Kind> primitive_kinds(compiler::Sort sort, bool estimates) {
+  std::vector<Kind> kinds;
+  for (const compiler::NodeSpec& row : compiler::node_table()) {
+    if (row.category != compiler::Category::Primitive || row.sort != sort || row.code == nullptr) continue;
+    if (estimates || row.facts.outside != compiler::Exactness::Estimate) kinds.push_back(row.kind);
+  }
+  return kinds;
 }
 
 std::vector<double> random_params(Kind kind, Random& random) {
@@ -230,7 +243,7 @@ std::vector<double> transform_params(dvec3 scale, dvec3 axis, double angle, dvec
 
 compiler::Scene single(Kind kind, const std::vector<double>& params) {
   compiler::Scene scene;
-  scene.root = scene.graph.add(kind, params, {});
+  scene.root = compiler::NodeMaker(scene.graph).make(kind, params, {});
   return scene;
 }
 

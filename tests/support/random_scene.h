@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compiler/graph.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::test {
 
@@ -28,6 +29,9 @@ class Random {
  private:
   std::uint64_t state_;
 };
+
+// The primitives that are nodes of a graph, of one sort; estimates (Mandelbulbs and their like) only when asked for.
+std::vector<compiler::Kind> primitive_kinds(compiler::Sort sort, bool estimates);
 
 // Valid parameters of a primitive of size about 1.
 std::vector<double> random_params(compiler::Kind kind, Random& random);

@@ -89,8 +89,8 @@ compiler::Scene scene_of(std::uint64_t seed, bool mandelbulbs) {
 std::vector<compiler::Scene> scenes(int graphs) {
   std::vector<compiler::Scene> all;
   Random random(7);
-  for (int kind = 0; kind <= static_cast<int>(Kind::Mandelbulb); ++kind) {
-    all.push_back(single(static_cast<Kind>(kind), random_params(static_cast<Kind>(kind), random)));
+  for (const Kind kind : primitive_kinds(compiler::Sort::Solid, true)) {
+    all.push_back(single(kind, random_params(kind, random)));
   }
   for (int seed = 0; seed < graphs; ++seed) all.push_back(scene_of(static_cast<std::uint64_t>(seed), seed % 4 == 0));
   return all;
@@ -206,7 +206,8 @@ TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
   for (std::uint64_t seed = 0; seed < 1700; ++seed) {
     Random random(seed);
     const bool primitive = seed % 3 == 0;
-    const Kind kind = static_cast<Kind>(random.below(static_cast<int>(Kind::Mandelbulb) + 1));
+    const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, true);
+    const Kind kind = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
     const compiler::Scene scene =
         primitive ? single(kind, random_params(kind, random)) : scene_of(seed, seed % 7 == 0);
     const vm::VerifiedProgram program = plain_lowering(scene);

@@ -74,6 +74,23 @@ HWY_INLINE Tagged<T> max(const Tagged<T>& a, const Tagged<T>& b) {
   return choose(b.v < a.v, a.v < b.v, a, b);
 }
 
+template <class T>
+HWY_INLINE auto operator<(const Tagged<T>& a, Constant<T> b) {
+  return a.v < b;
+}
+template <class T, class Mask>
+HWY_INLINE Tagged<T> select(Mask mask, const Tagged<T>& yes, const Tagged<T>& no) {
+  return {select(mask, yes.v, no.v), select(mask, yes.surface, no.surface)};
+}
+template <class T>
+HWY_INLINE Tagged<T> min(Constant<T> a, const Tagged<T>& b) {
+  return {min(a, b.v), b.surface};
+}
+template <class T>
+HWY_INLINE Tagged<T> length(const Tagged<T>& x, const Tagged<T>& y) {
+  return {length(x.v, y.v), x.surface};
+}
+
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -1,4 +1,4 @@
-#include "compiler/shapes/primitives.h"
+#include "compiler/shapes/solid_facts.h"
 
 #include <fmt/format.h>
 
@@ -134,8 +134,6 @@ Complaint check_mandelbulb(Params p) {
   return std::nullopt;
 }
 
-std::vector<double> same_immediates(Params p) { return {p.begin(), p.end()}; }
-
 std::vector<double> mandelbulb_immediates(Params p) { return {p[0], p[1], p[2], escape_radius(p[0]), p[3]}; }
 
 std::vector<double> round_box_immediates(Params p) { return {p[0] - p[3], p[1] - p[3], p[2] - p[3], p[3]}; }
@@ -218,6 +216,12 @@ Box sheet_bound(Params p) {
   Box box;
   for (const dvec3& corner : flat_corners(p)) box = unite(box, {corner, corner});
   return box.grown(p.back());
+}
+
+// They are evaluated from their first corner: at most that far off, or their own size.
+double sheet_magnitude(Params p) {
+  const Box box = sheet_bound(p);
+  return std::min(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}), glm::length(box.hi - box.lo));
 }
 
 // The estimate is at least about a quarter of the distance from the set.

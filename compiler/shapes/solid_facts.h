@@ -1,18 +1,12 @@
-// What the compiler knows of each primitive beside its opcode: which parameters fit together, the immediates its
+// What the compiler knows of each solid primitive beside its opcode: which parameters fit together, the immediates its
 // opcode takes, and a box around it. All take the parameters in the order of the node table.
 #pragma once
 
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
-#include "compiler/box.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
-
-using Params = std::span<const double>;
-using Complaint = std::optional<std::string>;
 
 Complaint check_round_box(Params p);
 Complaint check_rounded_cylinder(Params p);
@@ -22,7 +16,6 @@ Complaint check_triangle(Params p);
 Complaint check_quad(Params p);
 Complaint check_mandelbulb(Params p);
 
-std::vector<double> same_immediates(Params p);
 std::vector<double> mandelbulb_immediates(Params p);
 std::vector<double> round_box_immediates(Params p);
 std::vector<double> plane_immediates(Params p);
@@ -40,5 +33,7 @@ Box cone_bound(Params p);
 Box round_cone_bound(Params p);
 Box sheet_bound(Params p);
 Box mandelbulb_bound(Params p);
+
+double sheet_magnitude(Params p);  // of the numbers a triangle or quad is evaluated with, scene units
 
 }  // namespace fathom::compiler

@@ -1,0 +1,231 @@
+// Rows of the alterations that change a child's distance, or place it without bending space: round, onion, extrude,
+// transform and their like. Those that fold, repeat or bend space are in domain.cpp.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "compiler/affine.h"
+#include "compiler/shapes/rows.h"
+
+namespace fathom::compiler {
+namespace {
+
+using vm::Opcode;
+constexpr double kSqrt3 = 1.7320508075688772;
+
+// The largest coordinate in the box; infinite when it has no end.
+double largest_coordinate(const Box& box) {
+  if (box.empty()) return 0;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(box.lo[i]), std::abs(box.hi[i])});
+  return largest;
+}
+
+Knowledge know_round(Params params, std::span<const Knowledge> children) {
+  Knowledge k = offset(children[0], params[0]);
+  k.inside = std::max(k.inside, Exactness::Bound);
+  return k;
+}
+
+Knowledge know_onion(Params params, std::span<const Knowledge> children) {
+  Knowledge k = offset(children[0], params[0]);
+  k.outside = std::max(k.outside, children[0].inside);
+  k.inside = std::max(k.inside, Exactness::Bound);
+  return k;
+}
+
+Knowledge know_complement(Params, std::span<const Knowledge> children) {
+  Knowledge k = children[0];
+  std::swap(k.outside, k.inside);
+  k.box = Box::everything();
+  return k;
+}
+
+Knowledge know_same(Params, std::span<const Knowledge> children) { return children[0]; }
+
+Knowledge know_scaled(Params params, std::span<const Knowledge> children) {
+  Knowledge k = only_bound(children[0]);
+  k.lipschitz *= params[0];
+  if (std::abs(k.lipschitz - 1) < 1e-12) k.lipschitz = 1;  // a product that is 1 but for rounding
+  k.reach *= params[0];
+  k.reach_max *= params[0];
+  k.magnitude *= params[0];
+  return k;
+}
+
+Knowledge know_transform(Params params, std::span<const Knowledge> children) {
+  const Knowledge& child = children[0];
+  const Affine to_child = Affine::from_params(params);
+  const double factor = params[12];
+  const Stretch s = stretch(to_child);
+  Knowledge k = mapped(child);
+  k.box = image(inverse(to_child), child.box);
+  // In the child's space a point lies as far off as the translation adds, but near the surface within the child's
+  // box.
+  const glm::dvec3 t = glm::abs(to_child.translation);
+  k.magnitude = factor * (std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box)) + child.magnitude);
+  // A product that is 1 but for rounding is 1: the factor is the smallest scale, the most stretch its inverse.
+  const double slope = factor * s.most;
+  k.lipschitz = child.lipschitz * (std::abs(slope - 1) < 1e-12 ? 1 : slope);
+  const double reach = std::min(1.0, factor * s.least * (1 + 1e-15));
+  k.reach = child.reach * reach;
+  k.reach_max = std::max(k.reach, child.reach_max * reach / (is_axis_aligned(to_child) ? 1 : kSqrt3));
+  if (s.most - s.least > 1e-12 * s.most) k = only_bound(k);
+  // Scaling along the axes keeps a mirror plane that the move does not take away.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<int>(axis);
+    const glm::dvec3 row = to_child.rows[axis];
+    const bool own = row[i] != 0 && std::abs(row[i]) == std::abs(row.x) + std::abs(row.y) + std::abs(row.z);
+    k.symmetric[axis] = child.symmetric[axis] && own && is_axis_aligned(to_child) && to_child.translation[i] == 0;
+  }
+  return k;
+}
+
+// The surface cut at the planes through the origin and pulled apart by the half size along each axis.
+Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
+  const Knowledge& child = children[0];
+  Knowledge k = child;
+  for (int i = 0; i < 3; ++i) {
+    const double by = params[static_cast<std::size_t>(i)];
+    if (by == 0) continue;
+    k.box.lo[i] += child.box.lo[i] <= 0 ? -by : by;
+    k.box.hi[i] += child.box.hi[i] >= 0 ? by : -by;
+    if (!child.symmetric[static_cast<std::size_t>(i)]) k = only_bound(k);
+  }
+  k.inside = std::max(k.inside, Exactness::Bound);
+  return k;
+}
+
+Knowledge know_extrude(Params params, std::span<const Knowledge> children) {
+  Knowledge k = children[0];
+  k.box.lo.z = -params[0];
+  k.box.hi.z = params[0];
+  k.symmetric[2] = true;
+  k.lipschitz = std::max(1.0, k.lipschitz);
+  return k;
+}
+
+Knowledge know_revolve(Params params, std::span<const Knowledge> children) {
+  const Knowledge& child = children[0];
+  Knowledge k = child;
+  const double radius = std::max(0.0, child.box.hi.x + params[0]);
+  k.box.lo.x = k.box.lo.z = -radius;
+  k.box.hi.x = k.box.hi.z = radius;
+  k.symmetric = {true, child.symmetric[1], true};
+  // What lies beyond the axis is measured but not there, unless it is the mirror image of what is.
+  const bool whole = child.box.lo.x + params[0] >= 0 || (child.symmetric[0] && params[0] == 0);
+  return whole ? k : only_bound(k);
+}
+
+Code round_code(Params params) { return {.after = {{Opcode::Offset, {params[0]}}}}; }
+Code onion_code(Params params) { return {.after = {{Opcode::Onion, {params[0]}}}}; }
+Code complement_code(Params) { return {.after = {{Opcode::Negate}}}; }
+Code scaled_code(Params params) { return {.after = {{Opcode::Scale, {params[0]}}}}; }
+Code paint_code(Params params) {
+  return {.after = {{Opcode::Tag, {}, static_cast<std::uint32_t>(params[0])}}};
+}
+
+Code transform_code(Params params) {
+  const Affine map = Affine::from_params(params);
+  const Affine identity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
+  Code code;
+  if (map.rows == identity.rows) {
+    code.points = {{{Opcode::Translate, {-map.translation.x, -map.translation.y, -map.translation.z}}}};
+  } else {
+    const auto twelve = map.params();
+    code.points = {{{Opcode::Affine, {twelve.begin(), twelve.end()}}}};
+  }
+  if (params[12] != 1) code.after = {{Opcode::Scale, {params[12]}}};
+  return code;
+}
+
+// In the middle block of a body pulled apart along all axes the distance is the child's at the origin: there the
+// distance to the block's faces adds depth.
+Code elongate_code(Params params) {
+  Code code{.points = {{{Opcode::Elongate, {params[0], params[1], params[2]}}}}};
+  if (params[0] > 0 && params[1] > 0 && params[2] > 0) {
+    code.after = {{Opcode::Core, {params[0], params[1], params[2]}}, {Opcode::Deepen}};
+  }
+  return code;
+}
+
+Code extrude_code(Params params) { return {.after = {{Opcode::Slab, {params[0]}}, {Opcode::Meet}}}; }
+Code revolve_code(Params params) { return {.points = {{{Opcode::Revolve, {params[0]}}}}}; }
+
+Complaint check_elongate(Params params) {
+  if (params[0] >= 0 && params[1] >= 0 && params[2] >= 0) return std::nullopt;
+  return "`half_size` holds a negative number; give how far to pull apart along each axis, 0 or more";
+}
+
+}  // namespace
+
+std::vector<NodeSpec> alteration_rows() {
+  constexpr auto kAlteration = Category::Alteration;
+  return {
+      {.kind = Kind::Round,
+       .name = "round",
+       .category = kAlteration,
+       .params = {length_or_zero("radius", "how far the surface moves out")},
+       .doc = "a node made larger, its edges round",
+       .code = round_code,
+       .know = know_round},
+      {.kind = Kind::Onion,
+       .name = "onion",
+       .category = kAlteration,
+       .params = {thickness()},
+       .doc = "a shell around a node's surface",
+       .code = onion_code,
+       .know = know_onion},
+      {.kind = Kind::Complement,
+       .name = "complement",
+       .category = kAlteration,
+       .doc = "what is not in the node",
+       .code = complement_code,
+       .know = know_complement},
+      {.kind = Kind::Elongate,
+       .name = "elongate",
+       .category = kAlteration,
+       .params = {{"half_size", ParamType::Vec3, Rule::NotZero, kRequired, "how far along each axis, 0 or more"}},
+       .doc = "a node cut in the middle and pulled apart",
+       .check = check_elongate,
+       .code = elongate_code,
+       .know = know_elongate},
+      {.kind = Kind::Extrude,
+       .name = "extrude",
+       .category = kAlteration,
+       .params = {length("half_depth", "along z")},
+       .doc = "an outline drawn along z",
+       .operand = Sort::Outline,
+       .code = extrude_code,
+       .know = know_extrude},
+      {.kind = Kind::Revolve,
+       .name = "revolve",
+       .category = kAlteration,
+       .params = {number("offset", "how far the outline is moved along x before it turns", 0.0)},
+       .doc = "an outline turned about the y axis",
+       .operand = Sort::Outline,
+       .code = revolve_code,
+       .know = know_revolve},
+      {.kind = Kind::Transform,
+       .name = "transform",
+       .category = Category::Internal,
+       .doc = "scale, rotate, translate",
+       .code = transform_code,
+       .know = know_transform},
+      {.kind = Kind::Scaled,
+       .name = "scaled",
+       .category = Category::Internal,
+       .doc = "a distance made one that changes no faster than the way walked",
+       .code = scaled_code,
+       .know = know_scaled},
+      {.kind = Kind::Paint,
+       .name = "paint",
+       .category = Category::Internal,
+       .doc = "belongs to a surface",
+       .code = paint_code,
+       .know = know_same},
+  };
+}
+
+}  // namespace fathom::compiler

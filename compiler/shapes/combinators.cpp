@@ -1,0 +1,218 @@
+// Rows of the combinators. Hard ones keep the distances they choose from; blends are convex combinations of their
+// operands' gradients, so none changes faster than its operands do, unless its row says so.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/shapes/rows.h"
+
+namespace fathom::compiler {
+namespace {
+
+using vm::Opcode;
+constexpr double kSqrt2 = 1.4142135623730951, kSqrt3 = 1.7320508075688772;
+
+Knowledge know_union(Params, std::span<const Knowledge> children) {
+  Knowledge k = together(children);
+  for (const Knowledge& child : children) k.box = unite(k.box, child.box);
+  if (children.size() > 1) k.inside = std::max(k.inside, Exactness::Bound);
+  return k;
+}
+
+Knowledge know_intersection(Params, std::span<const Knowledge> children) {
+  Knowledge k = only_bound(together(children));
+  for (const Knowledge& child : children) k.box = intersect(k.box, child.box);
+  // Apart, they leave nothing; but an offset of this field may, so keep a box its distance is measured from.
+  if (k.box.empty()) k.box = children[0].box;
+  k.reach /= kSqrt3;  // an intersection's corner is up to sqrt 3 further than its faces
+  return k;
+}
+
+Knowledge know_subtraction(Params, std::span<const Knowledge> children) {
+  Knowledge k = only_bound(together(children));
+  const Knowledge& base = children[0];  // only cuts away: the base's box and reach hold
+  k.box = base.box;
+  k.reach = base.reach;
+  k.reach_max = base.reach_max;
+  return k;
+}
+
+// Of width `width`: the operands' distances count up to there.
+Knowledge blended(Knowledge k, double width) {
+  k.magnitude += width;
+  return only_bound(k);
+}
+
+// One blend lowers the distance by at most `deepest`; many by at most k, for an operand k away changes nothing.
+double lowered(Params params, std::size_t operands, double deepest) {
+  return std::min(params[0], deepest * params[0] * static_cast<double>(operands - 1));
+}
+
+Knowledge know_smooth_union(Params params, std::span<const Knowledge> children) {
+  return blended(offset(know_union(params, children), lowered(params, children.size(), 0.25)), params[0]);
+}
+Knowledge know_smooth_intersection(Params params, std::span<const Knowledge> children) {
+  return blended(know_intersection(params, children), params[0]);
+}
+Knowledge know_smooth_subtraction(Params params, std::span<const Knowledge> children) {
+  return blended(know_subtraction(params, children), params[0]);
+}
+
+// (a + b - k) / 2 is at least min(a, b) - k/2; a round or a stair dips by less.
+Knowledge know_edge_union(Params params, std::span<const Knowledge> children) {
+  return blended(offset(know_union(params, children), lowered(params, children.size(), 0.5)), params[0]);
+}
+// The gradients of two nearly parallel surfaces add up under the square root.
+Knowledge steeper(Knowledge k, std::size_t operands) {
+  for (std::size_t i = 1; i < operands; ++i) k.lipschitz *= kSqrt2;
+  return k;
+}
+Knowledge know_round_union(Params params, std::span<const Knowledge> children) {
+  return steeper(know_edge_union(params, children), params[0] > kLeastBlend ? children.size() : 1);
+}
+Knowledge know_round_intersection(Params params, std::span<const Knowledge> children) {
+  return steeper(know_smooth_intersection(params, children), params[0] > kLeastBlend ? children.size() : 1);
+}
+Knowledge know_round_subtraction(Params params, std::span<const Knowledge> children) {
+  return steeper(know_smooth_subtraction(params, children), params[0] > kLeastBlend ? children.size() : 1);
+}
+
+// Exact outside: there it is the union of what is in one alone, whose boundaries are those of the operands.
+Knowledge know_xor(Params params, std::span<const Knowledge> children) {
+  return only_bound(know_union(params, children));
+}
+
+Knowledge know_morph(Params, std::span<const Knowledge> children) {
+  Knowledge k = only_bound(together(children));
+  for (const Knowledge& child : children) k.box = unite(k.box, child.box);
+  return k;
+}
+
+Complaint check_two(Params, std::span<const Knowledge> children) {
+  if (children.size() == 2) return std::nullopt;
+  return "it goes from one node to another; give exactly two in `of`";
+}
+
+Complaint check_morph(Params params) {
+  if (params[0] >= 0 && params[0] <= 1) return std::nullopt;
+  return fmt::format("`t` is {}; it must be between 0 and 1", params[0]);
+}
+
+Code any_order(Opcode opcode) {
+  Code code{.after = {{opcode}}, .any_order = true};
+  code.swapped_join = code.after;
+  return code;
+}
+Code union_code(Params) { return any_order(Opcode::Min); }
+Code intersection_code(Params) { return any_order(Opcode::Max); }
+// a - b is the intersection of a with the complement of b: with b first, max(-b, a).
+Code subtraction_code(Params) {
+  return {.after = {{Opcode::Subtract}}, .swapped_first = {{Opcode::Negate}}, .swapped_join = {{Opcode::Max}}};
+}
+
+// A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by it.
+std::vector<double> blend_immediates(Params params) {
+  return {params[0], params[0] > kLeastBlend ? 0.25 / params[0] : 0};
+}
+Code smooth_union_code(Params params) {
+  Code code = code_of<Opcode::SmoothMin, blend_immediates>(params);
+  code.swapped_join = code.after;
+  return code;
+}
+Code smooth_intersection_code(Params params) {
+  Code code = code_of<Opcode::SmoothMax, blend_immediates>(params);
+  code.swapped_join = code.after;
+  return code;
+}
+Code smooth_subtraction_code(Params params) {
+  Code code = code_of<Opcode::SmoothSubtract, blend_immediates>(params);
+  code.swapped_first = {{Opcode::Negate}};
+  code.swapped_join = {{Opcode::SmoothMax, blend_immediates(params)}};
+  return code;
+}
+
+// Edges of width 0 are the hard operator.
+template <Opcode Join, Opcode Hard, std::vector<double> (*Immediates)(Params)>
+std::vector<Instruction> edge(Params params) {
+  if (!(params[0] > kLeastBlend)) return {{Hard}};
+  return {{Join, Immediates(params)}};
+}
+std::vector<double> same(Params params) { return {params.begin(), params.end()}; }
+[[maybe_unused]] std::vector<double> stairs_immediates(Params params) {
+  const double step = params[0] / params[1];
+  return {params[0], step, 0.5 / step};
+}
+
+template <Opcode Join, std::vector<double> (*Immediates)(Params)>
+Code edge_union_code(Params params) {
+  return {.after = edge<Join, Opcode::Min, Immediates>(params)};
+}
+template <Opcode Join, std::vector<double> (*Immediates)(Params)>
+Code edge_intersection_code(Params params) {
+  return {.after = edge<Join, Opcode::Max, Immediates>(params)};
+}
+template <Opcode Join, std::vector<double> (*Immediates)(Params)>
+Code edge_subtraction_code(Params params) {
+  Code code{.after = edge<Join, Opcode::Max, Immediates>(params)};
+  code.after.insert(code.after.begin(), {Opcode::Negate});
+  return code;
+}
+
+Code xor_code(Params) { return any_order(Opcode::Xor); }
+Code morph_code(Params params) { return code_of<Opcode::Mix, same>(params); }
+
+NodeSpec combinator(Kind kind, std::string_view name, std::vector<ParamSpec> params, std::string_view doc,
+                    Code (*code)(Params), Knowledge (*know)(Params, std::span<const Knowledge>)) {
+  return {.kind = kind,
+          .name = name,
+          .category = Category::Combinator,
+          .params = std::move(params),
+          .doc = doc,
+          .code = code,
+          .know = know};
+}
+
+}  // namespace
+
+std::vector<NodeSpec> combinator_rows() {
+  const ParamSpec width = length_or_zero("radius", "how far from the edge the surfaces are cut");
+  [[maybe_unused]] const ParamSpec steps{"steps", ParamType::Integer, Rule::Positive, 4.0, "number of steps, 1 or more"};
+  std::vector<NodeSpec> rows = {
+      combinator(Kind::Union, "union", {}, "what is in any of the nodes", union_code, know_union),
+      combinator(Kind::Intersection, "intersection", {}, "what is in all of the nodes", intersection_code,
+                 know_intersection),
+      combinator(Kind::Subtraction, "subtraction", {}, "the first node without the others", subtraction_code,
+                 know_subtraction),
+      combinator(Kind::Xor, "xor", {}, "what is in an odd number of the nodes", xor_code, know_xor),
+      combinator(Kind::SmoothUnion, "smooth_union", {blend_width()}, "union, blended from the left",
+                 smooth_union_code, know_smooth_union),
+      combinator(Kind::SmoothIntersection, "smooth_intersection", {blend_width()},
+                 "intersection, blended from the left", smooth_intersection_code, know_smooth_intersection),
+      combinator(Kind::SmoothSubtraction, "smooth_subtraction", {blend_width()}, "subtraction, blended from the left",
+                 smooth_subtraction_code, know_smooth_subtraction),
+      combinator(Kind::ChamferUnion, "chamfer_union", {width}, "union, its inner edges filled at 45 degrees",
+                 edge_union_code<Opcode::ChamferMin, same>, know_edge_union),
+      combinator(Kind::ChamferIntersection, "chamfer_intersection", {width},
+                 "intersection, its edges cut off at 45 degrees", edge_intersection_code<Opcode::ChamferMax, same>,
+                 know_smooth_intersection),
+      combinator(Kind::ChamferSubtraction, "chamfer_subtraction", {width},
+                 "subtraction, its edges cut off at 45 degrees", edge_subtraction_code<Opcode::ChamferMax, same>,
+                 know_smooth_subtraction),
+      combinator(Kind::RoundUnion, "round_union", {width}, "union, its inner edges filled with a quarter circle",
+                 edge_union_code<Opcode::RoundMin, same>, know_round_union),
+      combinator(Kind::RoundIntersection, "round_intersection", {width},
+                 "intersection, its edges rounded to a quarter circle",
+                 edge_intersection_code<Opcode::RoundMax, same>, know_round_intersection),
+      combinator(Kind::RoundSubtraction, "round_subtraction", {width},
+                 "subtraction, its edges rounded to a quarter circle", edge_subtraction_code<Opcode::RoundMax, same>,
+                 know_round_subtraction),
+      combinator(Kind::Morph, "morph", {number("t", "0: the first node, 1: the second")},
+                 "between two nodes: their distances mixed", morph_code, know_morph),
+  };
+  rows.back().check = check_morph;
+  rows.back().check_children = check_two;
+  return rows;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,73 @@
+#include "compiler/shapes/rows.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fathom::compiler {
+namespace {
+
+constexpr double kSqrt3 = 1.7320508075688772;
+
+}  // namespace
+
+Code one(vm::Opcode opcode, std::vector<double> immediates) {
+  Code code;
+  code.after.push_back({opcode, std::move(immediates)});
+  return code;
+}
+
+ParamSpec length(std::string_view name, std::string_view doc, std::optional<double> fallback) {
+  return {name, ParamType::Number, Rule::Positive, fallback, doc};
+}
+ParamSpec length_or_zero(std::string_view name, std::string_view doc, std::optional<double> fallback) {
+  return {name, ParamType::Number, Rule::NotNegative, fallback, doc};
+}
+ParamSpec number(std::string_view name, std::string_view doc, std::optional<double> fallback) {
+  return {name, ParamType::Number, Rule::Any, fallback, doc};
+}
+ParamSpec half_size(std::string_view doc) { return {"half_size", ParamType::Vec3, Rule::Positive, kRequired, doc}; }
+ParamSpec corner(std::string_view name) {
+  return {name, ParamType::Vec3, Rule::Any, kRequired, "a corner, scene units"};
+}
+ParamSpec thickness() { return length("thickness", "to either side of the surface"); }
+ParamSpec blend_width() { return length_or_zero("k", "width of the blend; the surface moves by at most k/4"); }
+
+Knowledge only_bound(Knowledge k) {
+  k.outside = std::max(k.outside, Exactness::Bound);
+  k.inside = std::max(k.inside, Exactness::Bound);
+  return k;
+}
+
+Knowledge mapped(Knowledge k) {
+  k.symmetric = {false, false, false};
+  return k;
+}
+
+Knowledge offset(Knowledge k, double by) {
+  if (by <= 0) return k;
+  k.magnitude += by;
+  if (!(k.reach_max > 0)) {
+    k.box = Box::everything();
+    return k;
+  }
+  k.box = k.box.grown(by / k.reach_max);
+  if (k.reach < k.reach_max) k.reach = std::min(k.reach, k.reach_max / kSqrt3);
+  return k;
+}
+
+Knowledge together(std::span<const Knowledge> children) {
+  Knowledge k = children[0];
+  for (const Knowledge& c : children) {
+    k.lipschitz = std::max(k.lipschitz, c.lipschitz);
+    k.certified = k.certified && c.certified;
+    k.reach = std::min(k.reach, c.reach);
+    k.reach_max = std::min(k.reach_max, c.reach_max);
+    k.outside = std::max(k.outside, c.outside);
+    k.inside = std::max(k.inside, c.inside);
+    k.magnitude = std::max(k.magnitude, c.magnitude);
+    for (std::size_t axis = 0; axis < 3; ++axis) k.symmetric[axis] = k.symmetric[axis] && c.symmetric[axis];
+  }
+  return k;
+}
+
+}  // namespace fathom::compiler
