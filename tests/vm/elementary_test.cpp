@@ -25,14 +25,10 @@ struct Kernel {
 };
 
 const Kernel kKernels[] = {
-    {Opcode::Sin, std::sin, std::sin, 1e4},
-    {Opcode::Cos, std::cos, std::cos, 1e4},
-    {Opcode::Tan, std::tan, std::tan, 1e4},
-    {Opcode::Asin, std::asin, std::asin, 1},
-    {Opcode::Acos, std::acos, std::acos, 1},
-    {Opcode::Atan, std::atan, std::atan, 1e39},
-    {Opcode::Exp, std::exp, std::exp, 1e39},
-    {Opcode::Log, std::log, std::log, 1e39},
+    {Opcode::Sin, std::sin, std::sin, 1e4},     {Opcode::Cos, std::cos, std::cos, 1e4},
+    {Opcode::Tan, std::tan, std::tan, 1e4},     {Opcode::Asin, std::asin, std::asin, 1},
+    {Opcode::Acos, std::acos, std::acos, 1},    {Opcode::Atan, std::atan, std::atan, 1e39},
+    {Opcode::Exp, std::exp, std::exp, 1e39},    {Opcode::Log, std::log, std::log, 1e39},
     {Opcode::Sqrt, std::sqrt, std::sqrt, 1e39},
 };
 
@@ -155,7 +151,8 @@ TEST_CASE("atan2 and pow against libm", "[elementary]") {
       worst_double = std::max(worst_double, std::abs(wide / truth - 1) / (1 + arg));
     }
   }
-  INFO("atan2 " << worst_angle << " ulp; pow " << worst_power << " of (2 + 2 |y log x|) ulp; double " << worst_double);
+  INFO("atan2 " << worst_angle << " ulp; pow " << worst_power << " of (2 + 2 |y log x|) ulp; double "
+                << worst_double);
   CHECK(worst_angle <= 4);
   CHECK(worst_power <= 1);
   CHECK(worst_double <= 1e-15);
@@ -193,8 +190,9 @@ TEST_CASE("elementary functions at the edges", "[elementary]") {
   CHECK(float_of(Opcode::Atan2, 0, -1) == 3.14159265f);
   CHECK(float_of(Opcode::Atan2, kInf, kInf) == 0.785398163f);
   CHECK(float_of(Opcode::Atan2, -3, 0) == -1.57079632679f);
-  const float halves[][4] = {{-1.5f, -2, -1, -2}, {-0.5f, -1, 0, 0}, {0.5f, 0, 1, 0}, {1.5f, 1, 2, 2}, {2.5f, 2, 3, 2},
-                             {1e30f, 1e30f, 1e30f, 1e30f}, {-kInf, -kInf, -kInf, -kInf}};
+  const float halves[][4] = {
+      {-1.5f, -2, -1, -2},          {-0.5f, -1, 0, 0},           {0.5f, 0, 1, 0}, {1.5f, 1, 2, 2}, {2.5f, 2, 3, 2},
+      {1e30f, 1e30f, 1e30f, 1e30f}, {-kInf, -kInf, -kInf, -kInf}};
   for (const auto& row : halves) {
     INFO(row[0]);
     CHECK(float_of(Opcode::Floor, row[0]) == row[1]);
@@ -212,17 +210,38 @@ TEST_CASE("binary mathematics by its table", "[elementary]") {
     float a, b, result;
   };
   const Row rows[] = {
-      {Opcode::Add, 1, 2, 3},           {Opcode::Minus, 1, 2, -1},         {Opcode::Multiply, 3, -2, -6},
-      {Opcode::Divide, 1, 4, 0.25f},    {Opcode::Divide, 1, 0, kInf},      {Opcode::Modulo, 7, 3, 1},
-      {Opcode::Modulo, -7, 3, 2},       {Opcode::Modulo, 7, -3, -2},       {Opcode::Modulo, 1, 0, kNan},
-      {Opcode::ModuloEuclid, 7, -3, 1}, {Opcode::ModuloEuclid, -7, -3, 2}, {Opcode::Power, -2, 3, -8},
-      {Opcode::Power, -2, 2, 4},        {Opcode::Power, -2, 0.5f, kNan},   {Opcode::Power, 0, 2, 0},
-      {Opcode::Power, 0, 0, 1},         {Opcode::Power, 0, -1, kInf},      {Opcode::Power, 5, 0, 1},
-      {Opcode::Compare, 1, 2, -1},      {Opcode::Compare, 2, 2, 0},        {Opcode::Compare, 3, 2, 1},
-      {Opcode::Compare, kNan, 2, kNan}, {Opcode::Compare, 2, kNan, kNan},  {Opcode::And, 0, 5, 0},
-      {Opcode::And, 2, 5, 5},           {Opcode::Or, 0, 5, 5},             {Opcode::Or, 2, 5, 2},
-      {Opcode::Or, -2, 5, -2},          {Opcode::Step, 1, 0.5f, 0},        {Opcode::Step, 1, 1, 1},
-      {Opcode::Step, 1, 2, 1},          {Opcode::Step, 1, kNan, kNan},
+      {Opcode::Add, 1, 2, 3},
+      {Opcode::Minus, 1, 2, -1},
+      {Opcode::Multiply, 3, -2, -6},
+      {Opcode::Divide, 1, 4, 0.25f},
+      {Opcode::Divide, 1, 0, kInf},
+      {Opcode::Modulo, 7, 3, 1},
+      {Opcode::Modulo, -7, 3, 2},
+      {Opcode::Modulo, 7, -3, -2},
+      {Opcode::Modulo, 1, 0, kNan},
+      {Opcode::ModuloEuclid, 7, -3, 1},
+      {Opcode::ModuloEuclid, -7, -3, 2},
+      {Opcode::Power, -2, 3, -8},
+      {Opcode::Power, -2, 2, 4},
+      {Opcode::Power, -2, 0.5f, kNan},
+      {Opcode::Power, 0, 2, 0},
+      {Opcode::Power, 0, 0, 1},
+      {Opcode::Power, 0, -1, kInf},
+      {Opcode::Power, 5, 0, 1},
+      {Opcode::Compare, 1, 2, -1},
+      {Opcode::Compare, 2, 2, 0},
+      {Opcode::Compare, 3, 2, 1},
+      {Opcode::Compare, kNan, 2, kNan},
+      {Opcode::Compare, 2, kNan, kNan},
+      {Opcode::And, 0, 5, 0},
+      {Opcode::And, 2, 5, 5},
+      {Opcode::Or, 0, 5, 5},
+      {Opcode::Or, 2, 5, 2},
+      {Opcode::Or, -2, 5, -2},
+      {Opcode::Step, 1, 0.5f, 0},
+      {Opcode::Step, 1, 1, 1},
+      {Opcode::Step, 1, 2, 1},
+      {Opcode::Step, 1, kNan, kNan},
   };
   vm::Workspace workspace;
   for (const Row& row : rows) {

@@ -1,7 +1,9 @@
 // Formulas for the tests of scalar mathematics: programs of leaves, unary and binary opcodes, at random or by hand.
 #pragma once
 
-#include <glm/vec3.hpp>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "tests/support/plain_lowering.h"
@@ -24,14 +26,14 @@ inline vm::VerifiedProgram formula(const std::vector<Step>& steps) {
 // A random tree with about `size` operations over x, y, z and constants, in the order of evaluation.
 inline void append_random_formula(Random& random, int size, std::vector<Step>& steps) {
   using vm::Opcode;
-  static const Opcode kUnary[] = {Opcode::Abs,  Opcode::Square, Opcode::Sqrt, Opcode::Sin,   Opcode::Cos,
-                                  Opcode::Tan,  Opcode::Asin,   Opcode::Acos, Opcode::Atan,  Opcode::Exp,
-                                  Opcode::Log,  Opcode::Floor,  Opcode::Ceil, Opcode::Sign,  Opcode::Not,
+  static const Opcode kUnary[] = {Opcode::Abs,  Opcode::Square, Opcode::Sqrt, Opcode::Sin,    Opcode::Cos,
+                                  Opcode::Tan,  Opcode::Asin,   Opcode::Acos, Opcode::Atan,   Opcode::Exp,
+                                  Opcode::Log,  Opcode::Floor,  Opcode::Ceil, Opcode::Sign,   Opcode::Not,
                                   Opcode::Sqrt, Opcode::Abs,    Opcode::Sin,  Opcode::Negate, Opcode::Nearest};
-  static const Opcode kBinary[] = {Opcode::Add,     Opcode::Minus, Opcode::Multiply, Opcode::Divide, Opcode::Modulo,
-                                   Opcode::Atan2,   Opcode::Power, Opcode::Compare,  Opcode::And,    Opcode::Or,
-                                   Opcode::Step,    Opcode::Min,   Opcode::Max,      Opcode::Add,    Opcode::Multiply,
-                                   Opcode::Minus,   Opcode::ModuloEuclid};
+  static const Opcode kBinary[] = {
+      Opcode::Add,   Opcode::Minus,   Opcode::Multiply, Opcode::Divide, Opcode::Modulo,      Opcode::Atan2,
+      Opcode::Power, Opcode::Compare, Opcode::And,      Opcode::Or,     Opcode::Step,        Opcode::Min,
+      Opcode::Max,   Opcode::Add,     Opcode::Multiply, Opcode::Minus,  Opcode::ModuloEuclid};
   if (size <= 0) {
     const int leaf = random.below(5);
     if (leaf < 3) {
@@ -64,6 +66,29 @@ inline std::string text_of(const std::vector<Step>& steps) {
     for (double k : step.immediates) text += std::to_string(k) + ' ';
   }
   return text;
+}
+
+// The programs of all subexpressions, leaves aside: a formula is defined where each of them is finite.
+inline std::vector<vm::VerifiedProgram> subexpressions(const std::vector<Step>& steps) {
+  std::vector<vm::VerifiedProgram> programs;
+  std::vector<std::size_t> starts;  // of the operands on the stack
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const vm::Form form = vm::info(steps[i].opcode).form;
+    if (form == vm::Form::Shape) {
+      starts.push_back(i);
+      continue;
+    }
+    if (form == vm::Form::Binary) starts.pop_back();
+    const auto first = steps.begin() + static_cast<std::ptrdiff_t>(starts.back());
+    programs.push_back(formula({first, steps.begin() + static_cast<std::ptrdiff_t>(i) + 1}));
+  }
+  return programs;
+}
+inline bool defined_at(const std::vector<vm::VerifiedProgram>& parts, glm::dvec3 p, vm::Workspace& workspace) {
+  for (const auto& part : parts) {
+    if (!std::isfinite(vm::evaluate_distance(part, p, workspace))) return false;
+  }
+  return true;
 }
 
 inline float evaluate_float(const vm::VerifiedProgram& program, glm::vec3 p, vm::Workspace& workspace) {

@@ -57,7 +57,8 @@ TEST_CASE("a polygon is its exact distance, with a unit gradient", "[polygon]") 
     const auto xy = star(random, 3 + random.below(12), seed % 2 == 0);
     const vm::VerifiedProgram program = verified(polygon_code(xy));
     for (int i = 0; i < 200; ++i) {
-      const glm::vec3 p(random.uniform(-3, 3), random.chance(0.2) ? xy[1 + 2 * std::size_t(random.below(3))] : random.uniform(-3, 3),
+      const glm::vec3 p(random.uniform(-3, 3),
+                        random.chance(0.2) ? xy[1 + 2 * std::size_t(random.below(3))] : random.uniform(-3, 3),
                         random.uniform(-9, 9));
       const double truth = brute_force(xy, dvec2(p.x, p.y));
       INFO("seed " << seed << " at " << p.x << ' ' << p.y << ": " << truth);

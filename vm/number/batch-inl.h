@@ -63,9 +63,10 @@ HWY_INLINE Batch sqrt(Batch a) { return {hn::Sqrt(a.v)}; }
 HWY_INLINE Batch length(Batch x, Batch y) { return sqrt(x * x + y * y); }
 HWY_INLINE Batch length(Batch x, Batch y, Batch z) { return sqrt(x * x + y * y + z * z); }
 
-HWY_INLINE Batch floor(Batch a) { return {hn::Floor(a.v)}; }
-HWY_INLINE Batch ceil(Batch a) { return {hn::Ceil(a.v)}; }
-HWY_INLINE Batch round_nearest(Batch a) { return {hn::Round(a.v)}; }  // half to even
+// Adding 0 makes -0 into 0: instruction sets differ in the sign of a zero they round to.
+HWY_INLINE Batch floor(Batch a) { return Batch{hn::Floor(a.v)} + Batch::broadcast(0.0f); }
+HWY_INLINE Batch ceil(Batch a) { return Batch{hn::Ceil(a.v)} + Batch::broadcast(0.0f); }
+HWY_INLINE Batch round_nearest(Batch a) { return Batch{hn::Round(a.v)} + Batch::broadcast(0.0f); }  // half to even
 HWY_INLINE BatchMask is_nan(Batch a) { return {hn::IsNaN(a.v)}; }
 
 // 2^n for a whole n in [-126, 127].

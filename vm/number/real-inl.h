@@ -41,16 +41,16 @@ HWY_INLINE Real length(Real x, Real y, Real z) { return sqrt(x * x + y * y + z *
 
 HWY_INLINE bool is_nan(Real a) { return a.v != a.v; }
 
-// Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding decides.
+// No result is -0, as for Batch. Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding decides.
 HWY_INLINE Real round_nearest(Real a) {
   const double m = std::fabs(a.v);
-  return {m < 0x1p52 ? std::copysign((m + 0x1p52) - 0x1p52, a.v) : a.v};
+  return {(m < 0x1p52 ? std::copysign((m + 0x1p52) - 0x1p52, a.v) : a.v) + 0.0};
 }
 HWY_INLINE Real floor(Real a) {
   const Real nearest = round_nearest(a);
-  return {std::copysign(nearest.v > a.v ? nearest.v - 1 : nearest.v, a.v)};
+  return {nearest.v > a.v ? nearest.v - 1 : nearest.v};
 }
-HWY_INLINE Real ceil(Real a) { return -floor(-a); }
+HWY_INLINE Real ceil(Real a) { return {0.0 - floor(-a).v}; }
 
 // 2^n for a whole n in [-1022, 1023].
 HWY_INLINE Real power_of_two(Real n) {
