@@ -13,6 +13,7 @@
 
 #include <cstdint>
 
+#include "vm/domain-inl.h"
 #include "vm/number/batch-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/interval_elementary-inl.h"
@@ -52,30 +53,6 @@ HWY_INLINE T affine_row(const Vec3<T>& p, const Constant<T>* m) {
 template <class T>
 HWY_INLINE Vec3<T> affine(const Vec3<T>& p, const Constant<T>* m) {
   return {affine_row(p, m), affine_row(p, m + 4), affine_row(p, m + 8)};
-}
-
-// Takes out the middle: what lies within x, y, z of the origin's planes goes to the plane.
-template <class T>
-HWY_INLINE T pull(const T& a, Constant<T> by) {
-  return a - max(-by, min(by, a));
-}
-template <class T>
-HWY_INLINE Vec3<T> elongate(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
-  return {pull(p.x, x), pull(p.y, y), pull(p.z, z)};
-}
-
-// k: unit normal, offset. What lies behind the plane is seen in front of it.
-template <class T>
-HWY_INLINE Vec3<T> mirror(const Vec3<T>& p, const Constant<T>* k) {
-  const T behind = min(constant<T>(0.0), p.x * k[0] + p.y * k[1] + p.z * k[2] - k[3]);
-  const T twice = behind + behind;
-  return {p.x - twice * k[0], p.y - twice * k[1], p.z - twice * k[2]};
-}
-
-// The half-plane about the y axis that p lies in, as an outline's plane.
-template <class T>
-HWY_INLINE Vec3<T> revolve(const Vec3<T>& p, Constant<T> offset) {
-  return {length(p.x, p.z) - offset, p.y, p.z};
 }
 
 // Half extents x, y, z. Gradient undefined on the edges' and the inside's medial planes. The order of min's and max's
@@ -325,6 +302,16 @@ template <class T>
 HWY_INLINE T round_min(const T& a, const T& b, Constant<T> radius) {
   const Constant<T> zero = constant<T>(0.0);
   return max(radius, min(a, b)) - length(max(zero, radius - a), max(zero, radius - b));
+}
+
+// The same with `steps` stairs of two faces each, every one of height `step` (after MERCURY's hg_sdf, stairs; a fold of
+// a - b, so no steeper than a and b).
+template <class T>
+HWY_INLINE T stairs_min(const T& a, const T& b, const Constant<T>* k) {  // k: radius, step, 1 / (2 step)
+  const T lesser = min(a, b), greater = max(a, b);
+  const T rise = greater - k[0] - lesser + k[1];
+  const T fold = abs(rise - floor(rise * k[2]) * (k[1] + k[1]) - k[1]);
+  return min(lesser, (lesser + greater - k[0] + fold) * constant<T>(0.5));
 }
 
 // The intersection of two bodies whose distances are measured in directions at right angles to each other: an outline

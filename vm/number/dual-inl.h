@@ -49,6 +49,11 @@ HWY_INLINE Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
   return {q, (a.dx - q * b.dx) * inverse, (a.dy - q * b.dy) * inverse, (a.dz - q * b.dz) * inverse};
 }
 template <class N>
+HWY_INLINE Dual<N> operator/(N a, const Dual<N>& b) {
+  const N q = a / b.v;
+  return chain(q, b, -q / b.v);
+}
+template <class N>
 HWY_INLINE Dual<N> operator-(const Dual<N>& a) {
   return {-a.v, -a.dx, -a.dy, -a.dz};
 }
