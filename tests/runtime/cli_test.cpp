@@ -151,6 +151,16 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"eval ball.json --box 1,0,0,0,1,1", "the first corner's x is above the second's"},
       {"eval ball.json --box 0,0,0,1,1,1 --number f32", "--box needs --number range"},
       {"eval - --points -", "cannot both come from standard input"},
+      {"slice", "the scene is missing"},
+      {"slice ball.json -o out.gif", "valid endings: .png, .jpg, .jpeg, .bmp"},
+      {"slice ball.json --axis w", "--axis: `w` is not one of x, y, z"},
+      {"slice ball.json --at high", "--at: `high` is not a number"},
+      {"slice ball.json --size 12", "write it as 1920x1080"},
+      {"slice ball.json --size 65535x65535", "too large"},
+      {"slice ball.json --box 0,0,1", "write its two corners"},
+      {"slice ball.json --box 0,1,1,0", "the corner with the smaller coordinates first"},
+      {"slice ball.json --show sing", "did you mean `sign`?"},
+      {"slice ball.json --threads 0", "--threads: `0`"},
   };
   const Folder folder;
   for (const Case& c : cases) {
@@ -171,7 +181,7 @@ TEST_CASE("cli: help and version go to stdout and succeed") {
     CHECK_THAT(result.out, Contains("fathom render scene.json") && Contains("Exit status") && Contains("65"));
     CHECK(result.err == "");
   }
-  for (const std::string verb : {"render", "check", "dump", "eval"}) {
+  for (const std::string verb : {"render", "check", "dump", "eval", "slice"}) {
     const Result result = folder.run(verb + " --help");
     CHECK(result.code == 0);
     CHECK_THAT(result.out, Contains("Examples:\n  fathom " + verb));
@@ -202,7 +212,7 @@ TEST_CASE("cli: the version is the project's") {
 
 TEST_CASE("cli: files that cannot be read or written are exit code 74") {
   const Folder folder;
-  for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0"}) {
+  for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0", "slice"}) {
     const Result result = folder.run(std::string(verb) + " missing.json");
     CHECK(result.code == 74);
     CHECK_THAT(result.err, Contains("cannot read `missing.json`: No such file or directory"));
@@ -229,6 +239,9 @@ TEST_CASE("cli: no output may overwrite the scene or another output") {
     CHECK_THAT(result.err, Contains("would be overwritten"));
   }
   CHECK(folder.run("check ball.json").code == 0);
+  folder.write("scene.png", kBall);
+  CHECK_THAT(folder.run("slice scene.png -o ./scene.png").err, Contains("would be overwritten"));
+  CHECK(folder.read("scene.png") == kBall);
 }
 
 TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
@@ -240,6 +253,8 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   CHECK_FALSE(folder.has("bad.png"));
   CHECK(folder.run("dump bad.json").code == 65);
   CHECK(folder.run("eval bad.json --at 0,0,0").code == 65);
+  CHECK(folder.run("slice bad.json -o bad.png").code == 65);
+  CHECK_FALSE(folder.has("bad.png"));
   const Result check = folder.run("check bad.json");
   CHECK(check.code == 1);
   CHECK(check.out == "");
@@ -300,6 +315,46 @@ TEST_CASE("cli: eval reads points from a file, and names the line that is none")
   CHECK(bad.code == 65);
   CHECK(bad.out == "");
   CHECK_THAT(bad.err, Contains("bad.txt:2: `0 2` is not a point"));
+}
+
+TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
+  const Folder folder;
+  // Centres within the radius 0.5 on a grid of 8 by 8 over [-1, 1]^2: 4 by 4 without the corners.
+  const Result sign = folder.run("slice ball.json -o a.png --show sign --box -1,-1,1,1 --size 8x8");
+  CHECK(sign.code == 0);
+  CHECK(sign.out == "inside 12 of 64 pixels\n");
+  CHECK_THAT(sign.err, Contains("wrote a.png (8x8)"));
+  CHECK(png_size(folder.read("a.png")) == std::pair(8, 8));
+  const auto inside = [&](const std::string& flags) {
+    return folder.run("slice two.json -o a.png --show sign --size 10x10 " + flags).out;
+  };
+  // The left ball's box has the corners -3 and -1, the right box 1 and 3.
+  CHECK(inside("--box 1,-1,3,1") == "inside 100 of 100 pixels\n");
+  CHECK(inside("--axis y --at 0.9 --box 1,-1,3,1") == "inside 100 of 100 pixels\n");
+  CHECK(inside("--axis y --at 1.1 --box 1,-1,3,1") == "inside 0 of 100 pixels\n");
+  CHECK(inside("--axis x --at 2 --box -2,-1,0,1") == "inside 50 of 100 pixels\n");
+  CHECK(inside("--axis x --at 2 --box -2,-1,0,1 --threads 3") == "inside 50 of 100 pixels\n");
+}
+
+TEST_CASE("cli: slice says how far its lines are apart") {
+  const Folder folder;
+  const Result result = folder.run("slice ball.json --box -1,-1,1,1 --size 9x9");
+  CHECK(result.code == 0);
+  CHECK(result.out == "a line every 0.2 scene units, distances from -0.5 to 0.75707877\n");
+  CHECK_THAT(result.err, Contains("the picture goes to ball-slice.png"));
+  CHECK(folder.has("ball-slice.png"));
+  CHECK(folder.run("slice - -o b.jpg --axis x --size 20x10", kBall).code == 0);
+  CHECK(folder.has("b.jpg"));
+  CHECK(folder.files() == 4);
+}
+
+TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no data") {
+  const Folder folder;
+  for (const char* output : {"missing/out.png", "ball.json/out.png"}) {
+    const Result result = folder.run(std::string("slice ball.json -o ") + output);
+    CHECK(result.code == 74);
+    CHECK(result.out == "");
+  }
 }
 
 TEST_CASE("cli: dump prints each stage on stdout") {
