@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -161,6 +162,7 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"slice ball.json --box 0,1,1,0", "the corner with the smaller coordinates first"},
       {"slice ball.json --show sing", "did you mean `sign`?"},
       {"slice ball.json --threads 0", "--threads: `0`"},
+      {"schema ball.json", "unexpected argument `ball.json`"},
   };
   const Folder folder;
   for (const Case& c : cases) {
@@ -181,7 +183,7 @@ TEST_CASE("cli: help and version go to stdout and succeed") {
     CHECK_THAT(result.out, Contains("fathom render scene.json") && Contains("Exit status") && Contains("65"));
     CHECK(result.err == "");
   }
-  for (const std::string verb : {"render", "check", "dump", "eval", "slice"}) {
+  for (const std::string verb : {"render", "check", "dump", "eval", "slice", "schema"}) {
     const Result result = folder.run(verb + " --help");
     CHECK(result.code == 0);
     CHECK_THAT(result.out, Contains("Examples:\n  fathom " + verb));
@@ -355,6 +357,15 @@ TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no d
     CHECK(result.code == 74);
     CHECK(result.out == "");
   }
+}
+
+TEST_CASE("cli: schema is JSON on stdout") {
+  const Result result = Folder().run("schema");
+  CHECK(result.code == 0);
+  CHECK(result.err == "");
+  const auto schema = nlohmann::json::parse(result.out);
+  CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+  CHECK(schema["required"] == nlohmann::json({"version", "objects"}));
 }
 
 TEST_CASE("cli: dump prints each stage on stdout") {
