@@ -146,6 +146,14 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"dump ball.json --stage graph --stats", "--stats is about bytecode"},
       {"dump ball.json --stage syntax --program surface", "--program is about bytecode"},
       {"dump ball.json --stage syntax --after graph", "--after names a pass"},
+      {"dump ball.json --format xml", "is not one of text, json, dot, mermaid"},
+      {"dump ball.json --stage bytecode --format dot", "bytecode is a sequence, not a graph to draw"},
+      {"dump ball.json --program surface --format mermaid", "bytecode is a sequence"},
+      {"dump ball.json --stage syntax --format json", "the syntax is printed as text only"},
+      {"dump ball.json --stats --format json", "--stats is text"},
+      {"dump ball.json --diff --format dot", "--diff is text"},
+      {"dump ball.json --diff --stats", "--diff compares graphs"},
+      {"dump ball.json --diff --stage bytecode", "--diff compares graphs"},
       {"eval ball.json", "no point to evaluate at"},
       {"eval ball.json --at 1,2", "--at: `1,2` is not a point"},
       {"eval ball.json --at 1,2,x", "--at: `1,2,x` is not a point"},
@@ -379,6 +387,83 @@ TEST_CASE("cli: dump prints each stage on stdout") {
   CHECK_THAT(folder.run("dump two.json --after graph --stage bytecode").out, Contains("box"));
   CHECK_THAT(folder.run("dump two.json --stats").out, Contains("sphere") && Contains("total"));
   CHECK(folder.run("dump two.json").err == "");
+}
+
+TEST_CASE("cli: dump prints JSON and drawings") {
+  const Folder folder;
+  const auto program = nlohmann::json::parse(folder.run("dump two.json --program surface --format json").out);
+  CHECK(program["program"] == "surface");
+  CHECK(program["code"].size() == program["instructions"]);
+  std::size_t cost = 0, end = 0;
+  for (const auto& line : program["code"]) {
+    CHECK(line["offset"] == end);
+    cost += line["cost"].get<std::size_t>();
+    end += 1 + line["immediates"].size();
+    CHECK(line.contains("operand") == (line["op"] == "tag"));
+  }
+  CHECK(program["cost"] == cost);
+  CHECK(program["words"] == end);
+  CHECK(program["code"].back()["values"] == nlohmann::json({2, 1}));
+  const auto graph = nlohmann::json::parse(folder.run("dump two.json --stage graph --format json").out);
+  CHECK(graph["nodes"].size() == 5);  // sphere, box, their transforms, union
+  const auto first = nlohmann::json::parse(folder.run("dump two.json --after graph --format json").out);
+  CHECK(first["nodes"].size() == 7);  // and two paints
+  CHECK_THAT(folder.run("dump two.json --format dot").out, Contains("digraph scene {") && Contains("n4 -> n1;"));
+  CHECK_THAT(folder.run("dump two.json --format mermaid").out, Contains("flowchart TD") && Contains("n4 -->|1| n1"));
+}
+
+TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
+  const Folder folder;
+  folder.write("fold.json", R"({"version": 1, "objects": [
+    {"type": "round", "radius": 0.25, "of": {"type": "sphere", "radius": 1}},
+    {"type": "box", "half_size": [1, 1, 1]}]})");
+  const Result result = folder.run("dump fold.json --diff");
+  CHECK(result.code == 0);
+  CHECK(result.out ==
+        R"(; pass unpaint: 6 -> 4 nodes, 6 -> 4 ops, cost 24 -> 24
+--- graph
++++ unpaint
+@@ -1,6 +1,4 @@
+ %sphere@2:45 = sphere radius=1
+ %round@2:5 = round radius=0.25 %sphere@2:45
+-%paint@2:5 = paint surface=0 %round@2:5
+ %box@3:5 = box half_size=[1,1,1]
+-%paint@3:5 = paint surface=1 %box@3:5
+-%union = union %paint@2:5 %paint@3:5
++%union = union %round@2:5 %box@3:5
+; pass fold: 4 -> 3 nodes, 4 -> 3 ops, cost 24 -> 23
+--- unpaint
++++ fold
+@@ -1,4 +1,3 @@
+-%sphere@2:45 = sphere radius=1
+-%round@2:5 = round radius=0.25 %sphere@2:45
++%sphere@2:5 = sphere radius=1.25
+ %box@3:5 = box half_size=[1,1,1]
+-%union = union %round@2:5 %box@3:5
++%union = union %sphere@2:5 %box@3:5
+)");
+  CHECK(folder.run("dump fold.json --diff --after graph").out == "; no pass changed anything\n");
+  CHECK_THAT(folder.run("dump fold.json --diff --after unpaint").out, !Contains("pass fold"));
+}
+
+TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first") {
+  CHECK(Folder().run("dump two.json --stats").out ==
+        R"(operation             count  cost each      cost   share
+box                       1         14        14   56.0%
+sphere                    1          8         8   32.0%
+translate                 2          1         2    8.0%
+min                       1          1         1    4.0%
+drop                      2          0         0    0.0%
+total                     7                   25
+
+place    ops      cost   share  node
+6:5        1        14   56.0%  box "right"
+5:5        1         8   32.0%  sphere "left"
+-          1         1    4.0%  union
+5:5        2         1    4.0%  transform "left"
+6:5        2         1    4.0%  transform "right"
+total      7        25
+)");
 }
 
 TEST_CASE("cli: render writes the picture, and what is asked for beside it") {
