@@ -1,5 +1,5 @@
 // fathom dump: what the compiler made of a scene, after its front end, after a pass, or as bytecode.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli_dump_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>

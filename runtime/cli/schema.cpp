@@ -1,5 +1,5 @@
 // fathom schema: the JSON Schema of scene files, for editors that complete and check while one types.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli_dump_test.cpp
 #include "compiler/frontend/schema.h"
 
 #include <ostream>

@@ -3,7 +3,7 @@
 //     $ fathom slice ball.json --show sign -o ball.png
 //     inside 107968 of 262144 pixels
 //
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli_slice_test.cpp
 #include "runtime/slice.h"
 
 #include <fmt/format.h>

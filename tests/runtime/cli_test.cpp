@@ -1,96 +1,17 @@
 // The program as its users meet it: exit codes, messages, data on stdout, files written and not written.
-#include <sys/wait.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
+
+#include "tests/support/program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Result {
-  int code;
-  std::string out, err;
-};
-
-const char* const kBall = R"({
-  "version": 1,
-  "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
-  "film": {"width": 32, "height": 16},
-  "render": {"spp": 2},
-  "background": [1, 1, 1],
-  "objects": [{"name": "ball", "type": "sphere", "radius": 0.5}]
-})";
-
-const char* const kTwo = R"({
-  "version": 1,
-  "materials": {"red": {"type": "diffuse", "color": [1, 0, 0]}, "blue": {"type": "diffuse", "color": [0, 0, 1]}},
-  "objects": [
-    {"name": "left", "type": "sphere", "radius": 1, "translate": [-2, 0, 0], "material": "red"},
-    {"name": "right", "type": "box", "half_size": [1, 1, 1], "translate": [2, 0, 0], "material": "blue"}
-  ]
-})";
-
-// An empty folder to run the program in, removed with everything in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "fathom-cli-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-    write("ball.json", kBall);
-    write("two.json", kTwo);
-  }
-  ~Folder() { fs::remove_all(path_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-  std::string read(const std::string& name) const {
-    std::stringstream text;
-    text << std::ifstream(path_ / name).rdbuf();
-    return text.str();
-  }
-  bool has(const std::string& name) const { return fs::exists(path_ / name); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-  }
-
-  // `arguments` as for a shell; standard input is `in`.
-  Result run(const std::string& arguments, const std::string& in = "") const {
-    const fs::path io = path_.string() + ".io";  // beside the folder, which stays the user's
-    fs::create_directories(io);
-    std::ofstream(io / "in") << in;
-    const std::string command = "cd '" + path_.string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
-                                (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
-                                (io / "err").string() + "'";
-    const int status = std::system(command.c_str());
-    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
-                  read("../" + io.filename().string() + "/err")};
-    fs::remove_all(io);
-    return result;
-  }
-
- private:
-  fs::path path_;
-};
-
 using Catch::Contains;
-
-// Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
-std::pair<int, int> png_size(const std::string& bytes) {
-  REQUIRE(bytes.size() > 24);
-  const auto big_endian = [&](std::size_t at) {
-    int value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes[at + i]);
-    return value;
-  };
-  return {big_endian(16), big_endian(20)};
-}
+using fathom::tests::Folder;
+using fathom::tests::kBall;
+using fathom::tests::png_size;
+using fathom::tests::Result;
 
 }  // namespace
 
@@ -325,145 +246,6 @@ TEST_CASE("cli: eval reads points from a file, and names the line that is none")
   CHECK(bad.code == 65);
   CHECK(bad.out == "");
   CHECK_THAT(bad.err, Contains("bad.txt:2: `0 2` is not a point"));
-}
-
-TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
-  const Folder folder;
-  // Centres within the radius 0.5 on a grid of 8 by 8 over [-1, 1]^2: 4 by 4 without the corners.
-  const Result sign = folder.run("slice ball.json -o a.png --show sign --box -1,-1,1,1 --size 8x8");
-  CHECK(sign.code == 0);
-  CHECK(sign.out == "inside 12 of 64 pixels\n");
-  CHECK_THAT(sign.err, Contains("wrote a.png (8x8)"));
-  CHECK(png_size(folder.read("a.png")) == std::pair(8, 8));
-  const auto inside = [&](const std::string& flags) {
-    return folder.run("slice two.json -o a.png --show sign --size 10x10 " + flags).out;
-  };
-  // The left ball's box has the corners -3 and -1, the right box 1 and 3.
-  CHECK(inside("--box 1,-1,3,1") == "inside 100 of 100 pixels\n");
-  CHECK(inside("--axis y --at 0.9 --box 1,-1,3,1") == "inside 100 of 100 pixels\n");
-  CHECK(inside("--axis y --at 1.1 --box 1,-1,3,1") == "inside 0 of 100 pixels\n");
-  CHECK(inside("--axis x --at 2 --box -2,-1,0,1") == "inside 50 of 100 pixels\n");
-  CHECK(inside("--axis x --at 2 --box -2,-1,0,1 --threads 3") == "inside 50 of 100 pixels\n");
-}
-
-TEST_CASE("cli: slice says how far its lines are apart") {
-  const Folder folder;
-  const Result result = folder.run("slice ball.json --box -1,-1,1,1 --size 9x9");
-  CHECK(result.code == 0);
-  CHECK(result.out == "a line every 0.2 scene units, distances from -0.5 to 0.75707877\n");
-  CHECK_THAT(result.err, Contains("the picture goes to ball-slice.png"));
-  CHECK(folder.has("ball-slice.png"));
-  CHECK(folder.run("slice - -o b.jpg --axis x --size 20x10", kBall).code == 0);
-  CHECK(folder.has("b.jpg"));
-  CHECK(folder.files() == 4);
-}
-
-TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no data") {
-  const Folder folder;
-  for (const char* output : {"missing/out.png", "ball.json/out.png"}) {
-    const Result result = folder.run(std::string("slice ball.json -o ") + output);
-    CHECK(result.code == 74);
-    CHECK(result.out == "");
-  }
-}
-
-TEST_CASE("cli: schema is JSON on stdout") {
-  const Result result = Folder().run("schema");
-  CHECK(result.code == 0);
-  CHECK(result.err == "");
-  const auto schema = nlohmann::json::parse(result.out);
-  CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
-  CHECK(schema["required"] == nlohmann::json({"version", "objects"}));
-}
-
-TEST_CASE("cli: dump prints each stage on stdout") {
-  const Folder folder;
-  CHECK_THAT(folder.run("dump ball.json").out, Contains("sphere") && Contains("0.5"));
-  CHECK_THAT(folder.run("dump two.json --program surface").out, Contains("tag"));
-  CHECK_THAT(folder.run("dump two.json --program distance").out, !Contains("tag"));
-  CHECK_THAT(folder.run("dump ball.json --stage syntax").out, Contains("radius"));
-  CHECK_THAT(folder.run("dump ball.json --stage graph").out, Contains("%0 = sphere radius=0.5"));
-  CHECK_THAT(folder.run("dump two.json --after graph").out, Contains("%0 = ") && Contains("union"));
-  CHECK_THAT(folder.run("dump two.json --after graph --stage bytecode").out, Contains("box"));
-  CHECK_THAT(folder.run("dump two.json --stats").out, Contains("sphere") && Contains("total"));
-  CHECK(folder.run("dump two.json").err == "");
-}
-
-TEST_CASE("cli: dump prints JSON and drawings") {
-  const Folder folder;
-  const auto program = nlohmann::json::parse(folder.run("dump two.json --program surface --format json").out);
-  CHECK(program["program"] == "surface");
-  CHECK(program["code"].size() == program["instructions"]);
-  std::size_t cost = 0, end = 0;
-  for (const auto& line : program["code"]) {
-    CHECK(line["offset"] == end);
-    cost += line["cost"].get<std::size_t>();
-    end += 1 + line["immediates"].size();
-    CHECK(line.contains("operand") == (line["op"] == "tag"));
-  }
-  CHECK(program["cost"] == cost);
-  CHECK(program["words"] == end);
-  CHECK(program["code"].back()["values"] == nlohmann::json({2, 1}));
-  const auto graph = nlohmann::json::parse(folder.run("dump two.json --stage graph --format json").out);
-  CHECK(graph["nodes"].size() == 5);  // sphere, box, their transforms, union
-  const auto first = nlohmann::json::parse(folder.run("dump two.json --after graph --format json").out);
-  CHECK(first["nodes"].size() == 7);  // and two paints
-  CHECK_THAT(folder.run("dump two.json --format dot").out, Contains("digraph scene {") && Contains("n4 -> n1;"));
-  CHECK_THAT(folder.run("dump two.json --format mermaid").out, Contains("flowchart TD") && Contains("n4 -->|1| n1"));
-}
-
-TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
-  const Folder folder;
-  folder.write("fold.json", R"({"version": 1, "objects": [
-    {"type": "round", "radius": 0.25, "of": {"type": "sphere", "radius": 1}},
-    {"type": "box", "half_size": [1, 1, 1]}]})");
-  const Result result = folder.run("dump fold.json --diff");
-  CHECK(result.code == 0);
-  CHECK(result.out ==
-        R"(; pass unpaint: 6 -> 4 nodes, 6 -> 4 ops, cost 24 -> 24
---- graph
-+++ unpaint
-@@ -1,6 +1,4 @@
- %sphere@2:45 = sphere radius=1
- %round@2:5 = round radius=0.25 %sphere@2:45
--%paint@2:5 = paint surface=0 %round@2:5
- %box@3:5 = box half_size=[1,1,1]
--%paint@3:5 = paint surface=1 %box@3:5
--%union = union %paint@2:5 %paint@3:5
-+%union = union %round@2:5 %box@3:5
-; pass fold: 4 -> 3 nodes, 4 -> 3 ops, cost 24 -> 23
---- unpaint
-+++ fold
-@@ -1,4 +1,3 @@
--%sphere@2:45 = sphere radius=1
--%round@2:5 = round radius=0.25 %sphere@2:45
-+%sphere@2:5 = sphere radius=1.25
- %box@3:5 = box half_size=[1,1,1]
--%union = union %round@2:5 %box@3:5
-+%union = union %sphere@2:5 %box@3:5
-)");
-  CHECK(folder.run("dump fold.json --diff --after graph").out == "; no pass changed anything\n");
-  CHECK_THAT(folder.run("dump fold.json --diff --after unpaint").out, !Contains("pass fold"));
-}
-
-TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first") {
-  CHECK(Folder().run("dump two.json --stats").out ==
-        R"(operation             count  cost each      cost   share
-box                       1         14        14   56.0%
-sphere                    1          8         8   32.0%
-translate                 2          1         2    8.0%
-min                       1          1         1    4.0%
-drop                      2          0         0    0.0%
-total                     7                   25
-
-place    ops      cost   share  node
-6:5        1        14   56.0%  box "right"
-5:5        1         8   32.0%  sphere "left"
--          1         1    4.0%  union
-5:5        2         1    4.0%  transform "left"
-6:5        2         1    4.0%  transform "right"
-total      7        25
-)");
 }
 
 TEST_CASE("cli: render writes the picture, and what is asked for beside it") {
