@@ -267,4 +267,6 @@ HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+
+#include "vm/solids-inl.h"
 #endif
