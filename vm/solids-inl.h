@@ -1,5 +1,5 @@
-// Meanings of solids that are longer than a line: frames, arcs, polyhedra, fractals. The head of semantics-inl.h,
-// which includes this file, says what holds for all of them.
+// Meanings of solids that are longer than a line: frames, arcs, polyhedra, periodic surfaces, fractals. The head of
+// semantics-inl.h, which includes this file, says what holds for all of them.
 #if defined(FATHOM_VM_SOLIDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SOLIDS_INL
 #undef FATHOM_VM_SOLIDS_INL
@@ -213,6 +213,33 @@ HWY_INLINE T pyramid(const Vec3<T>& p, const Constant<T>* k) {
   const T inside = max(side, -qy);
   // As for the cone.
   return select(zero < inside, max(outside, inside), inside);
+}
+
+// Triply periodic surfaces, of angles k p; the solid is where they are negative. None changes faster than sqrt 3 k,
+// and each does where all its angles are 0 (gyroid, Schwarz D) or a quarter turn (Schwarz P), which is on the
+// surface.
+//
+// Gyroid (Schoen 1970; this approximation is the usual one): a partial derivative cos x cos y - sin z sin x is at
+// most sqrt(cos^2 y + sin^2 z) by Cauchy's inequality; the squares of the three add up to 3.
+template <class T>
+HWY_INLINE T gyroid(const Vec3<T>& p, Constant<T> k) {
+  const T x = p.x * k, y = p.y * k, z = p.z * k;
+  return sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x);
+}
+template <class T>
+HWY_INLINE T schwarz_p(const Vec3<T>& p, Constant<T> k) {
+  return cos(p.x * k) + cos(p.y * k) + cos(p.z * k);
+}
+// Schwarz D is half the sum of the sines of x+y-z, x-y+z, -x+y+z and x+y+z. Its gradient's square is
+// sum c_i^2 - (sum c_i)^2 / 4 with c_i the cosines of four angles whose sum is half a turn (the last is negated).
+// With half sums p and pi/2 - p of two pairs of them, C = cos p, S = sin p, and u, v the cosines of their half
+// differences, that is 2 + (C u - S v)^2 - 2 (C v)^2 - 2 (S u)^2. On the square |u|, |v| <= 1 the quadratic form is
+// largest on the border: at a corner at most 0, on a side u = 1 at most 3 C^2 - 2 + C^2 S^2 / (3 C^2 - 1) with C^2 >=
+// 1/2, hence at most 1. So the square is at most 3.
+template <class T>
+HWY_INLINE T schwarz_d(const Vec3<T>& p, Constant<T> k) {
+  const T x = p.x * k, y = p.y * k, z = p.z * k;
+  return sin(x) * cos(y - z) + cos(x) * sin(y + z);
 }
 
 // Karl Menger's sponge of 1926: a cube without the middle third of each of its sides' squares, all the way through,

@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <numbers>
 
 #include "compiler/sine_cosine.h"
 
@@ -197,6 +198,12 @@ std::vector<double> infinite_cone_immediates(Params p) {
   return {sine, cosine};
 }
 
+// Radians per scene unit, and what brings the fastest change, sqrt 3 of them, to 1.
+std::vector<double> periodic_immediates(Params p) {
+  const double k = 2 * std::numbers::pi / p[0];
+  return {k, 1 / (std::numbers::sqrt3 * k)};
+}
+
 std::vector<double> julia_immediates(Params p) {
   return {p[0], p[1], p[2], p[3], p[4], julia_escape_radius(p), p[5], p[6]};
 }
@@ -305,6 +312,8 @@ Box infinite_cone_bound(Params) {
 }
 
 Box capsule_bound(Params p) { return Box::centred({p[0], p[0] + p[1], p[0]}); }
+
+Box everywhere(Params) { return Box::everything(); }
 
 Box menger_sponge_bound(Params p) { return Box::centred(dvec3(p[0])); }
 

@@ -36,6 +36,7 @@ std::vector<double> octahedron_immediates(Params p);
 std::vector<double> dodecahedron_immediates(Params p);
 std::vector<double> icosahedron_immediates(Params p);
 std::vector<double> pyramid_immediates(Params p);
+std::vector<double> periodic_immediates(Params p);  // gyroid, Schwarz P and D
 std::vector<double> julia_immediates(Params p);
 
 Box sphere_bound(Params p);
@@ -55,6 +56,7 @@ Box tetrahedron_bound(Params p);
 Box dodecahedron_bound(Params p);
 Box icosahedron_bound(Params p);
 Box pyramid_bound(Params p);
+Box everywhere(Params);
 Box menger_sponge_bound(Params p);
 Box julia_bound(Params p);
 

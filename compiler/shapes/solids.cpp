@@ -12,6 +12,7 @@ constexpr PrimitiveFacts kAboutAxis{.symmetric = {true, false, true}};
 // Where the ends of an arc meet, or its hole closes, the inside is a bound.
 constexpr PrimitiveFacts kArc{Exactness::Exact, Exactness::Bound, {true, false, true}};
 constexpr PrimitiveFacts kSymmetricBound{Exactness::Bound, Exactness::Bound, kAllAxes};
+constexpr PrimitiveFacts kBound{Exactness::Bound, Exactness::Bound};
 constexpr PrimitiveFacts kEstimate{Exactness::Estimate, Exactness::Estimate};
 // A spindle torus (minor > major) keeps an exact outside.
 constexpr PrimitiveFacts kTorus{Exactness::Exact, Exactness::Bound, kAllAxes};
@@ -209,6 +210,30 @@ std::vector<NodeSpec> solid_rows() {
        .code = code_of<Opcode::Quad, sheet_immediates>,
        .bound = sheet_bound,
        .magnitude = sheet_magnitude},
+      {.kind = Kind::Gyroid,
+       .name = "gyroid",
+       .category = kPrimitive,
+       .params = {length("period", "of one cell along each axis")},
+       .doc = "one side of Schoen's gyroid, everywhere; onion makes a sheet of it",
+       .code = code_of<Opcode::Gyroid, periodic_immediates>,
+       .bound = everywhere,
+       .facts = kBound},
+      {.kind = Kind::SchwarzP,
+       .name = "schwarz_p",
+       .category = kPrimitive,
+       .params = {length("period", "of one cell along each axis")},
+       .doc = "one side of Schwarz' primitive surface, everywhere; onion makes a sheet of it",
+       .code = code_of<Opcode::SchwarzP, periodic_immediates>,
+       .bound = everywhere,
+       .facts = kSymmetricBound},
+      {.kind = Kind::SchwarzD,
+       .name = "schwarz_d",
+       .category = kPrimitive,
+       .params = {length("period", "of one cell along each axis")},
+       .doc = "one side of Schwarz' diamond surface, everywhere; onion makes a sheet of it",
+       .code = code_of<Opcode::SchwarzD, periodic_immediates>,
+       .bound = everywhere,
+       .facts = kBound},
       {.kind = Kind::MengerSponge,
        .name = "menger_sponge",
        .category = kPrimitive,

@@ -150,6 +150,23 @@ double pyramid(dvec3 p, double w, double h) {
   return polyhedron(p, faces, 1);
 }
 
+// Products of sines and cosines as sums of sines of sums, over sqrt 3 radians per unit.
+double periodic(Kind kind, dvec3 p, double period) {
+  const double k = 2 * std::numbers::pi / period;
+  const dvec3 a = p * k;
+  double sum;
+  if (kind == Kind::Gyroid) {
+    sum = 0.5 * (std::sin(a.x + a.y) + std::sin(a.x - a.y) + std::sin(a.y + a.z) + std::sin(a.y - a.z) +
+                 std::sin(a.z + a.x) + std::sin(a.z - a.x));
+  } else if (kind == Kind::SchwarzP) {
+    sum = 3 - 2 * (std::pow(std::sin(a.x / 2), 2) + std::pow(std::sin(a.y / 2), 2) + std::pow(std::sin(a.z / 2), 2));
+  } else {
+    sum = 0.5 * (std::sin(a.x + a.y - a.z) + std::sin(a.x - a.y + a.z) + std::sin(a.y + a.z - a.x) +
+                 std::sin(a.x + a.y + a.z));
+  }
+  return sum / (std::sqrt(3.0) * k);
+}
+
 // Level by level: the cell of 3^level a side that p is in or nearest to, and in it the square holes along its axes,
 // in the measure of the larger coordinate. The field is the largest of the cube's and the negated holes'.
 double menger_sponge(dvec3 p, double half, int iterations) {
@@ -208,6 +225,10 @@ std::optional<double> judge_solid(Kind kind, Params k, dvec3 p) {
       return regular_polyhedron(kind, p, k[0]);
     case Kind::Pyramid:
       return pyramid(p, k[0], k[1]);
+    case Kind::Gyroid:
+    case Kind::SchwarzP:
+    case Kind::SchwarzD:
+      return periodic(kind, p, k[0]);
     case Kind::MengerSponge:
       return menger_sponge(p, k[0], static_cast<int>(k[1]));
     case Kind::Julia:

@@ -223,6 +223,10 @@ std::vector<double> random_params(Kind kind, Random& random) {
     case Kind::Capsule:
     case Kind::Pyramid:
       return {size(), size()};
+    case Kind::Gyroid:
+    case Kind::SchwarzP:
+    case Kind::SchwarzD:
+      return {random.length(0.2, 4)};
     case Kind::MengerSponge:
       return {size(), 1.0 + random.below(5)};
     case Kind::Julia: {

@@ -1,6 +1,7 @@
 // Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation
 // by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a
-// NaN bound gives the whole line. Source: Moore, "Interval Analysis", 1966.
+// NaN bound gives the whole line. The elementary functions are in interval_elementary-inl.h. Source: Moore, "Interval
+// Analysis", 1966.
 #if defined(FATHOM_VM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_INL
 #undef FATHOM_VM_INTERVAL_INL
@@ -87,13 +88,6 @@ HWY_INLINE Interval sqrt(Interval a) {
 }
 HWY_INLINE Interval length(Interval x, Interval y) { return sqrt(sqr(x) + sqr(y)); }
 HWY_INLINE Interval length(Interval x, Interval y, Interval z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
-// Monotone; Real's log errs by up to two ulp of its larger part, and log crosses zero, so widen absolutely as well.
-HWY_INLINE Interval log(Interval a) {
-  constexpr double kSlack = 1e-14;
-  const auto bound = [](double x) HWY_ATTR { return std::isfinite(x) ? log(Real{x}).v : x; };
-  const double lo = bound(a.lo), hi = bound(a.hi);
-  return {lo - kSlack * (1 + std::fabs(lo)), hi + kSlack * (1 + std::fabs(hi))};
-}
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
