@@ -36,6 +36,8 @@ constexpr Synonym kSynonyms[] = {
     {"smoothness", "k"},
     {"smooth", "k"},
     {"ball", "sphere"},
+    {"spheroid", "ellipsoid"},
+    {"chain_link", "link"},
     {"cube", "box"},
     {"cuboid", "box"},
     {"rounded_box", "round_box"},

@@ -1,4 +1,5 @@
-// Solids whose fields are not exact: the Menger sponge against its cubes, Julia sets against their orbits.
+// Solids that are made of others, and those whose fields are not exact: the Menger sponge against its cubes, Julia
+// sets against their orbits.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -43,6 +44,40 @@ TEST_CASE("a Menger sponge is what its cubes are, and its field never more than 
       INFO(levels << " levels, at " << p.x << ' ' << p.y << ' ' << p.z);
       CHECK(found <= truth + 1e-14);
       if (truth > 1e-12) CHECK(found > 0);
+    }
+  }
+}
+
+// Against random points of its surface.
+TEST_CASE("an ellipsoid's distance has the right sign and is never too much", "[shapes]") {
+  vm::Workspace workspace;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const std::vector<double> params = random_params(Kind::Ellipsoid, random);
+    const dvec3 radii(params[0], params[1], params[2]);
+    const vm::VerifiedProgram program = primitive_program(Kind::Ellipsoid, params);
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p = random.in_box(2);
+      const double d = vm::evaluate_distance(program, p, workspace);
+      CHECK((d < 0) == (glm::length(p / radii) < 1));
+      for (int j = 0; j < 20; ++j) CHECK(std::abs(d) <= glm::length(p - random.direction() * radii) + 1e-12);
+    }
+  }
+}
+
+// All within minor_radius of a racetrack: two segments along y and two half circles.
+TEST_CASE("a link is all within its radius of a racetrack", "[shapes]") {
+  vm::Workspace workspace;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const std::vector<double> k = random_params(Kind::Link, random);
+    const vm::VerifiedProgram program = primitive_program(Kind::Link, k);
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p = random.in_box(2);
+      const double y = p.y - std::clamp(p.y, -k[2], k[2]);
+      const double in_plane = y == 0 ? std::abs(std::abs(p.x) - k[0]) : std::abs(std::hypot(p.x, y) - k[0]);
+      const double truth = std::hypot(in_plane, p.z) - k[1];
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - truth) <= 1e-14 * 4);
     }
   }
 }

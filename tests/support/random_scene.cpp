@@ -212,6 +212,13 @@ std::vector<double> random_params(Kind kind, Random& random) {
       const double angle[] = {180, 90, 30, rounded(random.uniform(1, 179))};
       return {major, rounded(major * ratio[random.below(4)]), angle[random.below(4)]};
     }
+    case Kind::Ellipsoid:
+      return {size(), size(), size()};
+    case Kind::Link: {
+      std::vector<double> ring = torus(random);
+      ring.push_back(size());
+      return ring;
+    }
     case Kind::InfiniteCylinder:
     case Kind::Tetrahedron:
     case Kind::Octahedron:
