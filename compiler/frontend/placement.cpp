@@ -4,43 +4,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
+
+#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
-namespace {
-
-struct SineCosine {
-  double sine, cosine;
-};
-
-// Exact at whole quarter turns, and the same on every machine, which libm's functions are not: the angle's rest from
-// the nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall below 2^-53 after
-// x^18/18!.
-SineCosine sine_cosine(double degrees) {
-  const double turned = std::fmod(degrees, 360.0);
-  const double quarters = std::floor(turned / 90.0 + 0.5);
-  const double x = (turned - 90.0 * quarters) * (std::numbers::pi / 180);
-  double term = 1, sine = 0, cosine = 0;
-  for (int n = 0; n < 20; n += 2) {
-    cosine += term;
-    term *= x / (n + 1);
-    sine += term;
-    term *= -x / (n + 2);
-  }
-  switch ((static_cast<int>(quarters) + 4) % 4) {
-    case 0:
-      return {sine, cosine};
-    case 1:
-      return {cosine, -sine};
-    case 2:
-      return {-sine, -cosine};
-    default:
-      return {-cosine, sine};
-  }
-}
-
-}  // namespace
-
 glm::dmat3 rotation_about(glm::dvec3 axis, double degrees) {
   // Divided by the largest part first, so that no square overflows or vanishes.
   axis /= std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});

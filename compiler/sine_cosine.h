@@ -1,0 +1,14 @@
+// Sine and cosine of an angle in degrees, the same on every machine, which libm's are not.
+// Tested by: tests/compiler/elaborate_test.cpp
+#pragma once
+
+namespace fathom::compiler {
+
+struct SineCosine {
+  double sine, cosine;
+};
+
+// Exact at whole quarter turns.
+SineCosine sine_cosine(double degrees);
+
+}  // namespace fathom::compiler
