@@ -17,16 +17,6 @@
 namespace fathom::compiler {
 namespace {
 
-struct Pass {
-  std::string_view name;
-  Scene (*run)(const Scene&);
-};
-
-// What is done to the distance, in order. The surface program keeps its Paint and takes the others.
-constexpr Pass kPasses[] = {
-    {"unpaint", unpaint}, {"fold", fold}, {"affine", affine}, {"flatten", flatten}, {"share", share},
-};
-
 constexpr std::size_t kMaxInstructions = 1'000'000;
 
 using OnPass = std::function<void(std::string_view, const Scene&)>;
@@ -34,7 +24,7 @@ using OnPass = std::function<void(std::string_view, const Scene&)>;
 Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
   if (on_pass) on_pass("graph", scene);
   if (options.stop_after == "graph") return scene;
-  for (const Pass& pass : kPasses) {
+  for (const Pass& pass : passes()) {
     if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
     if (on_pass) on_pass(pass.name, scene);
     if (options.stop_after == pass.name) break;
@@ -82,6 +72,14 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
 
 }  // namespace
 
+std::span<const Pass> passes() {
+  static constexpr Pass kPasses[] = {
+      {"unpaint", unpaint}, {"fold", fold},       {"arithmetic", arithmetic},       {"affine", affine},
+      {"flatten", flatten}, {"share", share}, {"cull", cull, Pass::Leaves::Sign},
+  };
+  return kPasses;
+}
+
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
   const std::optional<syntax::File> file = read_json(source, diagnostics);
   if (!file) return std::nullopt;
@@ -118,7 +116,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
 
 std::vector<std::string_view> pass_names() {
   std::vector<std::string_view> names;
-  for (const Pass& pass : kPasses) names.push_back(pass.name);
+  for (const Pass& pass : passes()) names.push_back(pass.name);
   return names;
 }
 

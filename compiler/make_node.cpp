@@ -4,6 +4,7 @@ namespace fathom::compiler {
 
 NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin) {
   const NodeSpec& row = spec(kind);
+  if (row.build) return row.build(*this, params, children, origin);
   if (row.expand) return row.expand(graph_, params, origin);
   if (!row.derive) return graph_.add(kind, params, children, origin);
   std::vector<double> all(params.begin(), params.end());

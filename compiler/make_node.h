@@ -30,6 +30,7 @@ class NodeMaker {
   Complaint complaint(Kind kind, Params params, std::span<const NodeId> children);
 
   const Knowledge& known(NodeId id);
+  const Graph& graph() const { return graph_; }
 
  private:
   std::vector<Knowledge> known_of(std::span<const NodeId> children);

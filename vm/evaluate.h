@@ -73,6 +73,15 @@ struct Range {
 // Analysis", 1966.
 Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
+// What a program can do over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite where nothing
+// is known, as where the value may jump.
+struct SlopeBound {
+  Range value;
+  double lipschitz;    // |f(p) - f(q)| <= lipschitz |p - q| in the box
+  double float_error;  // |f32 value - exact value| at f32 points of the box, scene units
+};
+SlopeBound evaluate_slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
+
 // Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best
 // first. The environment variable FATHOM_ISA forces one.
 std::string_view isa_name();

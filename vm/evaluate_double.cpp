@@ -36,6 +36,20 @@ Range range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Worksp
   return {result.lo, result.hi};
 }
 
+Slope coordinate(double lo, double hi, int axis) {
+  const Interval zero{0, 0}, one{1, 1};
+  Slope s = make_slope({lo, hi}, axis == 0 ? one : zero, axis == 1 ? one : zero, axis == 2 ? one : zero, 1, 0);
+  s.norm = 1;
+  s.nonnegative = lo >= 0;
+  return s;
+}
+
+SlopeBound slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  const Vec3<Slope> box{coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
+  const Slope result = run_once<Slope>(program, box, workspace);
+  return {{result.v.lo, result.v.hi}, result.norm, result.error * kUnit};
+}
+
 }  // namespace
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -52,6 +66,10 @@ SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, 
 
 Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   return HWY_NAMESPACE::range(program, lo, hi, workspace);
+}
+
+SlopeBound evaluate_slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  return HWY_NAMESPACE::slope(program, lo, hi, workspace);
 }
 
 }  // namespace fathom::vm

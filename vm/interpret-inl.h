@@ -20,6 +20,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
+#define OP(Name, mnemonic, form, immediates, choice, ...) inline constexpr Choice kChoice##Name = Choice::choice;
+#include "vm/opcodes.def"
+#undef OP
+
 // One struct per opcode with its meaning as a function; the form decides what it may use.
 #define OP_Point(Name, meaning)                                                                \
   struct Name##Op {                                                                            \
@@ -36,6 +40,13 @@ namespace fathom::vm::HWY_NAMESPACE {
       return meaning;                                                                  \
     }                                                                                  \
   };
+#define OP_Outline(Name, meaning)                                           \
+  struct Name##Op {                                                         \
+    template <class T, class Groups>                                        \
+    static HWY_INLINE T apply(const Vec3<T>& p, const Groups& outline) {    \
+      return meaning;                                                       \
+    }                                                                       \
+  };
 #define OP_Unary(Name, meaning)                                                    \
   struct Name##Op {                                                                \
     template <class T>                                                             \
@@ -45,6 +56,7 @@ namespace fathom::vm::HWY_NAMESPACE {
   };
 #define OP_Binary(Name, meaning)                                                               \
   struct Name##Op {                                                                            \
+    static constexpr Choice kChoice = kChoice##Name;                                           \
     template <class T>                                                                         \
     static HWY_INLINE T apply(const T& a, const T& b, [[maybe_unused]] const Constant<T>* k) { \
       return meaning;                                                                          \
@@ -56,23 +68,29 @@ namespace fathom::vm::HWY_NAMESPACE {
 #undef OP
 #undef OP_Point
 #undef OP_Shape
+#undef OP_Outline
 #undef OP_Unary
 #undef OP_Binary
 #undef OP_Machine
 
 // How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs
-// to no surface, kNoSurface; a tag claims what no tag within has claimed.
+// to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing to choose the machine
+// works on the number alone, and the (left) operand's tag stays.
 inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits {
   using Point = T;
   static HWY_INLINE T lift(const Point& value) { return value; }
+  static HWY_INLINE T& number(T& value) { return value; }
+  static HWY_INLINE const T& number(const T& value) { return value; }
   static HWY_INLINE void tag(T&, std::uint32_t) {}
 };
 template <class T>
 struct ValueTraits<Tagged<T>> {
   using Point = T;
   static HWY_INLINE Tagged<T> lift(const T& value) { return {value, constant<T>(kNoSurface)}; }
+  static HWY_INLINE T& number(Tagged<T>& value) { return value.v; }
+  static HWY_INLINE const T& number(const Tagged<T>& value) { return value.v; }
   static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) {
     value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);
   }
@@ -94,6 +112,26 @@ template <class C>
 HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
   return C::broadcast(program.wide[word]);
 }
+
+// The groups of immediates of an Outline instruction whose first one is at `word`, made into constants when asked for:
+// there is no bound to how many there are.
+template <class C, int kSize>
+class Outline {
+ public:
+  Outline(const Program& program, std::size_t word, std::size_t count)
+      : Outline(program.wide.data() + word, count) {}
+  Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
+
+  std::size_t count() const { return count_; }
+  // Immediate j of group i, unrounded. Its f32 value is what it rounds to (vm/verify.h), and so is broadcast's.
+  double operator()(std::size_t i, std::size_t j) const { return wide_[i * kSize + j]; }
+  Outline<Real, kSize> real() const { return Outline<Real, kSize>(wide_, count_); }
+  HWY_INLINE C constant(std::size_t i, std::size_t j) const { return C::broadcast((*this)(i, j)); }
+
+ private:
+  const double* wide_;
+  std::size_t count_;
+};
 
 template <class T>
 class Machine {
@@ -130,6 +168,7 @@ class Machine {
 #define APPLY(Name, apply) case Opcode::Name: apply<Name##Op, count_##Name>(); break;
 #define OP_Point(Name) APPLY(Name, apply_point)
 #define OP_Shape(Name) APPLY(Name, apply_shape)
+#define OP_Outline(Name) APPLY(Name, apply_outline)
 #define OP_Unary(Name) APPLY(Name, apply_unary)
 #define OP_Binary(Name) APPLY(Name, apply_binary)
 #define OP_Machine(Name)
@@ -138,6 +177,7 @@ class Machine {
 #undef OP
 #undef OP_Point
 #undef OP_Shape
+#undef OP_Outline
 #undef OP_Unary
 #undef OP_Binary
 #undef OP_Machine
@@ -202,17 +242,32 @@ class Machine {
                  HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], immediates.k, immediates.words)); });
   }
   template <class Op, int Count>
+  HWY_INLINE void apply_outline() {
+    const Outline<C, Count> outline(program_, at_, operand_of(program_.words[at_ - 1]));
+    at_ += outline.count() * Count;
+    const Vec3<P>* from = point_;
+    T* to = top_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], outline)); });
+  }
+  template <class Op, int Count>
   HWY_INLINE void apply_unary() {
     const auto immediates = take<Count>();
     T* a = top_;
-    for_used([&](std::size_t i) HWY_ATTR { a[i] = Op::apply(a[i], immediates.k); });
+    for_used([&](std::size_t i)
+                 HWY_ATTR { Traits::number(a[i]) = Op::apply(Traits::number(a[i]), immediates.k); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_binary() {
     const auto immediates = take<Count>();
     const T* b = top_;
     T* a = top_ -= kBlock;
-    for_used([&](std::size_t i) HWY_ATTR { a[i] = Op::apply(a[i], b[i], immediates.k); });
+    for_used([&](std::size_t i) HWY_ATTR {
+      if constexpr (Op::kChoice == Choice::None) {
+        Traits::number(a[i]) = Op::apply(Traits::number(a[i]), Traits::number(b[i]), immediates.k);
+      } else {
+        a[i] = Op::apply(a[i], b[i], immediates.k);
+      }
+    });
   }
   HWY_INLINE void copy(T* to, const T* from) {
     for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });

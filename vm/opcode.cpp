@@ -10,6 +10,7 @@ constexpr StackEffect effect_of(Opcode opcode, Form form) {
     case Form::Point:
       return {0, 0, 1, +1};
     case Form::Shape:
+    case Form::Outline:
       return {0, +1, 1, 0};
     case Form::Unary:
       return {1, 0, 0, 0};
@@ -38,7 +39,8 @@ constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
    Choice::choice,                                                  \
    cost,                                                            \
    effect_of(Opcode::Name, Form::form),                             \
-   Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag},
+   Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag || \
+       Form::form == Form::Outline},
 #include "vm/opcodes.def"
 #undef OP
 }};
@@ -58,6 +60,22 @@ std::string_view nth_name(std::string_view names, int index) {
 }  // namespace
 
 const OpcodeInfo& info(Opcode opcode) { return kTable[static_cast<std::size_t>(opcode)]; }
+
+std::uint32_t group_count(std::uint32_t word) {
+  return kTable[word & 0xff].form == Form::Outline ? operand_of(word) : 1;
+}
+
+std::uint32_t minimum_groups(Opcode opcode) {
+  return opcode == Opcode::Polygon ? 3 : 1;  // two corners enclose nothing
+}
+
+std::size_t instruction_length(std::uint32_t word) {
+  return 1 + std::size_t{group_count(word)} * static_cast<std::size_t>(kTable[word & 0xff].immediates);
+}
+
+std::uint64_t instruction_cost(std::uint32_t word) {
+  return std::uint64_t{group_count(word)} * static_cast<std::uint64_t>(kTable[word & 0xff].cost);
+}
 
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
 

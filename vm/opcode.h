@@ -1,6 +1,7 @@
 // Opcodes and what is known of each, generated from vm/opcodes.def.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -19,7 +20,7 @@ inline constexpr int kOpcodeCount = 0
 #undef OP
     ;
 
-enum class Form : std::uint8_t { Point, Shape, Unary, Binary, Machine };
+enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Machine };
 enum class Choice : std::uint8_t { None, Lesser, Greater, Carve };
 
 // How an instruction changes the heights of the two stacks. `needs` is the height that must be there before.
@@ -44,14 +45,22 @@ struct OpcodeInfo {
   std::string_view mnemonic;
   Form form;
   std::string_view immediate_names;  // blank separated, ":i" marks an integer
-  int immediates;                    // words after the opcode word
+  int immediates;                    // words after the opcode word; of an Outline, of one group
   Choice choice;
-  int cost;  // multiply-adds per point
+  int cost;  // multiply-adds per point; of an Outline, of one group
   StackEffect effect;
   bool has_operand;  // the opcode word's high 24 bits mean something
 };
 
 const OpcodeInfo& info(Opcode opcode);
+
+// The groups of immediates after an opcode word: an Outline's operand, 1 of any other row.
+std::uint32_t group_count(std::uint32_t word);
+// The least count an Outline row allows; 1 of any other row.
+std::uint32_t minimum_groups(Opcode opcode);
+// Words of an instruction, the opcode word included, and its cost. The low byte must name an opcode.
+std::size_t instruction_length(std::uint32_t word);
+std::uint64_t instruction_cost(std::uint32_t word);
 
 // The i-th row, or nullptr when `byte` names no opcode.
 const OpcodeInfo* find_opcode(std::uint32_t byte);

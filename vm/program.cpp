@@ -1,5 +1,6 @@
 #include "vm/program.h"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -9,14 +10,20 @@ namespace fathom::vm {
 
 void Program::append(Opcode opcode, std::uint32_t operand, const std::vector<double>& immediates, DebugEntry entry) {
   const OpcodeInfo& row = info(opcode);
-  CHECK(static_cast<int>(immediates.size()) == row.immediates, "an instruction has the immediates its row names");
+  const std::size_t group = static_cast<std::size_t>(row.immediates);
+  if (row.form == Form::Outline) {
+    CHECK(operand == 0 && immediates.size() % group == 0, "an outline has whole groups, which make its operand");
+    operand = static_cast<std::uint32_t>(std::min<std::size_t>(immediates.size() / group, kMaxOperand + 1));
+  }
   CHECK(operand <= kMaxOperand, "an operand fits 24 bits");
+  const std::uint32_t word = opcode_word(opcode, operand);
+  CHECK(1 + immediates.size() == instruction_length(word), "an instruction has the immediates its row names");
   entry.offset = static_cast<std::uint32_t>(words.size());
-  words.push_back(opcode_word(opcode, operand));
+  words.push_back(word);
   wide.push_back(0.0);
-  for (int i = 0; i < row.immediates; ++i) {
-    const double value = immediates[static_cast<std::size_t>(i)] + 0.0;  // -0 becomes 0
-    const bool integer = is_integer_immediate(row, i);
+  for (std::size_t i = 0; i < immediates.size(); ++i) {
+    const double value = immediates[i] + 0.0;  // -0 becomes 0
+    const bool integer = is_integer_immediate(row, static_cast<int>(i % group));
     words.push_back(integer ? static_cast<std::uint32_t>(value)
                             : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     wide.push_back(integer ? 0.0 : value);

@@ -7,6 +7,8 @@
 //     sphere 0.5          ; p p'   -> value |p'| - 0.5
 //     drop                ; p p'   -> p
 //
+// An Outline row's instruction has as many groups of immediates as its operand says: polygon 3  0 0  1 0  0 1.
+//
 // Immediates are f32 in the words; `wide` holds the same constants unrounded for evaluation in double, so that a
 // scene far from the origin keeps its features. A Program is data from anywhere; only vm/verify.h makes it runnable.
 #pragma once
@@ -34,7 +36,7 @@ struct Program {
   std::string source_name;   // of the debug entries' lines
   std::vector<DebugEntry> debug;
 
-  // Appends an instruction; floats are rounded from `immediates`, integers must be representable.
+  // Appends an instruction; of an Outline, `immediates` holds the groups in order and makes the operand. Floats are rounded from `immediates`, integers must be representable.
   void append(Opcode opcode, std::uint32_t operand, const std::vector<double>& immediates, DebugEntry entry);
 };
 

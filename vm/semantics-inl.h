@@ -13,11 +13,13 @@
 
 #include <cstdint>
 
+#include "vm/domain-inl.h"
 #include "vm/number/batch-inl.h"
 #include "vm/number/dual-inl.h"
-#include "vm/number/interval-inl.h"
+#include "vm/number/interval_elementary-inl.h"
 #include "vm/number/number-inl.h"
 #include "vm/number/real-inl.h"
+#include "vm/number/slope_elementary-inl.h"
 #include "vm/number/tagged-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -33,6 +35,16 @@ HWY_INLINE Vec3<T> subtract(const Vec3<T>& p, Constant<T> x, Constant<T> y, Cons
   return {p.x - x, p.y - y, p.z - z};
 }
 
+// A constant as a value, of the type of `like`.
+template <class N>
+HWY_INLINE N as_value(const N&, N k) {
+  return k;
+}
+template <class N>
+HWY_INLINE Dual<N> as_value(const Dual<N>&, N k) {
+  return no_derivative(k);
+}
+
 // Row-major 3x4: m * (p, 1).
 template <class T>
 HWY_INLINE T affine_row(const Vec3<T>& p, const Constant<T>* m) {
@@ -41,30 +53,6 @@ HWY_INLINE T affine_row(const Vec3<T>& p, const Constant<T>* m) {
 template <class T>
 HWY_INLINE Vec3<T> affine(const Vec3<T>& p, const Constant<T>* m) {
   return {affine_row(p, m), affine_row(p, m + 4), affine_row(p, m + 8)};
-}
-
-// Takes out the middle: what lies within x, y, z of the origin's planes goes to the plane.
-template <class T>
-HWY_INLINE T pull(const T& a, Constant<T> by) {
-  return a - max(-by, min(by, a));
-}
-template <class T>
-HWY_INLINE Vec3<T> elongate(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
-  return {pull(p.x, x), pull(p.y, y), pull(p.z, z)};
-}
-
-// k: unit normal, offset. What lies behind the plane is seen in front of it.
-template <class T>
-HWY_INLINE Vec3<T> mirror(const Vec3<T>& p, const Constant<T>* k) {
-  const T behind = min(constant<T>(0.0), p.x * k[0] + p.y * k[1] + p.z * k[2] - k[3]);
-  const T twice = behind + behind;
-  return {p.x - twice * k[0], p.y - twice * k[1], p.z - twice * k[2]};
-}
-
-// The half-plane about the y axis that p lies in, as an outline's plane.
-template <class T>
-HWY_INLINE Vec3<T> revolve(const Vec3<T>& p, Constant<T> offset) {
-  return {length(p.x, p.z) - offset, p.y, p.z};
 }
 
 // Half extents x, y, z. Gradient undefined on the edges' and the inside's medial planes. The order of min's and max's
@@ -144,6 +132,80 @@ HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
   }
   const T aside = select(zero < outward, nearest, q.x * zero);
   return sqrt(aside + sqr(q.z)) - k[13 + 5 * (N - 1)];
+}
+
+// The polygon's corner after i, and the sign of its area: 1 when the corners go counter-clockwise.
+template <class Outline>
+HWY_INLINE std::size_t next_corner(const Outline& corners, std::size_t i) {
+  return i + 1 == corners.count() ? 0 : i + 1;
+}
+template <class Outline>
+HWY_INLINE double polygon_sense(const Outline& corners) {
+  double area = 0;  // relative to the first corner, for accuracy far from the origin
+  for (std::size_t i = 0; i < corners.count(); ++i) {
+    const std::size_t j = next_corner(corners, i);
+    area += (corners(i, 0) - corners(0, 0)) * (corners(j, 1) - corners(0, 1)) -
+            (corners(j, 0) - corners(0, 0)) * (corners(i, 1) - corners(0, 1));
+  }
+  return area < 0 ? -1 : 1;
+}
+
+// A simple polygon in the xy plane, corners (x, y) in either order; z does not matter. Exact. Gradient undefined at the
+// corners and on the medial axis. For each edge, `across` is the signed offset from its line, positive to the right,
+// and `beyond` how far past its nearer end. Where the nearest point lies within an edge nothing comes between, so the
+// edge's side tells inside from outside and the distance is `across` itself: no square root, and on the outline,
+// where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Where the nearest point is a corner, the
+// sign is the parity of the edges to the right of p, an edge's lower end counting and its upper not.
+template <class T, class Outline>
+HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
+  using C = Constant<T>;
+  const C zero = constant<T>(0.0), one = constant<T>(1.0);
+  C side = one;
+  T nearest = as_value(p.x, constant<T>(std::numeric_limits<float>::max())), offset = nearest, past = nearest;
+  for (std::size_t i = 0; i < corners.count(); ++i) {
+    const std::size_t j = next_corner(corners, i);
+    const double ex = corners(j, 0) - corners(i, 0), ey = corners(j, 1) - corners(i, 1);
+    const double length = std::sqrt(ex * ex + ey * ey);
+    if (!(length > 0)) continue;
+    const C ux = constant<T>(ex / length), uy = constant<T>(ey / length);
+    const T wx = p.x - corners.constant(i, 0), wy = p.y - corners.constant(i, 1);
+    const T along = wx * ux + wy * uy, across = wx * uy - wy * ux;
+    const T beyond = max(zero, max(-along, along - constant<T>(length)));
+    const T square = sqr(across) + sqr(beyond);
+    const auto nearer = square < nearest;
+    nearest = select(nearer, square, nearest);
+    offset = select(nearer, across, offset);
+    past = select(nearer, beyond, past);
+    const C flipped = select((ey > 0 ? across : -across) < zero, -side, side);
+    side = select(p.y < corners.constant(ey > 0 ? i : j, 1), side,
+                  select(p.y < corners.constant(ey > 0 ? j : i, 1), flipped, side));
+  }
+  return select(past > zero, sqrt(nearest) * side, offset * constant<T>(polygon_sense(corners)));
+}
+// 1-Lipschitz: what it is at the box's middle, give or take half the diagonal. The slack outweighs the rounding at the
+// middle by far.
+template <class Outline>
+HWY_INLINE Interval polygon(const Vec3<Interval>& p, const Outline& corners) {
+  const Real x{(p.x.lo + p.x.hi) / 2}, y{(p.y.lo + p.y.hi) / 2};
+  double scale = std::fabs(x.v) + std::fabs(y.v);
+  for (std::size_t i = 0; i < corners.count(); ++i) {
+    scale = std::max(scale, std::fabs(corners(i, 0)) + std::fabs(corners(i, 1)));
+  }
+  const double middle = polygon(Vec3<Real>{x, y, {0}}, corners.real()).v;
+  const double reach = length(Interval{0, (p.x.hi - p.x.lo) / 2}, Interval{0, (p.y.hi - p.y.lo) / 2}).hi;
+  const double slack = reach + 1e-13 * scale;
+  return outward(middle - slack, middle + slack);
+}
+template <class Outline>
+HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
+  const Vec3<Slope> flat{p.x, p.y, constant<Slope>(0.0)};
+  Slope d = distance_at(flat, polygon(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, corners));
+  double scale = 1;  // the corners', which a shape at the origin promises nothing of
+  for (std::size_t i = 0; i < corners.count(); ++i) {
+    scale = std::max(scale, std::fabs(corners(i, 0)) + std::fabs(corners(i, 1)));
+  }
+  d.error += kFloatError / kUnit * scale;
+  return d;
 }
 
 // (re + i im)^n by repeated squaring.
@@ -248,6 +310,16 @@ HWY_INLINE T round_min(const T& a, const T& b, Constant<T> radius) {
   return max(radius, min(a, b)) - length(max(zero, radius - a), max(zero, radius - b));
 }
 
+// The same with `steps` stairs of two faces each, every one of height `step` (after MERCURY's hg_sdf, stairs; a fold of
+// a - b, so no steeper than a and b).
+template <class T>
+HWY_INLINE T stairs_min(const T& a, const T& b, const Constant<T>* k) {  // k: radius, step, 1 / (2 step)
+  const T lesser = min(a, b), greater = max(a, b);
+  const T rise = greater - k[0] - lesser + k[1];
+  const T fold = abs(rise - floor(rise * k[2]) * (k[1] + k[1]) - k[1]);
+  return min(lesser, (lesser + greater - k[0] + fold) * constant<T>(0.5));
+}
+
 // The intersection of two bodies whose distances are measured in directions at right angles to each other: an outline
 // and a slab, a profile and a disc. Exact where both are.
 template <class T>
@@ -268,6 +340,14 @@ HWY_INLINE Interval smooth_min(Interval a, Interval b, Interval k, Interval inv4
   return {end(a.lo, b.lo).lo, end(a.hi, b.hi).hi};
 }
 HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4k) {
+  return -smooth_min(-a, -b, k, inv4k);
+}
+
+HWY_INLINE Slope smooth_min(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
+  const Slope generic = smooth_min<Slope>(a, b, k, inv4k);
+  return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);  // the gradient is between a's and b's
+}
+HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   return -smooth_min(-a, -b, k, inv4k);
 }
 

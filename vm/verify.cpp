@@ -18,8 +18,10 @@ struct State {
 
 std::optional<std::string> check_immediates(const Program& program, std::size_t at, const OpcodeInfo& row,
                                             const Limits& limits) {
-  for (int i = 0; i < row.immediates; ++i) {
-    const std::size_t word = at + 1 + static_cast<std::size_t>(i);
+  const std::size_t count = instruction_length(program.words[at]) - 1;
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t word = at + 1 + n;
+    const int i = static_cast<int>(n) % row.immediates;
     const std::uint32_t bits = program.words[word];
     if (is_integer_immediate(row, i)) {
       if (bits == 0 || bits > limits.loop_count) {
@@ -86,14 +88,18 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
     const std::uint32_t word = program.words[at];
     const OpcodeInfo* row = find_opcode(word & 0xff);
     if (row == nullptr) return fail(fmt::format("no opcode {}", word & 0xff));
-    if (size - at - 1 < static_cast<std::size_t>(row->immediates))
+    if (group_count(word) < minimum_groups(row->opcode)) {
+      return fail(fmt::format("{} has {} groups of immediates; at least {} are needed", row->mnemonic,
+                              group_count(word), minimum_groups(row->opcode)));
+    }
+    if (size - at < instruction_length(word))
       return fail(fmt::format("{} is cut off", row->mnemonic));
     if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
     if (auto reason = check_stacks(*row, limits, state)) return fail(std::move(*reason));
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
-    at += 1 + static_cast<std::size_t>(row->immediates);
+    at += instruction_length(word);
     ++result.instructions_;
-    result.cost_ += static_cast<std::uint32_t>(row->cost);
+    result.cost_ += static_cast<std::uint32_t>(instruction_cost(word));
   }
   if (state.values != 1 || state.points != 1) {
     return VerifyError{static_cast<std::uint32_t>(size),

@@ -7,6 +7,7 @@
 #include "compiler/frontend/name_order.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/settings.h"
+#include "compiler/passes/passes.h"
 
 namespace fathom::compiler {
 namespace {
@@ -121,7 +122,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);
   if (diagnostics.has_errors()) return std::nullopt;
-  out.scene = builder.finish();
+  out.scene = level(builder.finish());
   out.surfaces = builder.take_surfaces();
   return out;
 }

@@ -25,11 +25,18 @@ NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId 
   return out.add(Kind::Round, std::array<double, 1>{radius}, std::array<NodeId, 1>{child}, origin);
 }
 
+// Without the blend.
 Kind hard(Kind smooth) {
   switch (smooth) {
     case Kind::SmoothUnion:
+    case Kind::ChamferUnion:
+    case Kind::RoundUnion:
+    case Kind::StairsUnion:
       return Kind::Union;
     case Kind::SmoothIntersection:
+    case Kind::ChamferIntersection:
+    case Kind::RoundIntersection:
+    case Kind::StairsIntersection:
       return Kind::Intersection;
     default:
       return Kind::Subtraction;
@@ -47,14 +54,35 @@ Scene fold(const Scene& scene) {
       case Kind::Transform:
         if (is_identity(params)) return children[0];
         break;
+      case Kind::Complement:
+        if (out.kind(children[0]) == Kind::Complement) return out.children(children[0])[0];
+        break;
+      case Kind::Scaled:
+        if (params[0] == 1) return children[0];
+        if (out.kind(children[0]) == Kind::Scaled) {
+          const std::array<double, 1> product = {params[0] * out.params(children[0])[0]};
+          const std::array<NodeId, 1> inner = {out.children(children[0])[0]};
+          return out.add(Kind::Scaled, product, inner, scene.graph.origin(id));
+        }
+        break;
       case Kind::Union:
       case Kind::Intersection:
       case Kind::Subtraction:
+      case Kind::Xor:
         if (children.size() == 1) return children[0];
         break;
       case Kind::SmoothUnion:
       case Kind::SmoothIntersection:
       case Kind::SmoothSubtraction:
+      case Kind::ChamferUnion:
+      case Kind::ChamferIntersection:
+      case Kind::ChamferSubtraction:
+      case Kind::RoundUnion:
+      case Kind::RoundIntersection:
+      case Kind::RoundSubtraction:
+      case Kind::StairsUnion:
+      case Kind::StairsIntersection:
+      case Kind::StairsSubtraction:
         if (children.size() == 1) return children[0];
         if (params[0] <= kLeastBlend)
           return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
@@ -8,6 +9,11 @@ namespace fathom::compiler {
 Scene share(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     const Kind kind = scene.graph.kind(id);
+    const bool commutes = kind == Kind::Add || kind == Kind::Multiply || kind == Kind::Minimum || kind == Kind::Maximum;
+    if (commutes) {
+      const std::array<NodeId, 2> operands = {std::min(children[0], children[1]), std::max(children[0], children[1])};
+      return out.add(kind, {}, operands, scene.graph.origin(id));
+    }
     if (kind != Kind::Union && kind != Kind::Intersection && kind != Kind::Subtraction) {
       return keep(scene, out, id, children);
     }

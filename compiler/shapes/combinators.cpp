@@ -139,7 +139,7 @@ std::vector<Instruction> edge(Params params) {
   return {{Join, Immediates(params)}};
 }
 std::vector<double> same(Params params) { return {params.begin(), params.end()}; }
-[[maybe_unused]] std::vector<double> stairs_immediates(Params params) {
+std::vector<double> stairs_immediates(Params params) {
   const double step = params[0] / params[1];
   return {params[0], step, 0.5 / step};
 }
@@ -177,7 +177,7 @@ NodeSpec combinator(Kind kind, std::string_view name, std::vector<ParamSpec> par
 
 std::vector<NodeSpec> combinator_rows() {
   const ParamSpec width = length_or_zero("radius", "how far from the edge the surfaces are cut");
-  [[maybe_unused]] const ParamSpec steps{"steps", ParamType::Integer, Rule::Positive, 4.0, "number of steps, 1 or more"};
+  const ParamSpec steps{"steps", ParamType::Integer, Rule::Positive, 4.0, "number of steps, 1 or more"};
   std::vector<NodeSpec> rows = {
       combinator(Kind::Union, "union", {}, "what is in any of the nodes", union_code, know_union),
       combinator(Kind::Intersection, "intersection", {}, "what is in all of the nodes", intersection_code,
@@ -207,6 +207,14 @@ std::vector<NodeSpec> combinator_rows() {
       combinator(Kind::RoundSubtraction, "round_subtraction", {width},
                  "subtraction, its edges rounded to a quarter circle", edge_subtraction_code<Opcode::RoundMax, same>,
                  know_round_subtraction),
+      combinator(Kind::StairsUnion, "stairs_union", {width, steps}, "union, its inner edges filled with stairs",
+                 edge_union_code<Opcode::StairsMin, stairs_immediates>, know_edge_union),
+      combinator(Kind::StairsIntersection, "stairs_intersection", {width, steps},
+                 "intersection, its edges cut to stairs",
+                 edge_intersection_code<Opcode::StairsMax, stairs_immediates>, know_smooth_intersection),
+      combinator(Kind::StairsSubtraction, "stairs_subtraction", {width, steps},
+                 "subtraction, its edges cut to stairs", edge_subtraction_code<Opcode::StairsMax, stairs_immediates>,
+                 know_smooth_subtraction),
       combinator(Kind::Morph, "morph", {number("t", "0: the first node, 1: the second")},
                  "between two nodes: their distances mixed", morph_code, know_morph),
   };

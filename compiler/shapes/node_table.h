@@ -25,6 +25,8 @@
 
 namespace fathom::compiler {
 
+class NodeMaker;  // compiler/make_node.h
+
 using Params = std::span<const double>;
 using Complaint = std::optional<std::string>;
 
@@ -110,7 +112,10 @@ struct NodeSpec {
   std::vector<double> (*derive)(Params params, std::span<const Knowledge> children) = nullptr;
   // What is wrong with the node given its children; as `check`. May be null.
   Complaint (*check_children)(Params params, std::span<const Knowledge> children) = nullptr;
-  // Nodes that are made of others: adds those and returns the one that stands for it. Null for all that have code.
+  // Alterations that are made of other nodes: as `expand`, over the children.
+  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children,
+                  const Origin& origin) = nullptr;
+  // Primitives that are made of other nodes: adds those and returns the one that stands for it. Null for all that have code.
   NodeId (*expand)(Graph& graph, Params params, const Origin& origin) = nullptr;
 
   std::optional<Between> between = std::nullopt;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 #include <vector>
@@ -25,16 +26,7 @@ using compiler::Kind;
 using compiler::Scene;
 using glm::dvec3;
 
-struct Pass {
-  std::string_view name;
-  Scene (*run)(const Scene&);
-  bool keeps_paint;
-};
-constexpr Pass kPasses[] = {{"unpaint", compiler::unpaint, false},
-                            {"fold", compiler::fold, true},
-                            {"affine", compiler::affine, true},
-                            {"flatten", compiler::flatten, true},
-                            {"share", compiler::share, true}};
+using compiler::Pass;
 
 Scene scene_of(std::uint64_t seed, bool mandelbulbs) {
   Random random(seed);
@@ -51,40 +43,38 @@ std::size_t nodes(const Scene& scene) {
   return static_cast<std::size_t>(std::count(reached.begin(), reached.end(), true));
 }
 
-// The distances agree everywhere, the surfaces away from ties.
-void check_same(const Scene& before, const Scene& after, bool surfaces, Random& random, int points) {
+// The distances agree everywhere (or their signs do), the surfaces away from ties.
+void check_same(const Scene& before, const Scene& after, const Pass& pass, Random& random, int points) {
   for (int i = 0; i < points; ++i) {
     const dvec3 p = random.in_box(3);
     const Verdict was = judge(before.graph, before.root, p), is = judge(after.graph, after.root, p);
     INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
+    if (pass.leaves == Pass::Leaves::Sign) {
+      CHECK((was.distance > 1e-12) == (is.distance > 1e-12));
+      continue;
+    }
     CHECK(std::abs(was.distance - is.distance) <= 1e-12 * std::max(1.0, std::abs(was.distance)));
-    if (surfaces && was.margin > 1e-9) CHECK(was.surface == is.surface);
+    if (pass.run != compiler::unpaint && was.margin > 1e-9) CHECK(was.surface == is.surface);
   }
 }
 
 }  // namespace
 
-TEST_CASE("these are the passes", "[passes]") {
-  std::vector<std::string_view> names;
-  for (const Pass& pass : kPasses) names.push_back(pass.name);
-  CHECK(names == compiler::pass_names());
-}
-
 TEST_CASE("a pass leaves the field as it was", "[passes]") {
-  for (const Pass& pass : kPasses) {
+  for (const Pass& pass : compiler::passes()) {
     for (std::uint64_t seed = 0; seed < 600; ++seed) {
       const Scene before = scene_of(seed, false);
       const Scene after = pass.run(before);
       Random random(seed);
       INFO(pass.name << ", seed " << seed << '\n' << print(before) << "becomes\n" << print(after));
       CHECK(nodes(after) <= nodes(before));
-      check_same(before, after, pass.keeps_paint, random, 20);
+      check_same(before, after, pass, random, 20);
     }
   }
 }
 
 TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
-  for (const Pass& pass : kPasses) {
+  for (const Pass& pass : compiler::passes()) {
     for (std::uint64_t seed = 0; seed < 600; ++seed) {
       const Scene once = pass.run(scene_of(seed, true));
       INFO(pass.name << ", seed " << seed);
@@ -93,20 +83,21 @@ TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
   }
 }
 
+// All but those that leave no more than the sign.
 TEST_CASE("all passes together leave the field as it was, and so does lowering", "[passes][lower]") {
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 800; ++seed) {
     const Scene before = scene_of(seed, false);
     for (bool keep_paint : {false, true}) {
       Scene after = before;
-      for (const Pass& pass : kPasses) {
-        if (!(keep_paint && !pass.keeps_paint)) after = pass.run(after);
+      for (const Pass& pass : compiler::passes()) {
+        const bool skip = pass.leaves == Pass::Leaves::Sign || (keep_paint && pass.run == compiler::unpaint);
+        if (!skip) after = pass.run(after);
       }
       Random random(seed);
       INFO("seed " << seed << (keep_paint ? ", painted" : "") << '\n'
                    << print(before) << "becomes\n"
                    << print(after));
-      check_same(before, after, keep_paint, random, 20);
       auto code = compiler::lower(after, compiler::Source{}, 100000);
       REQUIRE(code);
       const vm::VerifiedProgram program = verified(std::move(*code));
@@ -115,7 +106,7 @@ TEST_CASE("all passes together leave the field as it was, and so does lowering",
         const Verdict verdict = judge(before.graph, before.root, p);
         const vm::SurfaceValue value = vm::evaluate_surface(program, p, workspace);
         INFO("at " << p.x << ' ' << p.y << ' ' << p.z << ", margin " << verdict.margin);
-        CHECK(std::abs(value.distance - verdict.distance) <= 1e-12 * std::max(1.0, std::abs(verdict.distance)));
+        CHECK(std::abs(value.distance - verdict.distance) <= 1e-11 * std::max(1.0, std::abs(verdict.distance)));
         if (keep_paint && verdict.margin > 1e-9) CHECK(value.surface == verdict.surface);
       }
     }
@@ -135,7 +126,7 @@ TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
       const double judged = judge_distance(scene.graph, scene.root, p);
       INFO("seed " << seed << ", at " << p.x << ' ' << p.y << ' ' << p.z << '\n' << print(scene));
       CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - judged) <=
-            1e-12 * std::max(1.0, std::abs(judged)));
+            1e-11 * std::max(1.0, std::abs(judged)));
     }
   }
 }
@@ -180,12 +171,22 @@ TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
     Random random(seed);
     INFO("seed " << seed << ", " << compiler::describe(known) << '\n' << print(scene));
     CHECK(known.certified);
-    CHECK(known.lipschitz <= 1 + 1e-9);
     for (int i = 0; i < 60; ++i) {
       const dvec3 p = random.in_box(i % 2 ? 12 : 3);
       const double distance = judge_distance(scene.graph, scene.root, p);
       INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
       if (!known.box.contains(p)) CHECK(distance > -1e-12);
+      // How far outside the box, along the axes and as the crow flies.
+      const dvec3 beyond = glm::max(dvec3(0), glm::max(known.box.lo - p, p - known.box.hi));
+      CHECK(distance >= known.reach * glm::length(beyond) * (1 - 1e-9) - 1e-9);
+      CHECK(distance >= known.reach_max * std::max({beyond.x, beyond.y, beyond.z}) * (1 - 1e-9) - 1e-9);
+      for (int axis = 0; axis < 3; ++axis) {
+        dvec3 mirrored = p;
+        mirrored[axis] = -p[axis];
+        if (known.symmetric[static_cast<std::size_t>(axis)]) {
+          CHECK(std::abs(judge_distance(scene.graph, scene.root, mirrored) - distance) <= 1e-9);
+        }
+      }
       const dvec3 q = p + random.direction() * random.length(1e-3, 1);
       const double allowed = known.lipschitz * glm::length(p - q) * (1 + 1e-6) + 1e-12;
       CHECK(std::abs(distance - judge_distance(scene.graph, scene.root, q)) <= allowed);

@@ -7,9 +7,11 @@
 #include <initializer_list>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/shapes/node_table.h"
+#include "tests/support/judge_domain.h"
 #include "vm/check.h"
 
 namespace fathom::test {
@@ -149,13 +151,50 @@ double primitive(Kind kind, Params k, dvec3 p) {
 
 Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint);
 
-// The row-major 3x4 matrix takes p to the child's space; the child's distance shrinks by the factor.
-Verdict transform(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
-  const Params k = graph.params(node);
-  const dvec3 q(glm::dot(vec(k, 0), p) + k[3], glm::dot(vec(k, 4), p) + k[7], glm::dot(vec(k, 8), p) + k[11]);
-  const double factor = k[12];
-  const Verdict child = visit(graph, graph.children(node)[0], q, paint);
-  return {child.distance * factor, child.surface, child.margin * std::abs(factor)};
+// A formula's nodes: libm's functions of the operands, which may be distances.
+double judge_number(const Graph& graph, NodeId node, dvec3 p) {
+  const auto operands = graph.children(node);
+  const auto operand = [&](std::size_t i) { return visit(graph, operands[i], p, 0).distance; };
+  const double a = operands.empty() ? 0 : operand(0), b = operands.size() < 2 ? 0 : operand(1);
+  const auto quotient = [&] { return a - b * std::floor(a / b); };
+  switch (graph.kind(node)) {
+    case Kind::X: return p.x;
+    case Kind::Y: return p.y;
+    case Kind::Z: return p.z;
+    case Kind::Constant: return graph.params(node)[0];
+    case Kind::Negate: return -a;
+    case Kind::Abs: return std::abs(a);
+    case Kind::Square: return a * a;
+    case Kind::Sqrt: return std::sqrt(a);
+    case Kind::Sin: return std::sin(a);
+    case Kind::Cos: return std::cos(a);
+    case Kind::Tan: return std::tan(a);
+    case Kind::Asin: return std::asin(std::clamp(a, -1.0, 1.0));
+    case Kind::Acos: return std::acos(std::clamp(a, -1.0, 1.0));
+    case Kind::Atan: return std::atan(a);
+    case Kind::Exp: return std::exp(a);
+    case Kind::Log: return std::log(a);
+    case Kind::Floor: return std::floor(a);
+    case Kind::Ceil: return std::ceil(a);
+    case Kind::Nearest: return std::nearbyint(a);
+    case Kind::Sign: return a > 0 ? 1 : a < 0 ? -1 : 0;
+    case Kind::Not: return a == 0 ? 1 : 0;
+    case Kind::Add: return a + b;
+    case Kind::Minus: return a - b;
+    case Kind::Multiply: return a * b;
+    case Kind::Divide: return a / b;
+    case Kind::Modulo: return quotient();
+    case Kind::ModuloEuclid: return a - std::abs(b) * std::floor(a / std::abs(b));
+    case Kind::Minimum: return std::min(a, b);
+    case Kind::Maximum: return std::max(a, b);
+    case Kind::Atan2: return std::atan2(a, b);
+    case Kind::Power: return std::pow(a, b);
+    case Kind::Compare: return a < b ? -1 : a > b ? 1 : 0;
+    case Kind::And: return a == 0 ? a : b;
+    case Kind::Or: return a == 0 ? b : a;
+    case Kind::Step: return b < a ? 0 : 1;
+    default: CHECK(false, "a function"); return 0;
+  }
 }
 
 // The blend of a and b: the least of h a + (1-h) b - k h (1-h) over the weights h in [0,1]. It is a parabola in h
@@ -167,33 +206,96 @@ double blend(double a, double b, double k) {
   return h * a + (1 - h) * b - k * h * (1 - h);
 }
 
-// Every combinator is a blended union of its operands or of their complements: A intersected with B is the complement
-// of the union of the complements, A minus B the intersection of A with B's complement. Smooth ones fold from the
+// Stairs from (r, 0) to (0, r) in the quadrant of the two distances: `steps` + 1 teeth with corners on a + b = r, each
+// surface a saw-tooth of slopes along a and along b about it.
+double stairs(double a, double b, double r, double steps) {
+  const double step = r / steps, along = std::abs(b - a) - r + step;
+  const double tooth = std::abs(along - 2 * step * std::floor(along / (2 * step)) - step);
+  return std::min({a, b, (a + b - r + tooth) / 2});
+}
+
+// How far two operands are joined; their union without.
+enum class Join { Hard, Smooth, Chamfer, Round, Stairs };
+
+double joined(Join join, double a, double b, Params k) {
+  if (join == Join::Hard || k[0] == 0) return std::min(a, b);
+  switch (join) {
+    case Join::Smooth:
+      return blend(a, b, k[0]);
+    case Join::Chamfer:  // the plane a + b = r, where it is lower
+      return std::min(std::min(a, b), (a + b - k[0]) / 2);
+    case Join::Round: {  // the circle of radius r about (r, r), where both are nearer than r
+      if (a < k[0] && b < k[0]) return k[0] - std::hypot(k[0] - a, k[0] - b);
+      return std::min(a, b);
+    }
+    default:
+      return stairs(a, b, k[0], k[1]);
+  }
+}
+
+struct Combination {
+  Join join;
+  bool complement, subtract;  // of the operands; of all but the first not
+};
+Combination combination(Kind kind) {
+  const auto offset = [kind](Kind first) { return static_cast<int>(kind) - static_cast<int>(first); };
+  const auto of = [](Join join, int which) { return Combination{join, which != 0, which == 2}; };
+  if (kind <= Kind::Subtraction) return of(Join::Hard, offset(Kind::Union));
+  if (kind <= Kind::SmoothSubtraction) return of(Join::Smooth, offset(Kind::SmoothUnion));
+  if (kind <= Kind::ChamferSubtraction) return of(Join::Chamfer, offset(Kind::ChamferUnion));
+  if (kind <= Kind::RoundSubtraction) return of(Join::Round, offset(Kind::RoundUnion));
+  return of(Join::Stairs, offset(Kind::StairsUnion));
+}
+
+// In an odd number of the operands; between two of them.
+double xor_of(double a, double b) { return std::max(std::min(a, b), -std::max(a, b)); }
+
+// Every other combinator is a joined union of its operands or of their complements: A intersected with B is the
+// complement of the union of the complements, A minus B the intersection of A with B's complement. All fold from the
 // left.
 Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const Kind kind = graph.kind(node);
-  const bool smooth =
-      kind == Kind::SmoothUnion || kind == Kind::SmoothIntersection || kind == Kind::SmoothSubtraction;
-  const bool complement = kind != Kind::Union && kind != Kind::SmoothUnion;
-  const bool subtract = kind == Kind::Subtraction || kind == Kind::SmoothSubtraction;
-  const double k = smooth ? graph.params(node)[0] : 0.0;
+  const Params params = graph.params(node);
+  const bool special = kind == Kind::Xor || kind == Kind::Morph;
+  const Combination c = special ? Combination{Join::Hard, false, false} : combination(kind);
+  const double k = c.join == Join::Hard ? 0.0 : params[0];
   Verdict sum{0, paint, kInfinity};
   const std::span<const NodeId> children = graph.children(node);
   for (std::size_t i = 0; i < children.size(); ++i) {
     Verdict next = visit(graph, children[i], p, paint);
-    if (complement && !(subtract && i > 0)) next.distance = -next.distance;
+    if (c.complement && !(c.subtract && i > 0)) next.distance = -next.distance;
     if (i == 0) {
       sum = next;
       continue;
     }
-    const double gap = std::abs(next.distance - sum.distance);
+    const double a = sum.distance, b = next.distance, gap = std::abs(b - a);
+    if (special) {
+      const double value = kind == Kind::Xor ? xor_of(a, b) : (1 - params[0]) * a + params[0] * b;
+      sum = {value, sum.surface, std::min({sum.margin, next.margin, gap, std::abs(a + b)})};
+      continue;
+    }
     const double to_edge_of_blend = k > 0 ? std::abs(gap - k) : kInfinity;
-    const Verdict& winner = next.distance < sum.distance ? next : sum;
-    sum = {blend(sum.distance, next.distance, k), winner.surface,
+    const Verdict& winner = b < a ? next : sum;
+    sum = {joined(c.join, a, b, params), winner.surface,
            std::min({k > 0 ? std::min(sum.margin, next.margin) : winner.margin, gap, to_edge_of_blend})};
   }
-  if (complement) sum.distance = -sum.distance;
+  if (c.complement) sum.distance = -sum.distance;
   return sum;
+}
+
+Verdict alteration(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
+  const Kind kind = graph.kind(node);
+  const Params k = graph.params(node);
+  Verdict least{kInfinity, paint, kInfinity};
+  for (const dvec3& q : child_points(kind, k, p)) {
+    Verdict next = visit(graph, graph.children(node)[0], q, paint);
+    const double gap = std::abs(next.distance - least.distance);
+    if (next.distance < least.distance) std::swap(next, least);
+    least.margin = std::min(least.margin, gap);
+  }
+  const double value = altered(kind, k, p, least.distance);
+  const bool folds = kind == Kind::Onion || kind == Kind::Complement;
+  return {value, least.surface, folds ? std::min(least.margin, std::abs(least.distance)) : least.margin};
 }
 
 Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
@@ -201,14 +303,9 @@ Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const compiler::Category category = compiler::spec(kind).category;
   if (category == compiler::Category::Primitive) return {primitive(kind, graph.params(node), p), paint, kInfinity};
   if (category == compiler::Category::Combinator) return combinator(graph, node, p, paint);
-  if (kind == Kind::Transform) return transform(graph, node, p, paint);
-  const double k = graph.params(node)[0];
-  const NodeId child = graph.children(node)[0];
-  if (kind == Kind::Paint) return visit(graph, child, p, static_cast<std::uint32_t>(k));
-  Verdict inner = visit(graph, child, p, paint);
-  if (kind == Kind::Round) return {inner.distance - k, inner.surface, inner.margin};
-  CHECK(kind == Kind::Onion, "the last kind");
-  return {std::abs(inner.distance) - k, inner.surface, std::min(inner.margin, std::abs(inner.distance))};
+  if (category == compiler::Category::Function) return {judge_number(graph, node, p), paint, kInfinity};
+  if (kind == Kind::Paint) paint = static_cast<std::uint32_t>(graph.params(node)[0]);
+  return alteration(graph, node, p, paint);
 }
 
 }  // namespace

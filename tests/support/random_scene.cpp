@@ -73,7 +73,7 @@ std::vector<double> sheet(Random& random, bool quad) {
 class Maker {
  public:
   Maker(Graph& graph, Random& random, const GraphOptions& options)
-      : graph_(graph), random_(random), options_(options) {}
+      : graph_(graph), maker_(graph), random_(random), options_(options) {}
 
   NodeId make(int depth) {
     if (!made_.empty() && random_.chance(0.15)) {
@@ -86,7 +86,7 @@ class Maker {
 
  private:
   NodeId add(Kind kind, const std::vector<double>& params, const std::vector<NodeId>& children) {
-    return graph_.add(kind, params, children);
+    return maker_.make(kind, params, children);
   }
 
   NodeId primitive() {
@@ -105,6 +105,7 @@ class Maker {
     if (choice == 0) return add(Kind::Round, {random_.length(0.01, 0.3)}, {child});
     if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {child});
     if (choice == 2 && options_.paints) return add(Kind::Paint, {1.0 + random_.below(6)}, {child});
+    if (choice == 3 && options_.bends) return random_domain_node(maker_, random_, child);
     return transform(child);
   }
 
@@ -122,15 +123,24 @@ class Maker {
   NodeId combinator(int depth) {
     const Kind kinds[] = {Kind::Union,       Kind::Intersection,       Kind::Subtraction,
                           Kind::SmoothUnion, Kind::SmoothIntersection, Kind::SmoothSubtraction};
-    const Kind kind = kinds[random_.below(6)];
+    Kind kind = kinds[random_.below(6)];
+    int operands = 1 + random_.below(4);
+    if (options_.bends && random_.chance(0.3)) {
+      const int first = static_cast<int>(Kind::ChamferUnion);
+      kind = static_cast<Kind>(first + random_.below(static_cast<int>(Kind::Morph) - first + 1));
+      if (random_.chance(0.1)) kind = Kind::Xor;
+      operands = 2;
+    }
     std::vector<double> params;
     if (kind >= Kind::SmoothUnion) params.push_back(random_.chance(0.2) ? 0 : random_.length(0.01, 1));
+    if (kind >= Kind::StairsUnion && kind <= Kind::StairsSubtraction) params.push_back(1 + random_.below(5));
     std::vector<NodeId> children;
-    for (int i = 1 + random_.below(4); i > 0; --i) children.push_back(make(depth - 1));
+    for (int i = operands; i > 0; --i) children.push_back(make(depth - 1));
     return add(kind, params, children);
   }
 
   Graph& graph_;
+  compiler::NodeMaker maker_;
   Random& random_;
   const GraphOptions& options_;
   std::vector<NodeId> made_;
@@ -214,6 +224,65 @@ std::vector<double> random_params(Kind kind, Random& random) {
       return {power, iterations, bailout, detail[random.below(3)]};
     }
   }
+}
+
+NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId child) {
+  const auto size = [&] { return random.length(0.05, 1.5); };
+  const auto maybe = [&](double x) { return random.chance(0.5) ? x : 0.0; };
+  Kind kind = Kind::Mirror;
+  std::vector<double> params;
+  switch (random.below(9)) {
+    case 0: {
+      const dvec3 n = random.chance(0.5) ? dvec3(random.chance(0.5) ? 1 : -2, 0, 0) : random.direction();
+      params = {n.x, n.y, n.z, maybe(random.uniform(-1, 1))};
+      break;
+    }
+    case 1:
+      kind = Kind::Elongate;
+      params = {size(), maybe(size()), maybe(size())};
+      break;
+    case 2:
+    case 3: {
+      kind = Kind::Repetition;
+      const double jitter = random.chance(0.3) ? random.length(0.01, 0.3) : 0;
+      params = {random.length(0.5, 5), maybe(random.length(0.5, 5)), maybe(random.length(0.5, 5))};
+      for (int i = 0; i < 3; ++i) params.push_back(random.below(6));
+      params.insert(params.end(), {jitter, maybe(jitter), jitter});
+      break;
+    }
+    case 4:
+      kind = Kind::PolarRepetition;
+      params = {1.0 + random.below(24)};
+      break;
+    case 5:
+      kind = Kind::Shear;
+      params = {random.uniform(-1, 1), random.uniform(-1, 1)};
+      break;
+    case 6:
+      kind = Kind::Twist;
+      params = {random.uniform(-90, 90)};
+      break;
+    case 7:
+      kind = Kind::Bend;
+      params = {random.uniform(-40, 40)};
+      break;
+    default:
+      kind = Kind::Taper;
+      params = {random.length(0.3, 2), random.length(0.3, 2), size()};
+      break;
+  }
+  const NodeId only[] = {child};
+  if (maker.complaint(kind, params, only)) return child;
+  // A program grows by the copies; these are enough to test with.
+  const compiler::NodeSpec& row = compiler::spec(kind);
+  if (kind == Kind::Repetition) {
+    std::vector<double> all = params;
+    const std::vector<compiler::Knowledge> known = {maker.known(child)};
+    const std::vector<double> derived = row.derive(params, known);
+    all.insert(all.end(), derived.begin(), derived.end());
+    if (row.code(all).points.size() > 16) return child;
+  }
+  return maker.make(kind, params, only);
 }
 
 compiler::Scene random_scene(Random& random, const GraphOptions& options) {

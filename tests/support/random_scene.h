@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compiler/graph.h"
+#include "compiler/make_node.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::test {
@@ -42,8 +43,12 @@ struct GraphOptions {
   bool planes = true;  // unbounded parts
   bool paints = true;  // surface numbers 1 .. 6
   bool squash = true;  // three different scales
+  bool bends = true;   // what folds, repeats or bends space, and joins at an edge
 };
 compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
+
+// One of what folds, repeats or bends space, over `child`; `child` itself where that is not possible.
+compiler::NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, compiler::NodeId child);
 
 // Rows of a Transform: the child is scaled, turned by `angle` (radians) about `axis`, then moved.
 std::vector<double> transform_params(glm::dvec3 scale, glm::dvec3 axis, double angle, glm::dvec3 translate);

@@ -63,17 +63,27 @@ HWY_INLINE Batch sqrt(Batch a) { return {hn::Sqrt(a.v)}; }
 HWY_INLINE Batch length(Batch x, Batch y) { return sqrt(x * x + y * y); }
 HWY_INLINE Batch length(Batch x, Batch y, Batch z) { return sqrt(x * x + y * y + z * z); }
 
-// x normal and positive. x = 2^e * m with m in [sqrt 1/2, sqrt 2).
-HWY_INLINE Batch log(Batch x) {
+// Adding 0 makes -0 into 0: instruction sets differ in the sign of a zero they round to.
+HWY_INLINE Batch floor(Batch a) { return Batch{hn::Floor(a.v)} + Batch::broadcast(0.0f); }
+HWY_INLINE Batch ceil(Batch a) { return Batch{hn::Ceil(a.v)} + Batch::broadcast(0.0f); }
+HWY_INLINE Batch round_nearest(Batch a) { return Batch{hn::Round(a.v)} + Batch::broadcast(0.0f); }  // half to even
+HWY_INLINE BatchMask is_nan(Batch a) { return {hn::IsNaN(a.v)}; }
+
+// 2^n for a whole n in [-126, 127].
+HWY_INLINE Batch power_of_two(Batch n) {
   const hn::RebindToSigned<FloatLanes> ints;
-  const auto bits = hn::BitCast(ints, x.v);
+  const auto biased = hn::Add(hn::ConvertTo(ints, n.v), hn::Set(ints, 127));
+  return {hn::BitCast(FloatLanes(), hn::ShiftLeft<23>(biased))};
+}
+HWY_INLINE Scaled<Batch> split_power_of_two(Batch x) {
+  const hn::RebindToSigned<FloatLanes> ints;
+  const BatchMask subnormal = x < Batch::broadcast(0x1p-126f);
+  const Batch normal = select(subnormal, x * Batch::broadcast(0x1p24f), x);
+  const auto bits = hn::BitCast(ints, normal.v);
   const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(ints, 0x3f3504f3)));
-  const Batch m{hn::BitCast(FloatLanes(), hn::Sub(bits, hn::ShiftLeft<23>(exponent)))};
-  const Batch one = Batch::broadcast(1.0f);
-  const Batch s = (m - one) / (m + one);
-  const Batch twice = s + s;
   const Batch e{hn::ConvertTo(FloatLanes(), exponent)};
-  return e * Batch::broadcast(0.6931471805599453) + (twice + twice * log_series(s * s, 5));
+  return {{hn::BitCast(FloatLanes(), hn::Sub(bits, hn::ShiftLeft<23>(exponent)))},
+          select(subnormal, e - Batch::broadcast(24.0f), e)};
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE

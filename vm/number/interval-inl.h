@@ -1,6 +1,6 @@
 // Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation
 // by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a
-// NaN bound gives the whole line. Source: Moore, "Interval Analysis", 1966.
+// NaN bound gives the whole line. The elementary functions are in interval_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
 #if defined(FATHOM_VM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_INL
 #undef FATHOM_VM_INTERVAL_INL
@@ -22,7 +22,7 @@ struct Interval {
   double lo, hi;
 
   // Constants derived from a scene's numbers are rounded once: one ulp either way holds the unrounded one.
-  static HWY_INLINE Interval broadcast(double value);
+  static inline Interval broadcast(double value);
 };
 
 // Three answers: a comparison can hold somewhere in the box, fail somewhere, or both.
@@ -30,12 +30,12 @@ struct IntervalMask {
   bool maybe_true, maybe_false;
 };
 
-HWY_INLINE Interval whole_line() {
+inline Interval whole_line() {
   const double inf = std::numeric_limits<double>::infinity();
   return {-inf, inf};
 }
 // [lo, hi], each correctly rounded before, widened by at least half an ulp.
-HWY_INLINE Interval outward(double lo, double hi) {
+inline Interval outward(double lo, double hi) {
   constexpr double kUlp = 2.3e-16, kTiny = 5e-324, kLargest = std::numeric_limits<double>::max();
   if (!(lo <= hi)) return whole_line();
   // An overflow is somewhere beyond the largest number, not at infinity.
@@ -44,56 +44,49 @@ HWY_INLINE Interval outward(double lo, double hi) {
   return {lo < -kLargest ? lo : lo - std::fabs(lo) * kUlp - kTiny,
           hi > kLargest ? hi : hi + std::fabs(hi) * kUlp + kTiny};
 }
-HWY_INLINE Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+inline Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
 // 0 * infinity is 0 here: the infinity stands for arbitrarily large finite values.
-HWY_INLINE double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-HWY_INLINE Interval Interval::broadcast(double value) { return value == 0 ? Interval{0, 0} : outward(value, value); }
+inline Interval Interval::broadcast(double value) { return value == 0 ? Interval{0, 0} : outward(value, value); }
 
-HWY_INLINE Interval operator+(Interval a, Interval b) { return outward(a.lo + b.lo, a.hi + b.hi); }
-HWY_INLINE Interval operator-(Interval a, Interval b) { return outward(a.lo - b.hi, a.hi - b.lo); }
-HWY_INLINE Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
-HWY_INLINE Interval operator*(Interval a, Interval b) {
+inline Interval operator+(Interval a, Interval b) { return outward(a.lo + b.lo, a.hi + b.hi); }
+inline Interval operator-(Interval a, Interval b) { return outward(a.lo - b.hi, a.hi - b.lo); }
+inline Interval operator-(Interval a) { return {-a.hi, -a.lo}; }
+inline Interval operator*(Interval a, Interval b) {
   const double p = times(a.lo, b.lo), q = times(a.lo, b.hi), r = times(a.hi, b.lo), s = times(a.hi, b.hi);
   return outward(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
 }
-HWY_INLINE Interval operator/(Interval a, Interval b) {
+inline Interval operator/(Interval a, Interval b) {
   if (b.lo <= 0 && b.hi >= 0) return whole_line();
   return a * outward(1 / b.hi, 1 / b.lo);
 }
-HWY_INLINE IntervalMask operator<(Interval a, Interval b) { return {a.lo < b.hi, a.hi >= b.lo}; }
-HWY_INLINE IntervalMask operator>(Interval a, Interval b) { return b < a; }
-HWY_INLINE bool any(IntervalMask mask) { return mask.maybe_true; }
-HWY_INLINE Interval select(IntervalMask mask, Interval yes, Interval no) {
+inline IntervalMask operator<(Interval a, Interval b) { return {a.lo < b.hi, a.hi >= b.lo}; }
+inline IntervalMask operator>(Interval a, Interval b) { return b < a; }
+inline bool any(IntervalMask mask) { return mask.maybe_true; }
+inline Interval select(IntervalMask mask, Interval yes, Interval no) {
   if (!mask.maybe_false) return yes;
   if (!mask.maybe_true) return no;
   return hull(yes, no);
 }
-HWY_INLINE Interval min(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)}; }
-HWY_INLINE Interval max(Interval a, Interval b) { return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)}; }
-HWY_INLINE Interval abs(Interval a) {
+inline Interval min(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)}; }
+inline Interval max(Interval a, Interval b) { return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+inline Interval abs(Interval a) {
   if (a.lo >= 0) return a;
   if (a.hi <= 0) return -a;
   return {0, std::max(-a.lo, a.hi)};
 }
-HWY_INLINE Interval sqr(Interval a) {
+inline Interval sqr(Interval a) {
   const Interval m = abs(a);
   const Interval square = outward(m.lo * m.lo, m.hi * m.hi);
   return {std::max(0.0, square.lo), square.hi};
 }
-HWY_INLINE Interval sqrt(Interval a) {
+inline Interval sqrt(Interval a) {
   const Interval root = outward(std::sqrt(std::max(0.0, a.lo)), std::sqrt(std::max(0.0, a.hi)));
   return {std::max(0.0, root.lo), root.hi};
 }
-HWY_INLINE Interval length(Interval x, Interval y) { return sqrt(sqr(x) + sqr(y)); }
-HWY_INLINE Interval length(Interval x, Interval y, Interval z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
-// Monotone; Real's log errs by up to two ulp of its larger part, and log crosses zero, so widen absolutely as well.
-HWY_INLINE Interval log(Interval a) {
-  constexpr double kSlack = 1e-14;
-  const auto bound = [](double x) HWY_ATTR { return std::isfinite(x) ? log(Real{x}).v : x; };
-  const double lo = bound(a.lo), hi = bound(a.hi);
-  return {lo - kSlack * (1 + std::fabs(lo)), hi + kSlack * (1 + std::fabs(hi))};
-}
+inline Interval length(Interval x, Interval y) { return sqrt(sqr(x) + sqr(y)); }
+inline Interval length(Interval x, Interval y, Interval z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -2,13 +2,19 @@
 //
 // A number type T has T::Constant, the type of immediates (a constant carries no derivative), and
 //
-//   + - * /  unary -          abs  sqrt  sqr  log
+//   + - * /  unary -          abs  sqrt  sqr
+//   sin cos tan asin acos atan exp log    no libm; asin and acos clamp their argument, log(0) = -infinity
+//   floor ceil round_nearest sign         round_nearest: half to even; sign: -1, 0, 1
+//   atan2(y, x)  pow(x, y)  mod(a, b)     atan2(0, 0) = 0; mod(a, b) = a - b floor(a / b)
+//   divide(a, b)                          a / b, whose derivative is 0 where b is
+//   logical_not(a)  logical_and(a, b)  logical_or(a, b)  compare(a, b)  step(edge, x)    as in vm/opcodes.def
 //   min(a, b) = a < b ? a : b             max(a, b) = a > b ? a : b        (one rule for ties and NaN: b)
 //   length(x, y)  length(x, y, z)         gradient zero where the length is zero
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
-// with either operand a constant. The types: Batch (f32 lanes, batch-inl.h), Real (double, real-inl.h), Interval
-// (interval-inl.h), and over those Dual (derivatives, dual-inl.h) and Tagged (which surface won, tagged-inl.h).
+// with either operand of + - * min max < > a constant. A Tagged needs of all these only what vm/semantics-inl.h applies
+// to values. The types: Batch (f32 lanes, batch-inl.h), Real (double, real-inl.h), Interval
+// (interval-inl.h), Slope (value, gradient and float error over a box, slope-inl.h), and over the first two Dual (derivatives, dual-inl.h) and Tagged (which surface won, tagged-inl.h).
 //
 // These headers are compiled once for each instruction set, hence "-inl" and the namespace HWY_NAMESPACE.
 #if defined(FATHOM_VM_NUMBER_INL) == defined(HWY_TARGET_TOGGLE)
@@ -36,15 +42,11 @@ HWY_INLINE Constant<T> constant(double value) {
   return Constant<T>::broadcast(value);
 }
 
-// Terms of log((1+s)/(1-s)) / (2s) - 1 = z/3 + z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz &
-// Stegun, "Handbook of Mathematical Functions", 1964, 4.1.27), summed from the last: 5 terms err by 3e-9, 11 by
-// 1e-18.
+// x = 2^exponent * mantissa with mantissa in [sqrt 1/2, sqrt 2), for x finite and positive.
 template <class N>
-HWY_INLINE N log_series(N z, int terms) {
-  N sum = N::broadcast(0.0);
-  for (int i = terms; i >= 1; --i) sum = (sum + N::broadcast(1.0 / (2 * i + 1))) * z;
-  return sum;
-}
+struct Scaled {
+  N mantissa, exponent;
+};
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -39,14 +39,30 @@ HWY_INLINE Real sqrt(Real a) { return {std::sqrt(a.v)}; }
 HWY_INLINE Real length(Real x, Real y) { return sqrt(x * x + y * y); }
 HWY_INLINE Real length(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
 
-// x normal and positive; as for Batch, with the longer series. libm's log differs between machines.
-HWY_INLINE Real log(Real x) {
-  const auto bits = std::bit_cast<std::int64_t>(x.v);
+HWY_INLINE bool is_nan(Real a) { return a.v != a.v; }
+
+// No result is -0, as for Batch. Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding decides.
+HWY_INLINE Real round_nearest(Real a) {
+  const double m = std::fabs(a.v);
+  return {(m < 0x1p52 ? std::copysign((m + 0x1p52) - 0x1p52, a.v) : a.v) + 0.0};
+}
+HWY_INLINE Real floor(Real a) {
+  const Real nearest = round_nearest(a);
+  return {nearest.v > a.v ? nearest.v - 1 : nearest.v};
+}
+HWY_INLINE Real ceil(Real a) { return {0.0 - floor(-a).v}; }
+
+// 2^n for a whole n in [-1022, 1023].
+HWY_INLINE Real power_of_two(Real n) {
+  const double whole = n.v == n.v ? n.v : 0;
+  return {std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52)};
+}
+HWY_INLINE Scaled<Real> split_power_of_two(Real x) {
+  const bool subnormal = x.v < 0x1p-1022;
+  const auto bits = std::bit_cast<std::int64_t>(subnormal ? x.v * 0x1p54 : x.v);
   const std::int64_t exponent = (bits - 0x3fe6a09e667f3bcd) >> 52;
-  const Real m{std::bit_cast<double>(bits - exponent * (std::int64_t{1} << 52))};
-  const Real s = (m - Real{1.0}) / (m + Real{1.0});
-  const Real twice = s + s;
-  return Real{static_cast<double>(exponent) * 0.6931471805599453} + (twice + twice * log_series(s * s, 11));
+  return {{std::bit_cast<double>(bits - exponent * (std::int64_t{1} << 52))},
+          {static_cast<double>(subnormal ? exponent - 54 : exponent)}};
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE

@@ -25,7 +25,8 @@ HWY_INLINE Tagged<T> operator-(const Tagged<T>& a) {
 }
 template <class T>
 HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, const Tagged<T>& b) {
-  return {a.v + b.v, a.surface};
+  // A formula added to a distance has no surface of its own.
+  return {a.v + b.v, select(a.surface < constant<T>(0.0), b.surface, a.surface)};
 }
 template <class T>
 HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, const Tagged<T>& b) {
@@ -89,6 +90,15 @@ HWY_INLINE Tagged<T> min(Constant<T> a, const Tagged<T>& b) {
 template <class T>
 HWY_INLINE Tagged<T> length(const Tagged<T>& x, const Tagged<T>& y) {
   return {length(x.v, y.v), x.surface};
+}
+
+template <class T>
+HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, Constant<T> b) {
+  return {a.v + b, a.surface};
+}
+template <class T>
+HWY_INLINE Tagged<T> floor(const Tagged<T>& a) {
+  return {floor(a.v), a.surface};
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE

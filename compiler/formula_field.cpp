@@ -1,0 +1,156 @@
+#include "compiler/formula_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <queue>
+#include <utility>
+#include <variant>
+
+#include "compiler/lower.h"
+#include "vm/check.h"
+#include "vm/evaluate.h"
+#include "vm/verify.h"
+
+namespace fathom::compiler {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless = 1e18;  // stands for an infinite side in the program
+
+struct Cell {
+  Box box;
+  vm::SlopeBound bound;
+  // The steepest on top of the queue; among equals the larger, so that the end does not depend on the queue.
+  bool operator<(const Cell& other) const {
+    if (bound.lipschitz != other.bound.lipschitz) return bound.lipschitz < other.bound.lipschitz;
+    const glm::dvec3 a = box.hi - box.lo, b = other.box.hi - other.box.lo;
+    return std::max({a.x, a.y, a.z}) < std::max({b.x, b.y, b.z});
+  }
+};
+
+class Bisection {
+ public:
+  Bisection(const vm::VerifiedProgram& program, const Box& box) : program_(program), whole_(box) { add(box); }
+
+  FormulaBound run() {
+    // Of the formula's length: about a tenth of a second.
+    const int budget = std::clamp(4'000'000 / static_cast<int>(program_.instructions() + 1), 64, 8192);
+    for (int i = 0; i < budget && !cells_.empty(); ++i) {
+      const Cell steepest = cells_.top();
+      constexpr double kCloseEnough = 1.02;
+      if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
+    }
+    FormulaBound result{kInfinity, -kInfinity, settled_, seen_, 0};
+    for (; !cells_.empty(); cells_.pop()) {
+      const vm::SlopeBound& b = cells_.top().bound;
+      least_ = std::min(least_, b.value.lo);
+      most_ = std::max(most_, b.value.hi);
+      result.lipschitz = std::max(result.lipschitz, b.lipschitz);
+      result.float_error = std::max(result.float_error, b.float_error);
+    }
+    result.least = least_;
+    result.most = most_;
+    return result;
+  }
+
+ private:
+  void add(const Box& box) {
+    cells_.push({box, vm::evaluate_slope(program_, box.lo, box.hi, workspace_)});
+    glm::dvec3 middle;
+    for (int i = 0; i < 3; ++i) {
+      middle[i] = std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]) ? (box.lo[i] + box.hi[i]) / 2
+                                                                      : std::clamp(0.0, box.lo[i], box.hi[i]);
+    }
+    const double slope = glm::length(vm::evaluate_surface(program_, middle, workspace_).gradient);
+    if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
+  }
+
+  // False when the cell has become too small for its slope to be anything but a jump.
+  bool split(const Cell& cell) {
+    const glm::dvec3 size = cell.box.hi - cell.box.lo, whole = whole_.hi - whole_.lo;
+    int axis = -1;
+    for (int i = 0; i < 3; ++i) {
+      if (std::isfinite(size[i]) && size[i] > 1e-4 * whole[i] && (axis < 0 || size[i] > size[axis])) axis = i;
+    }
+    if (axis < 0) return false;
+    cells_.pop();
+    const double middle = (cell.box.lo[axis] + cell.box.hi[axis]) / 2;
+    Box lower = cell.box, upper = cell.box;
+    lower.hi[axis] = upper.lo[axis] = middle;
+    add(lower);
+    add(upper);
+    return true;
+  }
+
+  const vm::VerifiedProgram& program_;
+  const Box whole_;
+  vm::Workspace workspace_;
+  std::priority_queue<Cell> cells_;
+  double seen_ = 0, settled_ = 0, least_ = kInfinity, most_ = -kInfinity;
+};
+
+vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
+  constexpr std::size_t kUnlimited = 10'000'000;
+  std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
+  CHECK(program.has_value(), "a formula's program is as long as the formula");
+  auto verified = vm::verify(std::move(*program));
+  CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
+  return std::get<vm::VerifiedProgram>(std::move(verified));
+}
+
+double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
+
+NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double magnitude, bool certified,
+               const Origin& origin) {
+  std::vector<double> params;
+  for (const glm::dvec3& corner : {box.lo, box.hi}) {
+    for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kEndless, kEndless));
+  }
+  // A field that does not change at all has its box as its only surface.
+  constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
+  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, magnitude, certified ? 1.0 : 0.0});
+  const NodeId children[] = {field};
+  return maker.make(Kind::Bounded, params, children, origin);
+}
+
+// What stands for the constant of a formula that has none.
+double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.seen); }
+
+}  // namespace
+
+FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
+  return Bisection(program_of(graph, formula), box).run();
+}
+
+NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {
+  const FormulaBound bound = bound_formula(maker.graph(), formula, box);
+  const bool proved = std::isfinite(bound.lipschitz);
+  return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound), magnitude_of(bound.float_error),
+                 proved, origin);
+}
+
+NodeId build_expression(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin) {
+  return make_bounded(maker, children[0], Box::centred({params[0], params[1], params[2]}), origin);
+}
+
+NodeId build_displacement(NodeMaker& maker, Params, std::span<const NodeId> children, const Origin& origin) {
+  const Knowledge child = maker.known(children[0]);
+  // Where the displaced solid can be: the child's box, grown by as much as the formula lowers the distance there.
+  Box box = child.box;
+  FormulaBound bound{};
+  for (int i = 0; i < 4; ++i) {
+    bound = bound_formula(maker.graph(), children[1], box);
+    const double outwards = std::max(0.0, -bound.least);
+    const Box needed = child.reach_max > 0 ? child.box.grown(outwards / child.reach_max) : Box::everything();
+    if (intersect(needed, box).lo == needed.lo && intersect(needed, box).hi == needed.hi) break;
+    box = unite(needed, box);
+  }
+  const bool proved = std::isfinite(bound.lipschitz);
+  const NodeId sum = maker.make(Kind::Add, {}, children, origin);
+  return bounded(maker, sum, box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
+                 child.magnitude + magnitude_of(bound.float_error), proved && child.certified, origin);
+}
+
+}  // namespace fathom::compiler

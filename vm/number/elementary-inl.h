@@ -1,0 +1,338 @@
+// Elementary functions of Batch (f32 lanes) and Real (double) in additions, multiplications, divisions and square
+// roots alone: the same bits on every machine, which libm does not give. One kernel for both; Precision<N> has what
+// differs: how many terms, and into how many parts pi/2 and ln 2 are split.
+//
+// Arguments are reduced after Cody & Waite, "Software Manual for the Elementary Functions", 1980: x - n c with c in
+// parts so short that n times each is exact. Then a Taylor polynomial (sine, cosine, exponential; Abramowitz & Stegun,
+// "Handbook of Mathematical Functions", 1964, 4.3.65, 4.3.66, 4.2.1), or one through the Chebyshev points of the
+// reduced range (arc functions, computed with 60 digits). What a reduction rounds off is added back to first order.
+//
+// Measured over all floats: at most 2 ulp for sin, cos, exp, log, asin, acos, atan, 3 for tan and atan2; Real within
+// 1e-15 (relative). sin, cos and tan hold that for |x| <= 1e4 (f32) or 1e6 (double); beyond, x is reduced with an
+// error that grows like x, and from kNoAngle on there is no angle left and x counts as 0. Never NaN for a finite x.
+//
+// Tested by: tests/vm/elementary_test.cpp
+#if defined(FATHOM_VM_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_ELEMENTARY_INL
+#undef FATHOM_VM_ELEMENTARY_INL
+#else
+#define FATHOM_VM_ELEMENTARY_INL
+#endif
+
+#include <concepts>
+#include <cstddef>
+#include <limits>
+
+#include "vm/number/batch-inl.h"
+#include "vm/number/real-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// The types the kernels are written for; the others build on these.
+template <class N>
+concept Plain = std::same_as<N, Batch> || std::same_as<N, Real>;
+
+template <class N>
+struct Precision;
+
+template <>
+struct Precision<Batch> {
+  // Eleven bits each but the last: n up to 2^13 times a part is exact.
+  static constexpr double kHalfPi[] = {0x1.92p+0, 0x1.fb4p-12, 0x1.444p-24, 0x1.68c234c4c6629p-39};
+  static constexpr double kLn2[] = {0x1.62e4p-1, 0x1.7f7d1cf79abcap-20};
+  static constexpr double kNoAngle = 0x1p22;
+  static constexpr double kExpLimit = 110;  // e^x is 0 or infinite beyond
+  static constexpr double kPi[] = {3.1415927410125732, -8.742278000372485e-08};
+  static constexpr double kInfinity = std::numeric_limits<float>::infinity();
+  static constexpr double kWholeFrom = 0x1p24;  // every number from here on is even
+  static constexpr int kSineTerms = 4, kCosineTerms = 4, kExpTerms = 6, kLogTerms = 5;
+  // (atan(s)/s - 1)/s^2 in s^2 <= (sqrt 2 - 1)^2, off by 3e-9 relative to atan; (asin(s)/s - 1)/s^2, s^2 <= 1/4.
+  static constexpr double kAtan[] = {-0.3333333134651184, 0.19999539852142334, -0.14263950288295746,
+                                     0.10743668675422668, -0.06451718509197235};
+  static constexpr double kAsin[] = {0.1666666567325592,   0.07500094175338745,  0.04459940269589424,
+                                     0.031100662425160408, 0.017149237915873528, 0.03369084745645523};
+};
+
+template <>
+struct Precision<Real> {
+  // 33 bits each but the last: n up to 2^20 times a part is exact.
+  static constexpr double kHalfPi[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
+  static constexpr double kLn2[] = {0x1.62e42fefa38p-1, 0x1.ef35793c7673p-45};
+  static constexpr double kNoAngle = 0x1p48;
+  static constexpr double kExpLimit = 760;
+  static constexpr double kPi[] = {3.141592653589793, 1.2246467991473532e-16};
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr double kWholeFrom = 0x1p53;
+  static constexpr int kSineTerms = 8, kCosineTerms = 8, kExpTerms = 13, kLogTerms = 11;
+  // As above, off by 3e-18 and 5e-18.
+  static constexpr double kAtan[] = {-0.3333333333333333,  0.19999999999999804,  -0.14285714285659779,
+                                     0.11111111105150588,  -0.09090908753259112, 0.07692296368042296,
+                                     -0.0666642476020052,  0.05878927554473807,  -0.05230443640686948,
+                                     0.045515447340221615, -0.03456931506332609, 0.016284375050043393};
+  static constexpr double kAsin[] = {
+      0.16666666666666669,  0.07499999999998433,  0.04464285714635543,  0.030381944138531247, 0.02237217294214989,
+      0.017352392720869973, 0.013971212973552933, 0.011479177415184906, 0.01032281435018578,  0.005457506718640358,
+      0.01740087944269402,  -0.014851887071247204, 0.028757851367421566};
+};
+
+// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
+template <Plain N, std::size_t kCount>
+HWY_INLINE N polynomial(N x, const double (&c)[kCount]) {
+  N sum = N::broadcast(c[kCount - 1]);
+  for (std::size_t i = kCount - 1; i-- > 0;) sum = sum * x + N::broadcast(c[i]);
+  return sum;
+}
+
+// 1/first! + sign x/(first + by)! + x^2/(first + 2 by)! + ..., `terms` of them.
+template <Plain N>
+HWY_INLINE N factorial_series(N x, int terms, int first, int by, double sign) {
+  double factorial[2 + 2 * 16] = {1};
+  for (int i = 1; i <= first + by * (terms - 1); ++i) factorial[i] = factorial[i - 1] * i;
+  N sum = N::broadcast(0.0);
+  for (int i = terms - 1; i >= 0; --i) {
+    sum = sum * x + N::broadcast((i % 2 == 0 ? 1 : sign) / factorial[first + by * i]);
+  }
+  return sum;
+}
+
+// NaN where a or b is, else `value`.
+template <Plain N>
+HWY_INLINE N nan_from(N a, N b, N value) {
+  return select(is_nan(a), a, select(is_nan(b), b, value));
+}
+template <Plain N>
+HWY_INLINE N clamp(N x, double limit) {
+  return max(N::broadcast(-limit), min(N::broadcast(limit), x));  // a NaN stays
+}
+
+// -1, 0 or 1; a's own zero or NaN else.
+template <Plain N>
+HWY_INLINE N sign(N a) {
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
+  return select(zero < a, one, select(a < zero, -one, a));
+}
+// Floored: b's sign, except that rounding can leave it just beyond either end. NaN where b is 0.
+template <Plain N>
+HWY_INLINE N mod(N a, N b) {
+  return a - b * floor(a / b);
+}
+template <class T>
+HWY_INLINE T divide(const T& a, const T& b) {
+  return a / b;
+}
+template <Plain N>
+HWY_INLINE N logical_not(N a) {
+  const N zero = N::broadcast(0.0);
+  return select(a < zero, zero, select(zero < a, zero, nan_from(a, a, N::broadcast(1.0))));
+}
+template <Plain N>
+HWY_INLINE N compare(N a, N b) {
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
+  return select(a < b, -one, select(b < a, one, nan_from(a, b, zero)));
+}
+// b where a is not 0, else a.
+template <Plain N>
+HWY_INLINE N logical_and(N a, N b) {
+  const N zero = N::broadcast(0.0);
+  return select(a < zero, b, select(zero < a, b, a));
+}
+template <Plain N>
+HWY_INLINE N logical_or(N a, N b) {
+  const N zero = N::broadcast(0.0);
+  return select(a < zero, a, select(zero < a, a, nan_from(a, a, b)));
+}
+template <Plain N>
+HWY_INLINE N step(N edge, N x) {
+  return select(x < edge, N::broadcast(0.0), nan_from(edge, x, N::broadcast(1.0)));
+}
+
+template <class N>
+struct SinCos {
+  N sin, cos;
+};
+
+// With n the nearest whole number to x / (pi/2): r = x - n pi/2 = high + low, |r| <= pi/4 or little more.
+template <Plain N>
+struct Quarter {
+  N high, low;
+  N number;  // n modulo 4: 0, 1, 2 or 3
+};
+template <Plain N>
+HWY_INLINE Quarter<N> quarter_turns(N angle) {
+  using P = Precision<N>;
+  const N x = select(abs(angle) < N::broadcast(P::kNoAngle), angle, angle * N::broadcast(0.0));
+  const N n = round_nearest(x * N::broadcast(0.63661977236758134308));
+  const N a = x - n * N::broadcast(P::kHalfPi[0]) - n * N::broadcast(P::kHalfPi[1]);
+  const N t = n * N::broadcast(P::kHalfPi[2]);
+  const N b = a - t;
+  const N rest = ((a - b) - t) - n * N::broadcast(P::kHalfPi[3]);
+  const N high = b + rest;
+  const N low = (b - high) + rest;
+  // Only where x is too large to be reduced exactly can r be out of range.
+  return {clamp(high, 0.8), low, n - N::broadcast(4.0) * floor(n * N::broadcast(0.25))};
+}
+
+// sine and cosine of q.high + q.low.
+template <Plain N>
+HWY_INLINE SinCos<N> sin_cos_reduced(const Quarter<N>& q) {
+  using P = Precision<N>;
+  const N r = q.high, z = r * r, one = N::broadcast(1.0);
+  const N half_z = z * N::broadcast(0.5), c = one - half_z;
+  const N sine = -factorial_series(z, P::kSineTerms, 3, 2, -1);
+  const N cosine = factorial_series(z, P::kCosineTerms, 4, 2, -1);
+  return {r + (r * (z * sine) + q.low * c), c + (((one - c) - half_z) + (z * z * cosine - r * q.low))};
+}
+
+template <Plain N>
+HWY_INLINE SinCos<N> sin_cos(N x) {
+  const Quarter<N> q = quarter_turns(x);
+  const SinCos<N> r = sin_cos_reduced(q);
+  const N one = N::broadcast(1.0), two = N::broadcast(2.0);
+  const auto first = q.number < one;  // 0
+  const auto last = two < q.number;   // 3
+  const auto third = one < q.number;  // 2, where not the last
+  const N sine = select(first, r.sin, select(last, -r.cos, select(third, -r.sin, r.cos)));
+  const N cosine = select(first, r.cos, select(last, r.sin, select(third, -r.cos, -r.sin)));
+  return {clamp(sine, 1), clamp(cosine, 1)};
+}
+template <Plain N>
+HWY_INLINE N sin(N x) {
+  return sin_cos(x).sin;
+}
+template <Plain N>
+HWY_INLINE N cos(N x) {
+  return sin_cos(x).cos;
+}
+template <Plain N>
+HWY_INLINE N tan(N x) {
+  const Quarter<N> q = quarter_turns(x);
+  const SinCos<N> r = sin_cos_reduced(q);
+  const N one = N::broadcast(1.0);
+  const auto even = abs(abs(q.number - one) - one) < one;  // of 0 .. 3 only 0 and 2 are 1 from 1
+  return select(even, r.sin, -r.cos) / select(even, r.cos, r.sin);
+}
+
+// asin(s) - s for |s| <= 1/2.
+template <Plain N>
+HWY_INLINE N asin_excess(N s) {
+  const N z = s * s;
+  return s * (z * polynomial(z, Precision<N>::kAsin));
+}
+// asin x = pi/2 - 2 asin sqrt((1 - x)/2), which keeps the polynomial's argument below 1/2.
+template <Plain N>
+HWY_INLINE N asin(N x) {
+  using P = Precision<N>;
+  const N half = N::broadcast(0.5), c = clamp(x, 1), a = abs(c);
+  const auto small = a < half;
+  const N s = select(small, a, sqrt((N::broadcast(1.0) - a) * half));
+  const N excess = asin_excess(s);
+  const N half_pi = N::broadcast(P::kPi[0] / 2), rest = N::broadcast(P::kPi[1] / 2);
+  const N angle = select(small, s + excess, (half_pi - (s + s)) - ((excess + excess) - rest));
+  return select(c < N::broadcast(0.0), -angle, angle);
+}
+template <Plain N>
+HWY_INLINE N acos(N x) {
+  using P = Precision<N>;
+  const N half = N::broadcast(0.5), zero = N::broadcast(0.0), c = clamp(x, 1), a = abs(c);
+  const auto small = a < half;
+  const N s = select(small, c, sqrt((N::broadcast(1.0) - a) * half));
+  const N excess = asin_excess(s);
+  const N twice = (s + s) + (excess + excess);
+  const N pi = N::broadcast(P::kPi[0]), rest = N::broadcast(P::kPi[1]);
+  const N near = (pi * half - s) - (excess - rest * half);
+  const N behind = (pi - (s + s)) - ((excess + excess) - rest);
+  return select(small, near, select(c < zero, behind, twice));
+}
+
+// Angle of the point (x, y), both >= 0, with y <= x: in [0, pi/4]. Above pi/8 as pi/4 + atan((y - x)/(y + x)).
+template <Plain N>
+HWY_INLINE N atan_ratio(N y, N x) {
+  using P = Precision<N>;
+  const N q = y / x, one = N::broadcast(1.0), zero = N::broadcast(0.0);
+  const auto small = q < N::broadcast(0.41421356237309503);
+  const N s = select(small, q, (q - one) / (q + one));
+  const N z = s * s;
+  const N excess = s * (z * polynomial(z, P::kAtan));
+  return select(small, zero, N::broadcast(P::kPi[0] / 4)) +
+         (s + (excess + select(small, zero, N::broadcast(P::kPi[1] / 4))));
+}
+// In [-pi, pi]; 0 where both are 0. A negative zero counts as zero.
+template <Plain N>
+HWY_INLINE N atan2(N y, N x) {
+  using P = Precision<N>;
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0), ax = abs(x), ay = abs(y);
+  const auto steep = ax < ay;
+  const N low = select(steep, ax, ay), high = select(steep, ay, ax);
+  // Equal ones (both may be infinite) make 45 degrees, zeros none.
+  const auto less = low < high;
+  const N first = atan_ratio(select(less, low, select(zero < high, one, zero)), select(less, high, one));
+  const N half_pi = N::broadcast(P::kPi[0] / 2), half_rest = N::broadcast(P::kPi[1] / 2);
+  const N upper = select(steep, half_pi - (first - half_rest), first);
+  const N around = select(steep, half_pi + (first + half_rest),
+                          N::broadcast(P::kPi[0]) - (first - N::broadcast(P::kPi[1])));
+  const N angle = select(x < zero, around, upper);
+  return nan_from(x, y, select(y < zero, -angle, angle));
+}
+template <Plain N>
+HWY_INLINE N atan(N x) {
+  return atan2(x, N::broadcast(1.0));
+}
+
+// Infinite above the largest number's logarithm, 0 below the smallest's.
+template <Plain N>
+HWY_INLINE N exp(N x) {
+  using P = Precision<N>;
+  const N c = clamp(x, P::kExpLimit), one = N::broadcast(1.0);
+  const N n = round_nearest(c * N::broadcast(1.4426950408889634074));
+  const N r = (c - n * N::broadcast(P::kLn2[0])) - n * N::broadcast(P::kLn2[1]);
+  const N y = one + (r + r * r * factorial_series(r, P::kExpTerms - 1, 2, 1, 1));
+  // 2^n in two factors: n goes beyond the exponents there are at both ends.
+  const N half = floor(n * N::broadcast(0.5));
+  return y * power_of_two(half) * power_of_two(n - half);
+}
+
+// Terms of log((1+s)/(1-s)) / s - 2 = 2 z/3 + 2 z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz &
+// Stegun, 4.1.27), summed from the last: 5 terms err by 3e-9, 11 by 1e-18.
+template <Plain N>
+HWY_INLINE N log_series(N z, int terms) {
+  N sum = N::broadcast(0.0);
+  for (int i = terms; i >= 1; --i) sum = (sum + N::broadcast(2.0 / (2 * i + 1))) * z;
+  return sum;
+}
+// -infinity at 0, NaN below. With x = 2^e (1 + f) and s = f/(2 + f): log(1 + f) = f - (f^2/2 - s (f^2/2 + series)),
+// whose first term is exact.
+template <Plain N>
+HWY_INLINE N log(N x) {
+  using P = Precision<N>;
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
+  const Scaled<N> parts = split_power_of_two(x);
+  const N f = parts.mantissa - one, e = parts.exponent;
+  const N s = f / (N::broadcast(2.0) + f), half = f * f * N::broadcast(0.5);
+  const N rest = s * (half + log_series(s * s, P::kLogTerms)) + e * N::broadcast(P::kLn2[1]);
+  const N result = e * N::broadcast(P::kLn2[0]) - ((half - rest) - f);
+  const N infinity = N::broadcast(P::kInfinity);
+  const N edge = select(x < zero, infinity - infinity, select(zero < x, x, nan_from(x, x, -infinity)));
+  return select(zero < x, select(x < infinity, result, edge), edge);
+}
+
+// x^y = e^(y log x) for x > 0. For x < 0 and a whole y, |x|^y with the sign of y's parity, else NaN. At x = 0: 0 for
+// y > 0, 1 for y = 0, infinite for y < 0. Relative error: (2 + 2 |y log x|) ulp.
+template <Plain N>
+HWY_INLINE N pow(N x, N y) {
+  using P = Precision<N>;
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0), infinity = N::broadcast(P::kInfinity);
+  const N magnitude = exp(y * log(abs(x)));
+  const N half = y * N::broadcast(0.5);
+  const N fraction = y - floor(y), parity = half - floor(half);  // 0 or 1/2 where y is whole
+  const auto large = N::broadcast(P::kWholeFrom) < abs(y);
+  const N whole = select(large, magnitude, select(zero < parity, -magnitude, magnitude));
+  const N negative = select(zero < fraction, infinity - infinity, whole);
+  const N at_zero = select(zero < y, zero, select(y < zero, infinity, one));
+  const N result = select(x < zero, negative, select(zero < x, magnitude, at_zero));
+  return nan_from(x, y, select(y < zero, result, select(zero < y, result, one)));
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,211 @@
+// Slope: what a formula can do over a box: the range of its value, of its partial derivatives, the length of its
+// gradient, and how far f32 evaluation can be from the exact value. One run of the program gives a Lipschitz constant
+// and an error bound of any formula, so a user's expression can be marched like a shape.
+//
+//     sqrt(x^2 + y^2) - 1 over [-2,2]^2:    v [-1, 1.83]   norm 1   error a few units
+//
+// The gradient's length has rules of its own, |grad(a + b)| <= |grad a| + |grad b|, beside what the partials give.
+// A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s) = J^T F / |F|, no longer than the
+// largest singular value of J, whose square is at most the largest row sum of |J^T J| (Gershgorin). So distances have
+// norm 1 even where they are 0 and the quotient of intervals is unbounded.
+//
+// Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
+// "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: an operation hands on its operands' errors times
+// its slope over all values f32 may have there (`seen`) and adds its own. Jumps that f32 may take elsewhere than
+// exact arithmetic, and operands f32 may have outside the domain, count in full.
+//
+// Tested by: tests/vm/slope_test.cpp
+#if defined(FATHOM_VM_SLOPE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_SLOPE_INL
+#undef FATHOM_VM_SLOPE_INL
+#else
+#define FATHOM_VM_SLOPE_INL
+#endif
+
+#include <algorithm>
+#include <array>
+
+#include "vm/number/interval_elementary-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+inline constexpr double kUnit = 0x1p-24;  // what errors are counted in
+
+struct Slope {
+  using Constant = Slope;
+  Interval v;                 // the exact value
+  Interval dx, dy, dz;        // partial derivatives, where they exist
+  double norm;                // bound on the gradient's length; infinite where the value may jump
+  double error;               // bound on |f32 value - exact value|, in kUnit
+  bool nonnegative;           // neither the exact nor the f32 value can be below 0
+  bool squares;               // a sum of squares |F|^2 with
+  std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
+
+  static inline Slope broadcast(double value);
+};
+
+// The error of a rounding to f32 whose result is at most `size`: subnormals round absolutely, overflow has no bound.
+inline double rounding(double size) { return size < 3.4e38 ? size + 0x1p-120 : kUnbounded; }
+// Bounds are sums and products of nonnegative doubles; this much more outweighs their own rounding. NaN is no bound.
+inline double bound(double value) { return value >= 0 ? value * (1 + 1e-14) : kUnbounded; }
+
+// What f32 evaluation may have in place of the exact value.
+inline Interval seen(const Slope& a) {
+  const double slack = bound(a.error * kUnit);
+  const Interval range = outward(a.v.lo - slack, a.v.hi + slack);
+  return a.nonnegative ? Interval{std::max(0.0, range.lo), std::max(0.0, range.hi)} : range;
+}
+inline Interval seen_both(const Slope& a, Interval value) { return hull(seen(a), value); }
+
+inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, double norm, double error) {
+  const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);
+  const double length = bound(std::sqrt(mx * mx + my * my + mz * mz));
+  const double n = std::min(bound(norm), length);
+  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {}};
+}
+// f(a), f's derivative being in `slope` over a's exact values.
+inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
+  return make_slope(v, a.dx * slope, a.dy * slope, a.dz * slope, times(a.norm, magnitude(slope)), error);
+}
+// No more is known of the derivatives; f32 has a value in `alternatives`.
+inline Slope jump(Interval v, Interval alternatives) {
+  const Interval all = hull(v, alternatives), line = whole_line();
+  Slope result = make_slope(v, line, line, line, kUnbounded, (all.hi - all.lo) / kUnit + rounding(magnitude(all)));
+  result.nonnegative = all.lo >= 0;
+  return result;
+}
+inline Slope exactly(Interval v) {
+  Slope result = make_slope(v, {0, 0}, {0, 0}, {0, 0}, 0, 0);
+  result.nonnegative = result.squares = v.lo >= 0;
+  return result;
+}
+inline Slope Slope::broadcast(double value) {
+  Slope result = exactly(Interval::broadcast(value));
+  const bool is_float = static_cast<double>(static_cast<float>(value)) == value;
+  if (!is_float) result.error = rounding(std::fabs(value));
+  return result;
+}
+
+inline Slope operator-(const Slope& a) {
+  return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.error);
+}
+inline Slope operator+(const Slope& a, const Slope& b) {
+  const double error = a.error + b.error;
+  Slope r = make_slope(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
+                       error + rounding(magnitude(seen(a) + seen(b))));
+  r.nonnegative = a.nonnegative && b.nonnegative;
+  r.squares = a.squares && b.squares;
+  if (r.squares) {
+    for (std::size_t i = 0; i < 6; ++i) r.g[i] = a.g[i] + b.g[i];
+  }
+  return r;
+}
+inline Slope operator-(const Slope& a, const Slope& b) {
+  return make_slope(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm,
+                    a.error + b.error + rounding(magnitude(seen(a) - seen(b))));
+}
+inline Slope operator*(const Slope& a, const Slope& b) {
+  const double ma = magnitude(a.v), mb = magnitude(b.v);
+  const double error = times(magnitude(seen(a)), b.error) + times(mb, a.error) + rounding(magnitude(seen(a) * seen(b)));
+  Slope r = make_slope(a.v * b.v, a.v * b.dx + b.v * a.dx, a.v * b.dy + b.v * a.dy, a.v * b.dz + b.v * a.dz,
+                       times(ma, b.norm) + times(mb, a.norm), error);
+  r.nonnegative = a.nonnegative && b.nonnegative;
+  return r;
+}
+inline Slope operator/(const Slope& a, const Slope& b) {
+  const Interval sb = seen(b);
+  if (contains(sb, 0)) return jump(whole_line(), whole_line());
+  const Interval q = a.v / b.v, inverse = Interval{1, 1} / b.v;
+  const double smallest = std::min(std::fabs(sb.lo), std::fabs(sb.hi)), m = magnitude(inverse);
+  const double error = (a.error + times(magnitude(q), b.error)) / smallest + rounding(magnitude(seen(a) / sb));
+  Slope r = make_slope(q, (a.dx - q * b.dx) * inverse, (a.dy - q * b.dy) * inverse, (a.dz - q * b.dz) * inverse,
+                       times(a.norm + times(magnitude(q), b.norm), m), error);
+  r.nonnegative = a.nonnegative && b.nonnegative;
+  return r;
+}
+inline Slope divide(const Slope& a, const Slope& b) { return a / b; }
+
+// Decided only where no f32 rounding can turn it.
+inline IntervalMask operator<(const Slope& a, const Slope& b) { return seen(a) < seen(b); }
+inline IntervalMask operator>(const Slope& a, const Slope& b) { return b < a; }
+
+// Both may be taken, and both meet where the choice changes.
+inline Slope either(const Slope& a, const Slope& b, Interval v, double error) {
+  Slope r = make_slope(v, hull(a.dx, b.dx), hull(a.dy, b.dy), hull(a.dz, b.dz), std::max(a.norm, b.norm), error);
+  r.nonnegative = a.nonnegative && b.nonnegative;
+  return r;
+}
+// Of a continuous function. Where f32 takes the other branch the two are as far apart as they can be in the box.
+inline Slope select(IntervalMask mask, const Slope& yes, const Slope& no) {
+  if (!mask.maybe_false) return yes;
+  if (!mask.maybe_true) return no;
+  return either(yes, no, hull(yes.v, no.v), magnitude(seen(yes) - seen(no)) / kUnit);
+}
+inline Slope min(const Slope& a, const Slope& b) {
+  if (seen(a).hi < seen(b).lo) return a;
+  if (seen(b).hi < seen(a).lo) return b;
+  return either(a, b, min(a.v, b.v), std::max(a.error, b.error));
+}
+inline Slope max(const Slope& a, const Slope& b) {
+  if (seen(a).hi < seen(b).lo) return b;
+  if (seen(b).hi < seen(a).lo) return a;
+  Slope r = either(a, b, max(a.v, b.v), std::max(a.error, b.error));
+  r.nonnegative = a.nonnegative || b.nonnegative;
+  return r;
+}
+inline Slope abs(const Slope& a) {
+  const Interval s = seen(a);
+  const Interval slope = s.lo >= 0 ? Interval{1, 1} : s.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1};
+  Slope r = chain(a, abs(a.v), slope, a.error);
+  r.nonnegative = true;
+  return r;
+}
+inline Slope sqr(const Slope& a) {
+  const double error = times(magnitude(seen(a)) + magnitude(a.v), a.error) + rounding(magnitude(sqr(seen(a))));
+  Slope r = chain(a, sqr(a.v), a.v + a.v, error);
+  r.nonnegative = r.squares = true;
+  r.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
+  return r;
+}
+// The largest singular value of J.
+inline double gram_norm(const std::array<Interval, 6>& g) {
+  double m[6];
+  for (std::size_t i = 0; i < 6; ++i) m[i] = magnitude(g[i]);
+  return bound(std::sqrt(std::max({m[0] + m[3] + m[4], m[1] + m[3] + m[5], m[2] + m[4] + m[5]})));
+}
+inline Slope sqrt(const Slope& a) {
+  const Interval s = seen(a), root = sqrt(a.v), line = whole_line();
+  if (!(s.lo >= 0)) {  // f32 may have a negative operand, and no root
+    Slope r = jump(root, root);
+    r.error = kUnbounded;
+    return r;
+  }
+  // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and e over the sum of the roots.
+  const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
+  const double error = std::min(apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit));
+  const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
+  const double norm = std::min(times(a.norm, magnitude(slope)), a.squares ? gram_norm(a.g) : kUnbounded);
+  Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);
+  if (!(r.norm <= norm)) r.norm = norm;
+  r.error = bound(error + rounding(magnitude(sqrt(s))));
+  r.nonnegative = true;
+  return r;
+}
+inline Slope length(const Slope& x, const Slope& y) { return sqrt(sqr(x) + sqr(y)); }
+inline Slope length(const Slope& x, const Slope& y, const Slope& z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
+
+// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/opcodes.def promises.
+inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
+  const Slope from_origin = length(p.x, p.y, p.z);
+  const Interval all{-from_origin.norm, from_origin.norm};
+  const double moved = length(seen(p.x) - p.x.v, seen(p.y) - p.y.v, seen(p.z) - p.z.v).hi;
+  const double scale = std::max({1.0, magnitude(seen(from_origin)), magnitude(d) + moved});
+  const double carried = std::sqrt(p.x.error * p.x.error + p.y.error * p.y.error + p.z.error * p.z.error);
+  return make_slope(d, all, all, all, from_origin.norm, carried + kFloatError / kUnit * scale);
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

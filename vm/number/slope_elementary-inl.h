@@ -1,0 +1,152 @@
+// Elementary functions of Slope, and the functions that jump. A kernel's own error is its measured worst, rounded up,
+// at two units of 2^-24 for an ulp.
+#if defined(FATHOM_VM_SLOPE_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_SLOPE_ELEMENTARY_INL
+#undef FATHOM_VM_SLOPE_ELEMENTARY_INL
+#else
+#define FATHOM_VM_SLOPE_ELEMENTARY_INL
+#endif
+
+#include "vm/number/slope-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+inline constexpr double kKernelUnits = 8;  // 4 ulp
+inline constexpr double kAngleLimit = 1e4;  // up to here the f32 kernels know their angle
+
+// f(a) with f's derivative over the exact and over the f32 operands.
+inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_slope, Interval seen_v) {
+  return chain(a, v, slope, times(magnitude(seen_slope), a.error) + rounding(kKernelUnits * magnitude(seen_v)));
+}
+inline Slope sin(const Slope& a) {
+  const Interval s = seen(a);
+  Slope r = smooth(a, sin(a.v), cos(a.v), cos(s), sin(s));
+  if (!(magnitude(s) <= kAngleLimit)) r.error = 2 / kUnit;
+  return r;
+}
+inline Slope cos(const Slope& a) {
+  const Interval s = seen(a);
+  Slope r = smooth(a, cos(a.v), -sin(a.v), sin(s), cos(s));
+  if (!(magnitude(s) <= kAngleLimit)) r.error = 2 / kUnit;
+  return r;
+}
+inline Slope tan(const Slope& a) {
+  const Interval s = seen(a), t = tan(s), one{1, 1};
+  if (!(magnitude(s) <= kAngleLimit) || !(magnitude(t) < kUnbounded)) return jump(whole_line(), whole_line());
+  return smooth(a, tan(a.v), one + sqr(tan(a.v)), one + sqr(t), t);
+}
+// 1/sqrt(1 - x^2) and 0 where |x| > 1; unbounded near 1.
+inline Interval asin_slope(Interval x) {
+  const Interval one{1, 1}, m = abs(x);
+  if (m.lo > 1) return {0, 0};
+  if (!(m.hi < 1)) return {0, kUnbounded};
+  return one / sqrt((one - m) * (one + m));
+}
+// Next to 1 the derivative is no use: |asin a - asin b| <= pi/2 sqrt|a - b|.
+inline double asin_error(const Slope& a, Interval value) {
+  const double by_root = kPi / 2 * std::sqrt(a.error / kUnit);
+  return bound(std::min(times(magnitude(asin_slope(seen(a))), a.error), by_root)) +
+         rounding(kKernelUnits * magnitude(value));
+}
+inline Slope asin(const Slope& a) { return chain(a, asin(a.v), asin_slope(a.v), asin_error(a, asin(seen(a)))); }
+inline Slope acos(const Slope& a) { return chain(a, acos(a.v), -asin_slope(a.v), asin_error(a, acos(seen(a)))); }
+inline Slope atan(const Slope& a) {
+  const Interval s = seen(a), one{1, 1};
+  return smooth(a, atan(a.v), one / (one + sqr(a.v)), one / (one + sqr(s)), atan(s));
+}
+inline Slope atan2(const Slope& y, const Slope& x) {
+  const Interval sy = seen(y), sx = seen(x);
+  const Interval angle = atan2(sy, sx), square = sqr(y.v) + sqr(x.v), seen_square = sqr(sy) + sqr(sx);
+  if (contains(sy, 0) && sx.lo <= 0) return jump(angle, angle);  // the branch cut
+  const Interval u = x.v / square, w = y.v / square;
+  const double steepest = 1 / std::sqrt(seen_square.lo);
+  return make_slope(atan2(y.v, x.v), u * y.dx - w * x.dx, u * y.dy - w * x.dy, u * y.dz - w * x.dz,
+                    (y.norm + x.norm) / std::sqrt(square.lo),
+                    (y.error + x.error) * steepest + rounding(kKernelUnits * magnitude(angle)));
+}
+inline Slope exp(const Slope& a) {
+  Slope r = smooth(a, exp(a.v), exp(a.v), exp(seen(a)), exp(seen(a)));
+  r.nonnegative = true;
+  return r;
+}
+inline Slope log(const Slope& a) {
+  const Interval s = seen(a), one{1, 1};
+  if (!(s.lo > 0)) {
+    Slope r = jump(log(a.v), log(a.v));
+    r.error = kUnbounded;
+    return r;
+  }
+  return smooth(a, log(a.v), one / a.v, one / s, log(s));
+}
+
+// x^y, y being the whole number n: n x^(n-1). The kernel's relative error is (2 + 2 |n log x|) ulp, and
+// t |log t| <= max(1/e, M log M) for t = |x|^n up to M.
+inline Slope whole_power(const Slope& x, const Slope& y, double n) {
+  const Interval s = seen(x), exponent{n, n}, less{n - 1, n - 1};
+  const double size = magnitude(pow(s, exponent));
+  const double kernel = 8 * size + 8 * std::max(0.37, size > 1 ? size * log(Real{size}).v : 0.0);
+  Slope r = chain(x, pow(x.v, y.v), exponent * pow(x.v, less),
+                  times(magnitude(exponent * pow(s, less)), x.error) + rounding(kernel));
+  r.nonnegative = x.nonnegative || mod(Real{n}, Real{2}).v == 0;
+  return r;
+}
+inline Slope pow(const Slope& x, const Slope& y) {
+  const double n = round_nearest(Real{y.v.lo}).v;
+  if (y.norm == 0 && y.error == 0 && y.v.hi - y.v.lo < 1e-9 && contains(y.v, n)) {
+    if (n == 0) return exactly({1, 1});
+    if (n > 0 || !contains(seen(x), 0)) return whole_power(x, y, n);
+  }
+  if (seen(x).lo > 0) {  // what the kernel does
+    Slope r = exp(y * log(x));
+    r.v = {std::max(r.v.lo, pow(x.v, y.v).lo), std::min(r.v.hi, pow(x.v, y.v).hi)};
+    return r;
+  }
+  Slope r = jump(pow(x.v, y.v), whole_line());
+  // A root or power of what may be 0 but not less: t |log t| as above, and |x|^y moves by no more than its range.
+  if (x.nonnegative && y.v.lo > 0) {
+    const Interval range = pow(seen(x), seen(y));
+    r.error = bound((range.hi - range.lo) / kUnit + 8 * range.hi + 8 * range.hi * std::fabs(log(Real{range.hi + 1}).v) + 8);
+    if (y.norm == 0 && y.v.lo > 1.0) {
+      const Interval slope = y.v * pow(x.v, y.v - Interval{1, 1});
+      return chain(x, r.v, slope, r.error);
+    }
+  }
+  return r;
+}
+
+// A step function: constant where f32 and exact arithmetic both see one step.
+inline Slope steps(Interval v, Interval alternatives) {
+  return alternatives.lo == alternatives.hi ? exactly(alternatives) : jump(v, alternatives);
+}
+inline Slope floor(const Slope& a) { return steps(floor(a.v), floor(seen(a))); }
+inline Slope ceil(const Slope& a) { return steps(ceil(a.v), ceil(seen(a))); }
+inline Slope round_nearest(const Slope& a) { return steps(round_nearest(a.v), round_nearest(seen(a))); }
+inline Slope sign(const Slope& a) { return steps(sign(a.v), sign(seen(a))); }
+inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logical_not(seen(a))); }
+inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
+inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
+
+inline Slope mod(const Slope& a, const Slope& b) {
+  if (contains(seen(b), 0)) return jump(whole_line(), whole_line());
+  const Slope turns = floor(a / b);
+  if (turns.norm == 0) return a - b * turns;
+  // f32 leaves the period by the rounding of the quotient and the product.
+  const Interval sa = seen(a), sb = seen(b);
+  const double slack = 4 * kUnit * (magnitude(sa) + magnitude(sb));
+  return jump(mod(a.v, b.v), {std::min(0.0, sb.lo) - slack, std::max(0.0, sb.hi) + slack});
+}
+inline Slope logical_and(const Slope& a, const Slope& b) {
+  if (!contains(seen(a), 0)) return b;
+  if (seen(a).lo == seen(a).hi) return exactly({0, 0});
+  return jump(logical_and(a.v, b.v), logical_and(seen(a), seen(b)));
+}
+inline Slope logical_or(const Slope& a, const Slope& b) {
+  if (!contains(seen(a), 0)) return a;
+  if (seen(a).lo == seen(a).hi) return b;
+  return jump(logical_or(a.v, b.v), logical_or(seen(a), seen(b)));
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
