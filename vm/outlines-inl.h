@@ -27,8 +27,8 @@ HWY_INLINE T beyond_segment(const T& along, Constant<T> begin, Constant<T> end) 
   return along - max(begin, min(end, along));
 }
 
-// `face` where the foot is within the piece, `corner` where it lies `beyond` its end. Less than 1e-15 beyond counts as
-// within: such squares vanish in float, and with them the gradient.
+// `face` where the foot is within the piece, `corner` where it lies `beyond` its end. Less than 1e-15 beyond counts
+// as within: such squares vanish in float, and with them the gradient.
 template <class T>
 HWY_INLINE T face_or_corner(const T& beyond, const T& face, const T& corner) {
   return select(constant<T>(1e-30) < sqr(beyond), corner, face);
@@ -56,8 +56,8 @@ HWY_INLINE T segment(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // Folds the plane onto the sector between +y and the mirror axis at 180 / n degrees from it, towards +x, for shapes
-// with the symmetry of a regular n-gon. k: six unit normals (x, y) of mirror lines, (0, 0) where fewer do: each halves
-// the angle that is left, so six serve 64 sides.
+// with the symmetry of a regular n-gon. k: six unit normals (x, y) of mirror lines, (0, 0) where fewer do: each
+// halves the angle that is left, so six serve 64 sides.
 template <class T>
 HWY_INLINE Vec3<T> fold_to_sector(const Vec3<T>& p, const Constant<T>* k) {
   T x = abs(p.x), y = p.y;
@@ -203,8 +203,8 @@ HWY_INLINE T horseshoe(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // k: half height h, centre's offset c, radius r of the right side's circle about (-c, 0), the tip's unit normal. The
-// distance from the circle as (|p|^2 - h^2 + 2 c x) / (|p - centre| + r), since c^2 - r^2 = -h^2: a slim lens has c and r
-// far larger than itself, which cancel in |p - centre| - r.
+// distance from the circle as (|p|^2 - h^2 + 2 c x) / (|p - centre| + r), since c^2 - r^2 = -h^2: a slim lens has c
+// and r far larger than itself, which cancel in |p - centre| - r.
 template <class T>
 HWY_INLINE T lens(const Vec3<T>& p, const Constant<T>* k) {
   const T x = abs(p.x), y = abs(p.y), above = y - k[0];
@@ -225,8 +225,8 @@ HWY_INLINE T moon(const Vec3<T>& p, const Constant<T>* k) {
   return select(past_disk, select(past_cut, length(dx, dy), body), body);
 }
 
-// k: bottom radius, top radius, height, centre's offset c, radius r of the right side's circle about (-c, 0), the unit
-// normal where it meets the top. The side's distance as for lens, since r = c + bottom radius.
+// k: bottom radius, top radius, height, centre's offset c, radius r of the right side's circle about (-c, 0), the
+// unit normal where it meets the top. The side's distance as for lens, since r = c + bottom radius.
 template <class T>
 HWY_INLINE T egg(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -272,12 +272,12 @@ HWY_INLINE T rounded_x(const Vec3<T>& p, const Constant<T>* k) {
 // k: larger radius a, smaller radius b, a^2 - b^2, 1 when y is the long axis and 0 when x is.
 //
 // For a convex shape the distance, inside and out, is the largest over all unit normals n of <p, n> - h(n), h the
-// support function, here |(a nx, b ny)|: every n gives a lower bound, and an error of n counts squared. The best normal
-// is along (x / v, y / u), v = u + a^2 - b^2, where s = (a x / v, b y / u) has length 1 (Lagrange; u = b^2 on the
-// ellipse). 1 / |s| is concave in u > 0 (More & Sorensen, "Computing a Trust Region Step", 1983), so that Newton's
-// method on 1 / |s| = 1 climbs to the root from any smaller u without ever passing it, such as the one where the
-// larger of s's parts is 1. It is slowest near the ends of the evolute, where kEllipseSteps leave 1e-16. A y of 0 counts
-// as 1e-15, so that u > 0. Gradient undefined on the long axis between the evolute's ends.
+// support function, here |(a nx, b ny)|: every n gives a lower bound, and an error of n counts squared. The best
+// normal is along (x / v, y / u), v = u + a^2 - b^2, where s = (a x / v, b y / u) has length 1 (Lagrange; u = b^2 on
+// the ellipse). 1 / |s| is concave in u > 0 (More & Sorensen, "Computing a Trust Region Step", 1983), so that
+// Newton's method on 1 / |s| = 1 climbs to the root from any smaller u without ever passing it, such as the one where
+// the larger of s's parts is 1. It is slowest near the ends of the evolute, where kEllipseSteps leave 1e-16. A y of 0
+// counts as 1e-15, so that u > 0. Gradient undefined on the long axis between the evolute's ends.
 inline constexpr int kEllipseSteps = 24;
 template <class T>
 HWY_INLINE T ellipse(const Vec3<T>& p, const Constant<T>* k) {
@@ -302,8 +302,8 @@ HWY_INLINE T ellipse(const Vec3<T>& p, const Constant<T>* k) {
   return x * ux + y * uy - length(ux * k[0], uy * k[1]);
 }
 
-// The distance from a convex shape that both axes mirror rises with |x| and with |y|: its range is that of the nearest
-// and the farthest corner, each with its rounding errors. Intervals would lose the iteration above.
+// The distance from a convex shape that both axes mirror rises with |x| and with |y|: its range is that of the
+// nearest and the farthest corner, each with its rounding errors. Intervals would lose the iteration above.
 HWY_INLINE Interval ellipse(const Vec3<Interval>& p, const Interval* k) {
   const Interval x = abs(p.x), y = abs(p.y);
   if (!(std::isfinite(x.hi) && std::isfinite(y.hi))) return whole_line();
