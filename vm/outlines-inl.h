@@ -252,7 +252,8 @@ template <class T>
 HWY_INLINE T cross(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
   const T ax = abs(p.x), ay = abs(p.y);
-  const T hi = max(ax, ay), end = hi - k[0], side = min(ax, ay) - k[1];
+  // At a tie both take their second operand, which must not be the same.
+  const T hi = max(ax, ay), end = hi - k[0], side = min(ay, ax) - k[1];
   const T body = max(end, side);
   const T outside = max(length(max(zero, end), max(zero, side)), body);
   const T before = max(zero, k[1] - hi);

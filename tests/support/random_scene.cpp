@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "compiler/make_node.h"
+#include "tests/support/random_outlines.h"
 
 namespace fathom::test {
 namespace {
@@ -181,6 +182,7 @@ std::vector<Kind> primitive_kinds(compiler::Sort sort, bool estimates) {
 }
 
 std::vector<double> random_params(Kind kind, Random& random) {
+  if (compiler::spec(kind).sort == compiler::Sort::Outline) return random_outline_params(kind, random);
   const auto size = [&] { return random.length(0.05, 1.5); };
   // A rounding within `outer`, sometimes none and sometimes all of it.
   const auto rounding = [&](double outer) {
