@@ -81,8 +81,9 @@ HWY_INLINE T regular_polygon(const Vec3<T>& p, const Constant<T>* k) {
   return convex_edge(face, min(constant<T>(0.0), along));
 }
 
-// k: six normals for fold_to_sector, unit direction from a tip to the inner corner, its length, radius, 1 when the
-// inner corner is convex and -1 when not.
+// k: six normals for fold_to_sector, unit direction from a tip to the inner corner, its length, radius, the inner
+// corner's sign: a large positive number when it is convex and negative when not, 0 when it is nearly flat: there the
+// edge's own side tells.
 template <class T>
 HWY_INLINE T star(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -91,7 +92,7 @@ HWY_INLINE T star(const Vec3<T>& p, const Constant<T>* k) {
   const T face = y * k[12] - q.x * k[13], along = q.x * k[12] + y * k[13];
   const T beyond = beyond_segment(along, zero, k[14]);
   const T corner = length(face, beyond);
-  return face_or_corner(beyond, face, select(along < zero, corner, corner * k[16]));
+  return face_or_corner(beyond, face, select(along < zero, corner, select(face + k[16] < zero, -corner, corner)));
 }
 
 // k: as cone_profile.
@@ -278,29 +279,37 @@ HWY_INLINE T rounded_x(const Vec3<T>& p, const Constant<T>* k) {
 // the ellipse). 1 / |s| is concave in u > 0 (More & Sorensen, "Computing a Trust Region Step", 1983), so that
 // Newton's method on 1 / |s| = 1 climbs to the root from any smaller u without ever passing it, such as the one where
 // the larger of s's parts is 1. It is slowest near the ends of the evolute, where kEllipseSteps leave 1e-16. A y of 0
-// counts as 1e-15, so that u > 0. Gradient undefined on the long axis between the evolute's ends.
+// counts as 1e-15, so that u > 0. Gradient undefined on the long axis between the evolute's ends; elsewhere it is
+// n, whose own change counts for nothing where n is best.
 inline constexpr int kEllipseSteps = 24;
-template <class T>
-HWY_INLINE T ellipse(const Vec3<T>& p, const Constant<T>* k) {
-  const Constant<T> zero = constant<T>(0.0), one = constant<T>(1.0), tiny = constant<T>(1e-15);
-  const auto upright = zero < k[3];
-  const T ax = abs(p.x), ay = abs(p.y);
-  const T x = select(upright, ay, ax), y = select(upright, ax, ay);
-  const T above = max(tiny, y);
-  const T sx = x * k[0], sy = above * k[1];
-  T u = max(sy, sx - k[2]);
+template <class C>
+struct Direction {
+  C x, y;
+};
+template <class C>
+HWY_INLINE Direction<C> ellipse_normal(const C& x, const C& y, C major, C minor, C focal) {
+  const C one = constant<C>(1.0), above = max(constant<C>(1e-15), y);
+  const C sx = x * major, sy = above * minor;
+  C u = max(sy, sx - focal);
   for (int i = 0; i < kEllipseSteps; ++i) {
-    const T v = u + k[2];
-    const T px = sqr(sx / v), py = sqr(sy / u);
-    const T squares = px + py, size = sqrt(squares);
-    const auto active = constant<T>(1 + 1e-8) < size;
+    const C v = u + focal;
+    const C px = sqr(sx / v), py = sqr(sy / u);
+    const C squares = px + py, size = sqrt(squares);
+    const auto active = constant<C>(1 + 1e-8) < size;
     if (!any(active)) break;
     u = select(active, u + squares * (size - one) / (px / v + py / u), u);
   }
-  const T nx = x * u / (u + k[2]);
-  const T scale = length(nx, above);
-  const T ux = nx / scale, uy = above / scale;
-  return x * ux + y * uy - length(ux * k[0], uy * k[1]);
+  const C along = x * u / (u + focal), scale = length(along, above);
+  return {along / scale, above / scale};
+}
+template <class T>
+HWY_INLINE T ellipse(const Vec3<T>& p, const Constant<T>* k) {
+  using C = Constant<T>;
+  const auto upright = constant<T>(0.0) < k[3];
+  const T ax = abs(p.x), ay = abs(p.y);
+  const T x = select(upright, ay, ax), y = select(upright, ax, ay);
+  const Direction<C> n = ellipse_normal<C>(value_of(x), value_of(y), k[0], k[1], k[2]);
+  return x * n.x + y * n.y - length(n.x * k[0], n.y * k[1]);
 }
 
 // The distance from a convex shape that both axes mirror rises with |x| and with |y|: its range is that of the

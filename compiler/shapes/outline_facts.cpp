@@ -61,9 +61,9 @@ Complaint check_sides(double sides, const char* name) {
   return fmt::format("`{}` is {}; it must be a whole number from 3 to 64", name, sides);
 }
 Complaint check_thickness(double thickness, double radius, const char* other) {
-  if (thickness <= radius) return std::nullopt;
-  return fmt::format("`thickness` {} is larger than `radius` {}, which leaves no hole; use `{}`", thickness, radius,
-                     other);
+  if (thickness < radius) return std::nullopt;
+  return fmt::format("`thickness` {} is not smaller than `radius` {}, which leaves no hole; use `{}`", thickness,
+                     radius, other);
 }
 
 // Mirror lines that fold half the plane onto a sector of 180 / n degrees from +y: each halves the number of sectors.
@@ -260,8 +260,10 @@ std::vector<double> star_immediates(Params p) {
   std::vector<double> k = sector_folds(static_cast<int>(p[0]));
   const dvec2 edge = polar(p[2], 180 / p[0]) - dvec2(0, p[1]);
   const double length = glm::length(edge);
-  const double convex = p[2] > p[1] * sine_cosine(180 / p[0]).cosine ? 1 : -1;
-  k.insert(k.end(), {edge.x / length, edge.y / length, length, p[1], convex});
+  // Between 30 and 150 degrees to the line through the centre the edge's side is certain enough.
+  const dvec2 outwards = polar(1, 180 / p[0]);
+  const double sine = std::abs(cross(edge, outwards)) / length, sign = glm::dot(edge, outwards) < 0 ? -1e30 : 1e30;
+  k.insert(k.end(), {edge.x / length, edge.y / length, length, p[1], sine > 0.5 ? 0 : sign});
   return k;
 }
 

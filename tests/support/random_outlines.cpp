@@ -37,8 +37,9 @@ std::vector<double> arc(Random& random) {
 
 std::vector<double> horseshoe(Random& random) {
   const double radius = random.length(0.2, 1.5), half = angle(random, false);
-  const double length = random.chance(0.2) ? 0 : size(random), thickness = share(random, radius);
-  return {radius, half, length, thickness};
+  const double length = random.chance(0.2) ? 0 : size(random),
+               thickness = std::min(0.999 * radius, share(random, radius));
+  return {radius, half, length, rounded(thickness)};
 }
 
 // Radii about a middle distance, in all directions: a simple polygon whichever way its corners go.
@@ -78,7 +79,9 @@ std::vector<double> attempt(Kind kind, Random& random) {
       return {random.chance(0.2) ? 64.0 : 3.0 + random.below(61), size(random)};
     case Kind::Star: {
       const double points = 3.0 + random.below(random.chance(0.5) ? 6 : 62), radius = size(random);
-      return {points, radius, share(random, radius)};
+      // With the inner corners on the straight lines between the tips, the star is a regular polygon.
+      const double flat = rounded(radius * std::cos(std::numbers::pi / points));
+      return {points, radius, random.chance(0.2) ? flat : share(random, radius)};
     }
     case Kind::Trapezoid:
       return {random.chance(0.15) ? 0 : size(random), random.chance(0.15) ? 0 : size(random), size(random)};
@@ -90,7 +93,7 @@ std::vector<double> attempt(Kind kind, Random& random) {
       return arc(random);
     case Kind::Ring: {
       const double radius = random.length(0.1, 1), half = angle(random, true);
-      return {radius, half, share(random, radius)};
+      return {radius, half, rounded(std::min(0.999 * radius, share(random, radius)))};
     }
     case Kind::Pie: {
       const double radius = size(random);
