@@ -84,7 +84,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const std::optional<syntax::File> file = read_json(source, diagnostics);
   if (!file) return std::nullopt;
   if (options.on_syntax) options.on_syntax(*file);
-  std::optional<Elaborated> elaborated = elaborate(*file, diagnostics);
+  std::optional<Elaborated> elaborated = elaborate(*file, diagnostics, options.definitions);
   if (!elaborated) return std::nullopt;
 
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);

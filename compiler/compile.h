@@ -10,6 +10,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
+#include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
 #include "compiler/graph.h"
 
@@ -20,6 +21,8 @@ struct CompileOptions {
   std::optional<std::string> stop_after;
   // Called with the distance graph before the first pass (as "graph") and after each pass.
   std::function<void(std::string_view pass, const Scene& scene)> on_pass;
+  // Values for the scene's parameters in place of its own.
+  Definitions definitions;
   // Called with what the front end read.
   std::function<void(const syntax::File& file)> on_syntax;
 };

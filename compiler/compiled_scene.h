@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,8 +65,18 @@ struct Background {
   glm::dvec3 bottom{0.0}, top{0.0};
 };
 
+// A number of the scene that formulas know by name and the command line can set.
+struct Parameter {
+  std::string name;
+  double value = 0;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  std::string doc;
+};
+
 // What a scene says beside its geometry.
 struct SceneTables {
+  std::vector<Parameter> parameters;  // in file order
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   Camera camera;

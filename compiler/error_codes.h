@@ -43,10 +43,23 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0303", "the camera looks at its own position"},
     {"E0304", "the camera's up is its direction of view"},
     {"E0305", "the program would be too long for the machine"},
+    // E04xx: formulas and parameters
+    {"E0401", "malformed formula"},
+    {"E0402", "unknown name in a formula"},
+    {"E0403", "unknown function in a formula"},
+    {"E0404", "a function with too few or too many arguments"},
+    {"E0405", "x, y or z where there is no point"},
+    {"E0406", "a formula nested too deep"},
+    {"E0407", "a name that a parameter or definition cannot have"},
+    {"E0408", "a parameter out of its range"},
+    // E05xx: the command line's values for a scene
+    {"E0501", "a value for a parameter that the scene does not have"},
+    {"E0502", "a value for a parameter out of its range"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},
     {"W0403", "large numbers cancel in float"},
+    {"W0404", "unused parameter"},
 };
 
 }  // namespace fathom::compiler

@@ -148,7 +148,7 @@ NodeId build_displacement(NodeMaker& maker, Params, std::span<const NodeId> chil
     box = unite(needed, box);
   }
   const bool proved = std::isfinite(bound.lipschitz);
-  const NodeId sum = maker.make(Kind::Add, {}, children, origin);
+  const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
   return bounded(maker, sum, box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
                  child.magnitude + magnitude_of(bound.float_error), proved && child.certified, origin);
 }

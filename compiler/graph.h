@@ -103,6 +103,8 @@ enum class Kind : std::uint8_t {
   // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
   // distance is multiplied by. Written in files as the properties scale, rotate and translate.
   Transform,
+  // Displaced: a distance plus a formula. An Add whose operands keep their order, for the surface is the first's.
+  Displaced,
   // Bounded: a formula as a distance, within a box (shapes/functions.cpp); what Displacement and Expression become.
   Bounded,
   // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes faster.

@@ -21,7 +21,7 @@ inline constexpr int kOpcodeCount = 0
     ;
 
 enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Machine };
-enum class Choice : std::uint8_t { None, Lesser, Greater, Carve };
+enum class Choice : std::uint8_t { None, Lesser, Greater, Carve, Either };
 
 // How an instruction changes the heights of the two stacks. `needs` is the height that must be there before.
 struct StackEffect {

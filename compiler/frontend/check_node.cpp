@@ -118,7 +118,7 @@ void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& 
 }
 
 void NodeChecker::check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node) {
-  const RecordReader reader(use_record(), record, use.name_span, diagnostics_, "E0301");
+  const RecordReader reader(use_record(), record, use.name_span, scope_, diagnostics_, "E0301");
   if (const std::string* name = text(reader.value("use"))) {
     node.word = *name;
     node.use = nodes_.resolve(*name, "named node", "E0203", use.value->span, diagnostics_);
@@ -139,7 +139,7 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
   node.word = *name;
   node.kind = row->kind;
   node.type_span = type.value->span;
-  const RecordReader reader(node_record(row->kind), record, type.value->span, diagnostics_, "E0301");
+  const RecordReader reader(node_record(row->kind), record, type.value->span, scope_, diagnostics_, "E0301");
   for (const ParamSpec& param : row->params) {
     const std::vector<double> numbers = reader.numbers(param.name);
     node.params.insert(node.params.end(), numbers.begin(), numbers.end());
@@ -171,7 +171,7 @@ void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
   glm::dmat3 rotation(1);
   if (rotate) {
     if (const auto* record = std::get_if<syntax::Record>(&rotate->data)) {
-      const RecordReader turn(rotation_record(), *record, opening(rotate->span), diagnostics_, "E0301");
+      const RecordReader turn(rotation_record(), *record, opening(rotate->span), scope_, diagnostics_, "E0301");
       if (turn.good()) rotation = rotation_about(turn.vec3("axis"), turn.number("angle"));
     } else {
       rotation = rotation_xyz(*three_numbers(*rotate));

@@ -11,6 +11,7 @@
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/checked_node.h"
 #include "compiler/frontend/record_reader.h"
+#include "compiler/frontend/scope.h"
 #include "compiler/frontend/syntax.h"
 
 namespace fathom::compiler {
@@ -37,8 +38,8 @@ class Names {
 
 class NodeChecker {
  public:
-  NodeChecker(Names& materials, Names& nodes, Diagnostics& diagnostics)
-      : materials_(materials), nodes_(nodes), diagnostics_(diagnostics) {}
+  NodeChecker(Names& materials, Names& nodes, const Scope& scope, Diagnostics& diagnostics)
+      : materials_(materials), nodes_(nodes), scope_(scope), diagnostics_(diagnostics) {}
 
   // The node, fit for building unless something was reported.
   CheckedNode check(const syntax::Value& value);
@@ -66,6 +67,7 @@ class NodeChecker {
 
   Names& materials_;
   Names& nodes_;
+  const Scope& scope_;
   Diagnostics& diagnostics_;
   std::vector<Pending> pending_;  // in place of recursion: nodes may be nested thousands deep
 };

@@ -65,7 +65,7 @@ void warn_of_unused(const CheckedScene& scene, Diagnostics& diagnostics) {
   }
 }
 
-CheckedScene check_nodes(const RecordReader& reader, Diagnostics& diagnostics) {
+CheckedScene check_nodes(const RecordReader& reader, const Scope& parameters, Diagnostics& diagnostics) {
   CheckedScene scene;
   const auto add_names = [&](const char* property, Names& names) {
     const syntax::Value* value = reader.value(property);
@@ -74,7 +74,7 @@ CheckedScene check_nodes(const RecordReader& reader, Diagnostics& diagnostics) {
   };
   add_names("materials", scene.material_names);
   add_names("nodes", scene.node_names);
-  NodeChecker checker(scene.material_names, scene.node_names, diagnostics);
+  NodeChecker checker(scene.material_names, scene.node_names, parameters, diagnostics);
   if (const syntax::Value* nodes = reader.value("nodes")) {
     for (const syntax::Property& named : std::get<syntax::Record>(nodes->data).properties) {
       CheckedNode& node = scene.named.emplace_back(checker.check(*named.value));
@@ -88,22 +88,23 @@ CheckedScene check_nodes(const RecordReader& reader, Diagnostics& diagnostics) {
   return scene;
 }
 
-Elaborated read_settings(const RecordReader& reader, Diagnostics& diagnostics) {
+Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnostics& diagnostics) {
   Elaborated out;
-  if (const syntax::Value* camera = reader.value("camera")) out.camera = read_camera(*camera, diagnostics);
-  if (const syntax::Value* film = reader.value("film")) out.film = read_film(*film, diagnostics);
-  if (const syntax::Value* render = reader.value("render")) out.settings = read_render(*render, diagnostics);
+  if (const syntax::Value* camera = reader.value("camera")) out.camera = read_camera(*camera, scope, diagnostics);
+  if (const syntax::Value* film = reader.value("film")) out.film = read_film(*film, scope, diagnostics);
+  if (const syntax::Value* render = reader.value("render")) out.settings = read_render(*render, scope, diagnostics);
   if (const syntax::Value* background = reader.value("background")) {
-    out.background = read_background(*background, diagnostics);
+    out.background = read_background(*background, scope, diagnostics);
   }
   if (const syntax::Value* materials = reader.value("materials"))
-    out.materials = read_materials(*materials, diagnostics);
+    out.materials = read_materials(*materials, scope, diagnostics);
   return out;
 }
 
 }  // namespace
 
-std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics) {
+std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
+                                    const Definitions& definitions) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
     diagnostics.error(
@@ -111,13 +112,17 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
         {"the smallest scene is {\"version\": 1, \"objects\": [{\"type\": \"sphere\", \"radius\": 1}]}"});
     return std::nullopt;
   }
-  const RecordReader reader(scene_record(), *record, opening(file.root.span), diagnostics);
+  const syntax::Property* params = record->find("params");
+  const Scope parameters = read_parameters(params ? params->value.get() : nullptr, definitions, diagnostics);
+  const RecordReader reader(scene_record(), *record, opening(file.root.span), parameters, diagnostics);
   check_version(reader, diagnostics);
-  Elaborated out = read_settings(reader, diagnostics);
-  const CheckedScene scene = check_nodes(reader, diagnostics);
+  Elaborated out = read_settings(reader, parameters, diagnostics);
+  const CheckedScene scene = check_nodes(reader, parameters, diagnostics);
   // With errors about, what seems unused may be meant by a misspelt name.
   if (diagnostics.has_errors()) return std::nullopt;
   warn_of_unused(scene, diagnostics);
+  warn_of_unused(parameters, diagnostics);
+  for (const Scope::Entry& entry : parameters.entries()) out.parameters.push_back(entry.parameter);
 
   SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);

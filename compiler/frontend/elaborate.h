@@ -7,6 +7,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
+#include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
 #include "compiler/graph.h"
 
@@ -17,7 +18,9 @@ struct Elaborated : SceneTables {
   Scene scene;
 };
 
-// Reports every semantic error of the file; nullopt when there was any.
-std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics);
+// Reports every semantic error of the file; nullopt when there was any. `definitions` are values for the scene's
+// parameters in place of its own.
+std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
+                                    const Definitions& definitions = {});
 
 }  // namespace fathom::compiler

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "compiler/frontend/suggest.h"
+#include "compiler/frontend/written_numbers.h"
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -121,14 +123,14 @@ std::string broken_rule(double number, const PropertySpec& spec) {
 
 struct Broken {
   std::string rule;
-  Span span;
+  const Value* value;
 };
 
 // The first number of the value that breaks a rule of its property.
 std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec) {
   if (const double* number = std::get_if<double>(&value.data)) {
     const std::string rule = broken_rule(*number, spec);
-    return rule.empty() ? std::nullopt : std::optional(Broken{rule, value.span});
+    return rule.empty() ? std::nullopt : std::optional(Broken{rule, &value});
   }
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) return std::nullopt;
@@ -140,17 +142,21 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
     const double* number = std::get_if<double>(&item.data);
     if (number == nullptr) continue;
     const std::string rule = broken_rule(*number, spec);
-    if (!rule.empty()) return Broken{rule, item.span};
+    if (!rule.empty()) return Broken{rule, &item};
     all_zero = all_zero && *number == 0;
   }
-  if (spec.rule == Rule::NotZero && all_zero) return Broken{"a direction, not the zero vector", value.span};
+  if (spec.rule == Rule::NotZero && all_zero) return Broken{"a direction, not the zero vector", &value};
   return std::nullopt;
 }
 
 std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("`{}`: {}", spec.name, spec.doc)}; }
 
 // Help for a value of the wrong type.
-std::vector<std::string> retype(const Value& value, const PropertySpec& spec) {
+std::vector<std::string> retype(const Value& value, const Value& written, const PropertySpec& spec) {
+  const bool number = std::holds_alternative<double>(value.data);
+  if (spec.type == ValueType::Integer && number && std::holds_alternative<std::string>(written.data)) {
+    return {about(spec)[0], "round(...), floor(...) and ceil(...) make whole numbers"};
+  }
   if (spec.type == ValueType::Nodes && std::holds_alternative<syntax::Record>(value.data)) {
     return {"put the node in brackets: [{...}]"};
   }
@@ -198,7 +204,9 @@ std::string describe(const Value& value) {
   struct Describer {
     std::string operator()(std::monostate) const { return "null"; }
     std::string operator()(bool b) const { return b ? "true" : "false"; }
-    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(double number) const {
+      return std::isnan(number) ? "not a number" : fmt::format("{}", number);
+    }
     std::string operator()(const std::string&) const { return "a string"; }
     std::string operator()(const syntax::List& list) const {
       if (list.empty()) return "an empty list";
@@ -233,9 +241,9 @@ void append_numbers(const Value& value, std::vector<double>& out) {
   }
 }
 
-RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, Diagnostics& diagnostics,
-                           const char* range_code)
-    : spec_(spec), diagnostics_(diagnostics), range_code_(range_code) {
+RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, const Scope& scope,
+                           Diagnostics& diagnostics, const char* range_code)
+    : spec_(spec), scope_(scope), diagnostics_(diagnostics), range_code_(range_code) {
   const std::size_t before = diagnostics.errors();
   for (const syntax::Property& property : record.properties) check(property);
   for (const PropertySpec& row : spec.properties) {
@@ -243,12 +251,11 @@ RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record,
     diagnostics.error("E0103", place, fmt::format("{} has no `{}`", spec.title, row.name),
                       fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
   }
-  good_ = diagnostics.errors() == before;
+  good_ = good_ && diagnostics.errors() == before;
 }
 
 void RecordReader::check(const syntax::Property& property) {
   const PropertySpec* row = spec_.find(property.name);
-  const Value& value = *property.value;
   if (row == nullptr) {
     std::vector<std::string> help = {did_you_mean(property.name, known_properties(spec_))};
     const std::string elsewhere = owner(spec_, property.name);
@@ -256,21 +263,34 @@ void RecordReader::check(const syntax::Property& property) {
     diagnostics_.error("E0102", property.name_span,
                        fmt::format("unknown property `{}` in {}", property.name, spec_.title),
                        fmt::format("not a {} property", spec_.noun), std::move(help));
-  } else if (!has_type(value, row->type)) {
-    diagnostics_.error("E0101", value.span,
-                       fmt::format("`{}` must be {}, not {}", row->name, expected(row->type), describe(value)), "",
-                       retype(value, *row));
-  } else if (const std::optional<Broken> broken = first_broken(value, *row)) {
-    diagnostics_.error(range_code_, broken->span, fmt::format("`{}` must be {}", row->name, broken->rule), "",
-                       about(*row));
+  } else if (!has_formulas(*property.value, row->type)) {
+    check_value(*property.value, *property.value, *row);
+  } else if (auto numbers = evaluated(*property.value, scope_, diagnostics_)) {
+    evaluated_.push_back(std::make_unique<const Value>(std::move(*numbers)));
+    check_value(*evaluated_.back(), *property.value, *row);
   } else {
-    fit_.push_back(&property);
+    good_ = false;
+  }
+}
+
+void RecordReader::check_value(const Value& value, const Value& written, const PropertySpec& row) {
+  if (!has_type(value, row.type)) {
+    const std::string formula = explain(written, value);
+    const std::string instead = formula.empty() ? ", not " + describe(value) : formula;
+    diagnostics_.error("E0101", value.span, fmt::format("`{}` must be {}{}", row.name, expected(row.type), instead),
+                       "", retype(value, written, row));
+  } else if (const std::optional<Broken> broken = first_broken(value, row)) {
+    diagnostics_.error(range_code_, broken->value->span,
+                       fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
+                       about(row));
+  } else {
+    fit_.push_back({row.name, &value});
   }
 }
 
 const Value* RecordReader::value(std::string_view name) const {
-  for (const syntax::Property* property : fit_) {
-    if (property->name == name) return property->value.get();
+  for (const Fit& fit : fit_) {
+    if (fit.name == name) return fit.value;
   }
   return nullptr;
 }

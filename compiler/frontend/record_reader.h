@@ -1,8 +1,12 @@
 // Checks a record of a scene file against its row in records.h and hands out the values.
+// Where the table wants numbers a record may have formulas of the scene's parameters; they are evaluated here, and
+// who reads the values sees numbers only.
+//
 // Tested by: tests/golden/diagnostics (E01xx, E0301), tests/compiler/elaborate_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +14,7 @@
 
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/records.h"
+#include "compiler/frontend/scope.h"
 #include "compiler/frontend/syntax.h"
 
 namespace fathom::compiler {
@@ -18,13 +23,14 @@ class RecordReader {
  public:
   // Reports every unknown, missing and unfit property. A missing one is reported at `place`; `range_code` is the code
   // of numbers that break their rule.
-  RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, Diagnostics& diagnostics,
-               const char* range_code = "E0104");
+  RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, const Scope& scope,
+               Diagnostics& diagnostics, const char* range_code = "E0104");
 
-  // Whether nothing was reported.
+  // Whether every value can be used; what is wrong with the others has been reported.
   bool good() const { return good_; }
 
-  // The value as given, when it is given and fit; else nullptr.
+  // The value as given, but with numbers for formulas, when it is given and fit; else nullptr. Lives as long as the
+  // reader.
   const syntax::Value* value(std::string_view name) const;
 
   // The number(s) given, or the table's default when absent or unfit; a required one that is absent reads as zeros.
@@ -33,13 +39,21 @@ class RecordReader {
   glm::dvec3 vec3(std::string_view name) const;
 
  private:
+  struct Fit {
+    std::string_view name;
+    const syntax::Value* value;
+  };
+
   void check(const syntax::Property& property);
+  void check_value(const syntax::Value& value, const syntax::Value& written, const PropertySpec& row);
 
   const RecordSpec& spec_;
+  const Scope& scope_;
   Diagnostics& diagnostics_;
   const char* range_code_;
   bool good_ = true;
-  std::vector<const syntax::Property*> fit_;
+  std::vector<Fit> fit_;
+  std::vector<std::unique_ptr<const syntax::Value>> evaluated_;  // values that had formulas in them
 };
 
 // "a number", "a string", "a list of 2", ...

@@ -130,13 +130,33 @@ const RecordSpec& scene_record() {
       "scene",
       {{"version", ValueType::Number, "1, the version of the scene format", {}, true, Rule::Any, {}, {}},
        other("$schema", ValueType::Anything, "ignored; for editors"),
+       other("params", ValueType::Named, "name -> parameter: a number that formulas can use"),
        other("camera", ValueType::Record, "where the picture is taken from"),
        other("film", ValueType::Record, "the picture"),
        other("render", ValueType::Record, "how much work to spend"),
-       other("background", ValueType::Gradient, "radiance of rays that leave the scene"),
+       {"background",
+        ValueType::Gradient,
+        "radiance of rays that leave the scene",
+        {},
+        false,
+        Rule::NotNegative,
+        {},
+        {}},
        other("materials", ValueType::Named, "name -> material"),
        other("nodes", ValueType::Named, "name -> node, for `use`"),
        other("objects", ValueType::Nodes, "the scene is their union", true)}};
+  return record;
+}
+
+const RecordSpec& parameter_record() {
+  static const RecordSpec record{
+      "",
+      "the parameter",
+      "parameter",
+      {{"default", ValueType::Number, "its value unless the command line gives one", {}, true, Rule::Any, {}, {}},
+       number("min", "the smallest value allowed", {}),
+       number("max", "the largest value allowed", {}),
+       other("doc", ValueType::Text, "what it does, for messages")}};
   return record;
 }
 

@@ -64,6 +64,7 @@ struct RecordSpec {
 };
 
 const RecordSpec& scene_record();
+const RecordSpec& parameter_record();  // of `params`
 const RecordSpec& film_record();
 const RecordSpec& render_record();
 const RecordSpec& gradient_record();  // of the background

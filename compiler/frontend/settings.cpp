@@ -66,12 +66,12 @@ void check_view(const Camera& camera, const RecordReader& reader, Span place, Di
 
 }  // namespace
 
-Camera read_camera(const syntax::Value& value, Diagnostics& diagnostics) {
+Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
   Camera camera;
   const auto& record = std::get<syntax::Record>(value.data);
   const RecordSpec* row = row_by_type(camera_records(), "camera", record, opening(value.span), diagnostics);
   if (row == nullptr) return camera;
-  const RecordReader reader(*row, record, opening(value.span), diagnostics);
+  const RecordReader reader(*row, record, opening(value.span), scope, diagnostics);
   if (record.find("fov") && record.find("fov_y") && row->find("fov")) {
     diagnostics.error("E0106", record.find("fov_y")->name_span, "both `fov` and `fov_y` are given",
                       "one follows from the other and the film's shape",
@@ -91,14 +91,16 @@ Camera read_camera(const syntax::Value& value, Diagnostics& diagnostics) {
   return camera;
 }
 
-Film read_film(const syntax::Value& value, Diagnostics& diagnostics) {
-  const RecordReader reader(film_record(), std::get<syntax::Record>(value.data), opening(value.span), diagnostics);
+Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
+  const RecordReader reader(film_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
+                            diagnostics);
   return {static_cast<int>(reader.number("width")), static_cast<int>(reader.number("height")),
           reader.number("exposure")};
 }
 
-RenderSettings read_render(const syntax::Value& value, Diagnostics& diagnostics) {
-  const RecordReader reader(render_record(), std::get<syntax::Record>(value.data), opening(value.span), diagnostics);
+RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
+  const RecordReader reader(render_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
+                            diagnostics);
   RenderSettings settings;
   settings.spp = static_cast<int>(reader.number("spp"));
   settings.bounces = static_cast<int>(reader.number("bounces"));
@@ -108,20 +110,16 @@ RenderSettings read_render(const syntax::Value& value, Diagnostics& diagnostics)
   return settings;
 }
 
-Background read_background(const syntax::Value& value, Diagnostics& diagnostics) {
+Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
   if (const auto* record = std::get_if<syntax::Record>(&value.data)) {
-    const RecordReader reader(gradient_record(), *record, opening(value.span), diagnostics);
+    const RecordReader reader(gradient_record(), *record, opening(value.span), scope, diagnostics);
     return {reader.vec3("bottom"), reader.vec3("top")};
   }
   const glm::dvec3 color = three_numbers(value).value_or(glm::dvec3(0));
-  if (color.x < 0 || color.y < 0 || color.z < 0) {
-    diagnostics.error("E0104", value.span, "`background` must be zero or positive", "",
-                      {"`background`: radiance of rays that leave the scene"});
-  }
   return {color, color};
 }
 
-std::vector<Material> read_materials(const syntax::Value& value, Diagnostics& diagnostics) {
+std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
   std::vector<Material> materials;
   for (const syntax::Property& property : std::get<syntax::Record>(value.data).properties) {
     Material& material = materials.emplace_back();
@@ -136,7 +134,7 @@ std::vector<Material> read_materials(const syntax::Value& value, Diagnostics& di
     }
     const RecordSpec* row = row_by_type(material_records(), "material", *record, property.name_span, diagnostics);
     if (row == nullptr) continue;
-    const RecordReader reader(*row, *record, property.name_span, diagnostics);
+    const RecordReader reader(*row, *record, property.name_span, scope, diagnostics);
     material.color = reader.vec3("color");
     if (row->type == "emissive") {
       material.type = Material::Type::Emissive;

@@ -7,16 +7,18 @@
 
 #include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
+#include "compiler/frontend/scope.h"
 #include "compiler/frontend/syntax.h"
 
 namespace fathom::compiler {
 
-// Each reads the value of the scene's property of that name and reports what is wrong with it; the result is of no
-// use when anything was.
-Camera read_camera(const syntax::Value& value, Diagnostics& diagnostics);
-Film read_film(const syntax::Value& value, Diagnostics& diagnostics);
-RenderSettings read_render(const syntax::Value& value, Diagnostics& diagnostics);
-Background read_background(const syntax::Value& value, Diagnostics& diagnostics);
-std::vector<Material> read_materials(const syntax::Value& value, Diagnostics& diagnostics);  // in file order
+// Each reads, with the scene's parameters in `scope`, the value of the scene's property of that name and reports what
+// is wrong with it; the result is of no use when anything was.
+Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope,
+                                     Diagnostics& diagnostics);  // in file order
 
 }  // namespace fathom::compiler

@@ -273,7 +273,7 @@ Code repetition_code(Params p) {
 
 // Polar repetition. Parameter: count. Derived: copies evaluated to either side (kAll: every one), the angle of the
 // child's middle about the y axis, the angle that copies left out keep from the half-plane through the nearest's
-// middle (radians), the child's reach and its lowest and highest y.
+// middle (radians), the child's reach, its lowest and highest y, and its distance from the axis.
 
 struct Wedge {
   double middle, half;  // radians
@@ -303,7 +303,8 @@ std::vector<double> derive_polar(Params p, std::span<const Knowledge> children) 
           sides == kAll ? 0 : sides * sector - wedge.half,
           child.reach > 0 ? child.reach : 0.25,
           std::clamp(child.box.lo.y, -kNoLimit, kNoLimit),
-          std::clamp(child.box.hi.y, -kNoLimit, kNoLimit)};
+          std::clamp(child.box.hi.y, -kNoLimit, kNoLimit),
+          radius_about_y(child.box)};
 }
 
 Complaint check_polar(Params p) {
@@ -329,6 +330,7 @@ Knowledge know_polar(Params p, std::span<const Knowledge> children) {
   k.reach_max = std::min(k.reach_max, k.reach);
   if (p[1] == kAll) return k;
   k.magnitude += radius;  // the angle's sine and cosine are rounded
+  k.reach = k.reach_max = 1;  // the box's own distance is part of the result
   return only_bound(k);
 }
 
@@ -348,7 +350,11 @@ Code polar_code(Params p) {
   }
   code.after = {{Opcode::SectorLimit, {1 / angle, 0.5 - middle / angle, angle, middle, apart, p[5], p[6]}}};
   if (reach != 1) code.after.push_back({Opcode::Scale, {reach}});
-  code.after.push_back({Opcode::Min});
+  // From afar the neighbours' wedges seem close: the box says how far all of it is.
+  const double radius = p[7];
+  code.after.insert(code.after.end(), {{Opcode::Min},
+                                       {Opcode::BoxBetween, {-radius, p[5], -radius, radius, p[6], radius}},
+                                       {Opcode::Max}});
   return code;
 }
 
@@ -520,13 +526,12 @@ Knowledge know_bend(Params p, std::span<const Knowledge> children) {
 }
 
 Code bend_code(Params p) {
-  const double radius = p[1], side = p[2], inner = p[3], lipschitz = p[4];
+  const double radius = p[1], side = p[2], inner = p[3];
   Code code{.points = {{{Opcode::Bend, {radius, side, inner}}}}};
   code.after = {{Opcode::BendLimit, {radius, side, inner, p[5], p[6], p[7], p[8], p[9]}},
                 {Opcode::Min},
-                {Opcode::BoxBetween, {p[10], p[11], p[7], p[12], p[13], p[8]}}};
-  if (lipschitz != 1) code.after.push_back({Opcode::Scale, {lipschitz}});
-  code.after.push_back({Opcode::Max});
+                {Opcode::BoxBetween, {p[10], p[11], p[7], p[12], p[13], p[8]}},
+                {Opcode::Max}};
   return code;
 }
 

@@ -2,6 +2,7 @@
 // Tested by: tests/runtime/cli_test.cpp
 #include <fmt/format.h>
 
+#include <limits>
 #include <ostream>
 
 #include "runtime/cli/scene_file.h"
@@ -9,6 +10,8 @@
 
 namespace fathom::cli {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr const char* kExamples =
     "fathom check scene.json\n"
@@ -21,11 +24,25 @@ std::string describe(std::string_view name, const vm::VerifiedProgram& program) 
                      count_of(program.max_points(), "point"), count_of(program.cost(), "multiply-add"));
 }
 
+// A line each, as -D takes them.
+std::string describe(const std::vector<compiler::Parameter>& parameters) {
+  std::string out;
+  for (const compiler::Parameter& parameter : parameters) {
+    out += fmt::format("  -D {}={}", parameter.name, parameter.value);
+    if (parameter.min > -kInfinity || parameter.max < kInfinity) {
+      out += fmt::format("  [{}, {}]", parameter.min, parameter.max);
+    }
+    out += (parameter.doc.empty() ? "" : "  " + parameter.doc) + "\n";
+  }
+  return out;
+}
+
 std::string report(const compiler::CompiledScene& scene) {
   return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
          describe("distance", scene.distance) + describe("surface", scene.surface) +
          fmt::format("  {}, {}\n", count_of(scene.materials.size(), "material"),
-                     count_of(scene.surfaces.size(), "surface"));
+                     count_of(scene.surfaces.size(), "surface")) +
+         describe(scene.parameters);
 }
 
 }  // namespace
@@ -40,8 +57,8 @@ int run_check(std::span<const std::string> args, const Streams& streams) {
   auto source = read_scene(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   const auto scene = compile_scene(std::get<compiler::Source>(std::move(source)), scene_arguments, streams);
-  if (!scene) return kFoundProblems;
-  streams.out << report(*scene);
+  if (const auto* code = std::get_if<ExitCode>(&scene)) return *code == kBadScene ? kFoundProblems : *code;
+  streams.out << report(std::get<compiler::CompiledScene>(scene));
   return kDone;
 }
 

@@ -71,14 +71,15 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (request.stage == kGraph) {
     options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = print_graph(scene, source); };
   }
-  const auto scene = compile_scene(source, request.scene, streams, options);
+  const auto compiled = compile_scene(source, request.scene, streams, options);
   if (request.stage == kSyntax) streams.out << syntax;  // of a scene with errors in it, too
-  if (!scene) return kBadScene;
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (request.stage == kGraph) streams.out << graph;
   if (request.stage == kBytecode) {
-    const vm::VerifiedProgram& program = request.program == 1 ? scene->surface : scene->distance;
+    const vm::VerifiedProgram& program = request.program == 1 ? scene.surface : scene.distance;
     if (!request.stats) {
-      streams.out << fmt::format("; {}: {}\n", request.program == 1 ? "surface" : "distance", scene->summary);
+      streams.out << fmt::format("; {}: {}\n", request.program == 1 ? "surface" : "distance", scene.summary);
     }
     streams.out << (request.stats ? operation_table(program) : vm::disassemble(program));
   }

@@ -140,16 +140,17 @@ int run_eval(std::span<const std::string> args, const Streams& streams) {
   }
   compiler::CompileOptions options;
   options.stop_after = request.after;
-  const auto scene = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams, options);
-  if (!scene) return kBadScene;
+  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams, options);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
 
-  if (request.number == kF64) print_f64(*scene, request.points, streams.out);
-  if (request.number == kF32) print_f32(*scene, request.points, streams.out);
+  if (request.number == kF64) print_f64(scene, request.points, streams.out);
+  if (request.number == kF32) print_f32(scene, request.points, streams.out);
   if (request.number == kRange) {
     std::vector<PointBox> boxes;
     for (const glm::dvec3& point : request.points) boxes.push_back({point, point});
     boxes.insert(boxes.end(), request.boxes.begin(), request.boxes.end());
-    print_ranges(*scene, boxes, streams.out);
+    print_ranges(scene, boxes, streams.out);
   }
   return kDone;
 }

@@ -165,20 +165,21 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
 
   Verbosity verbosity(request.verbosity, streams);
-  auto scene = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams,
-                             verbosity.watch_compiler());
-  if (!scene) return kBadScene;
-  if (const auto code = override_scene(request, *scene, streams)) return *code;
-  verbosity.describe(*scene, runtime::resolve(*scene, request.options));
+  auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams,
+                                verbosity.watch_compiler());
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  auto& scene = std::get<compiler::CompiledScene>(compiled);
+  if (const auto code = override_scene(request, scene, streams)) return *code;
+  verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.no_denoise && request.verbosity > 0)
     note(streams, "there is no denoiser; --no-denoise changes nothing");
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
   }
 
-  const runtime::RenderResult result = render_with_progress(request, *scene, streams);
+  const runtime::RenderResult result = render_with_progress(request, scene, streams);
   if (!request.quiet) streams.err << runtime::to_table(result.stats);
-  if (const auto code = write_all(request, *scene, result, streams)) return *code;
+  if (const auto code = write_all(request, scene, result, streams)) return *code;
   return kDone;
 }
 

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "compiler/frontend/formula.h"
+
 namespace fathom::cli {
 namespace {
 
@@ -25,10 +27,35 @@ std::variant<std::string, Unreadable> read_all(std::istream& in) {
   return text;
 }
 
+// "r=0.5" or "angle=pi/4".
+Verdict read_definition(std::string_view text, std::pair<std::string, double>& definition) {
+  const std::size_t middle = text.find('=');
+  if (middle == std::string_view::npos || middle == 0) {
+    return Complaint{fmt::format("`{}` is not a name and a value", text), "write it as r=0.5"};
+  }
+  const std::string_view formula = text.substr(middle + 1);
+  compiler::Diagnostics diagnostics;
+  const auto value = compiler::read_number({{}, std::string(formula)}, compiler::Scope(), diagnostics);
+  if (!value) {
+    const compiler::Diagnostic& first = diagnostics.all().front();
+    return Complaint{fmt::format("`{}`: {}", formula, first.message), first.help.empty() ? "" : first.help.front()};
+  }
+  definition = {std::string(text.substr(0, middle)), *value};
+  return std::nullopt;
+}
+
+// Whether anything is wrong with the command line's values for parameters (E05xx).
+bool about_definitions(const compiler::Diagnostics& diagnostics) {
+  const auto& all = diagnostics.all();
+  return std::any_of(all.begin(), all.end(), [](const auto& d) { return d.code.starts_with("E05"); });
+}
+
 }  // namespace
 
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene) {
   arguments.positional("scene", "The scene, a JSON file; - reads standard input", scene.path);
+  arguments.option("-D,--define", "NAME=VALUE", "A parameter's value: a number, or a formula such as pi/4",
+                   append_to(read_definition, scene.definitions));
   arguments.option("--error-format", "FORMAT", "How to print what is wrong with the scene: text, short or json",
                    one_of({"text", "short", "json"}, scene.error_format));
 }
@@ -54,12 +81,13 @@ std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& argume
   return compiler::Source(arguments.path == "-" ? "<stdin>" : arguments.path, std::get<std::string>(std::move(text)));
 }
 
-std::optional<compiler::CompiledScene> compile_scene(compiler::Source source, const SceneArguments& arguments,
-                                                     const Streams& streams,
-                                                     const compiler::CompileOptions& options) {
+std::variant<compiler::CompiledScene, ExitCode> compile_scene(compiler::Source source,
+                                                              const SceneArguments& arguments, const Streams& streams,
+                                                              compiler::CompileOptions options) {
   const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
   const compiler::Source copy = source;
   compiler::Diagnostics diagnostics;
+  options.definitions = arguments.definitions;
   auto scene = compiler::compile(std::move(source), diagnostics, options);
   const std::string printed = diagnostics.print(copy, format, streams.color);
   streams.err << printed;
@@ -68,7 +96,8 @@ std::optional<compiler::CompiledScene> compile_scene(compiler::Source source, co
     streams.err << copy.name() << ": " << count_of(errors, "error")
                 << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
   }
-  return scene;
+  if (scene) return std::move(*scene);
+  return about_definitions(diagnostics) ? kUsage : kBadScene;
 }
 
 Setter pass_name(std::optional<std::string>& target) {

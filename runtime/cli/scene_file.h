@@ -12,11 +12,12 @@
 namespace fathom::cli {
 
 struct SceneArguments {
-  std::string path;      // "-": standard input
-  int error_format = 0;  // a compiler::ErrorFormat
+  std::string path;                   // "-": standard input
+  int error_format = 0;               // a compiler::ErrorFormat
+  compiler::Definitions definitions;  // values for the scene's parameters
 };
 
-// The positional argument and --error-format.
+// The positional argument, --define and --error-format.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene);
 
 // The text of a file, or of standard input for "-"; otherwise the reason, for people.
@@ -31,10 +32,11 @@ std::string quoted(const std::string& path);
 // The scene's text, or the exit code after a message.
 std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
 
-// Compiles and prints the diagnostics, warnings too. nullopt when there were errors.
-std::optional<compiler::CompiledScene> compile_scene(compiler::Source source, const SceneArguments& arguments,
-                                                     const Streams& streams,
-                                                     const compiler::CompileOptions& options = {});
+// Compiles and prints the diagnostics, warnings too. When there were errors, kBadScene, or kUsage for values that the
+// scene's parameters cannot have.
+std::variant<compiler::CompiledScene, ExitCode> compile_scene(compiler::Source source,
+                                                              const SceneArguments& arguments, const Streams& streams,
+                                                              compiler::CompileOptions options = {});
 
 // A Setter for the name of a pass, or "graph" for "before the first pass".
 Setter pass_name(std::optional<std::string>& target);

@@ -1,5 +1,6 @@
 // Every diagnostic as the user sees it: tests/golden/diagnostics/*.txt hold a scene and, after the line
-// "----- expected", what is printed for it. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
+// "----- expected", what is printed for it. A scene may open with lines `// -D name=number`, values for its
+// parameters. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
 #include "compiler/diagnostics.h"
 
 #include <algorithm>
@@ -23,9 +24,21 @@ using fathom::tests::check_golden;
 using fathom::tests::golden_files;
 using fathom::tests::read_file;
 
+Definitions definitions_in(const std::string& scene) {
+  Definitions definitions;
+  std::istringstream lines(scene);
+  for (std::string line; std::getline(lines, line) && line.starts_with("// -D ");) {
+    const std::size_t name = 6, middle = line.find('=');
+    definitions.emplace_back(line.substr(name, middle - name), std::stod(line.substr(middle + 1)));
+  }
+  return definitions;
+}
+
 Diagnostics diagnose(const Source& source) {
   Diagnostics diagnostics;
-  compile(source, diagnostics);
+  CompileOptions options;
+  options.definitions = definitions_in(source.text());
+  compile(source, diagnostics, options);
   return diagnostics;
 }
 

@@ -272,8 +272,11 @@ Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
     }
     const double a = sum.distance, b = next.distance, gap = std::abs(b - a);
     if (special) {
+      const double margin = std::min({sum.margin, next.margin, gap, std::abs(a + b)});
+      // Of an xor the operand whose distance it is: the lesser, or the greater turned inside out.
+      const bool second = kind == Kind::Xor && ((a + b > 0) == (b < a));
       const double value = kind == Kind::Xor ? xor_of(a, b) : (1 - params[0]) * a + params[0] * b;
-      sum = {value, sum.surface, std::min({sum.margin, next.margin, gap, std::abs(a + b)})};
+      sum = {value, second ? next.surface : sum.surface, margin};
       continue;
     }
     const double to_edge_of_blend = k > 0 ? std::abs(gap - k) : kInfinity;
@@ -297,6 +300,9 @@ Verdict alteration(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
   }
   const double value = altered(kind, k, p, least.distance);
   const bool folds = kind == Kind::Onion || kind == Kind::Complement;
+  // Where the way to what is left out decides, the value is no surface's.
+  const bool limited = kind == Kind::Repetition || kind == Kind::PolarRepetition || kind == Kind::Bend;
+  if (limited && value != least.distance) least.margin = 0;
   return {value, least.surface, folds ? std::min(least.margin, std::abs(least.distance)) : least.margin};
 }
 
@@ -305,6 +311,11 @@ Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const compiler::Category category = compiler::spec(kind).category;
   if (category == compiler::Category::Primitive) return {primitive(kind, graph.params(node), p), paint, kInfinity};
   if (category == compiler::Category::Combinator) return combinator(graph, node, p, paint);
+  if (kind == Kind::Displaced) {
+    Verdict sum = visit(graph, graph.children(node)[0], p, paint);
+    sum.distance += visit(graph, graph.children(node)[1], p, paint).distance;
+    return sum;
+  }
   if (category == compiler::Category::Function) return {judge_number(graph, node, p), paint, kInfinity};
   if (kind == Kind::Paint) paint = static_cast<std::uint32_t>(graph.params(node)[0]);
   return alteration(graph, node, p, paint);

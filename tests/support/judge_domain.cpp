@@ -38,6 +38,13 @@ double met(double a, double b) {
   return std::hypot(a, b);
 }
 
+// Exact inside and outside.
+double box_distance(dvec3 p, dvec3 lo, dvec3 hi) {
+  const dvec3 beyond = glm::max(lo - p, p - hi);
+  const double inside = std::max({beyond.x, beyond.y, beyond.z});
+  return inside <= 0 ? inside : glm::length(glm::max(beyond, dvec3(0)));
+}
+
 // One of 289 shifts for each cell: the permutation n -> n (34 n + 1) mod 289 in whole numbers.
 long permuted(long n) {
   const long m = ((n % 289) + 289) % 289;
@@ -116,12 +123,13 @@ std::vector<dvec3> around(Params k, dvec3 p) {
   }
   return points;
 }
-double polar_limit(Params k, dvec3 p) {
-  if (k[1] < 0) return kInfinity;
+double polar_value(Params k, dvec3 p, double child) {
+  if (k[1] < 0) return child;
   const double sector = 2 * std::numbers::pi / k[0];
   const double aside = std::abs(std::remainder(std::atan2(p.z, p.x) - k[2], sector)) + k[3];
   const double across = std::hypot(p.x, p.z) * (aside < std::numbers::pi / 2 ? std::sin(aside) : 1);
-  return k[4] * std::hypot(across, outside(p.y, k[5], k[6]));
+  const double limit = k[4] * std::hypot(across, outside(p.y, k[5], k[6]));
+  return std::max(std::min(child, limit), box_distance(p, {-k[7], k[5], -k[7]}, {k[7], k[6], k[7]}));
 }
 
 // Parameters: turn; derived: radius, side, inner radius, Lipschitz constant, ... (compiler/shapes/domain.cpp).
@@ -135,10 +143,7 @@ double bent_value(Params k, dvec3 p, double child) {
   const double to_seam = (down < 0 ? std::abs(p.x) : rho) + k[6];
   const double limit = std::hypot(std::min(to_middle, to_seam), outside(p.z, k[7], k[8]) * k[9]);
   const dvec3 lo(k[10], k[11], k[7]), hi(k[12], k[13], k[8]);
-  const dvec3 beyond = glm::max(lo - p, p - hi);
-  const double to_box = std::max({beyond.x, beyond.y, beyond.z}) <= 0 ? std::max({beyond.x, beyond.y, beyond.z})
-                                                                      : glm::length(glm::max(beyond, dvec3(0)));
-  return std::max(std::min(child, limit), k[4] * to_box);
+  return std::max(std::min(child, limit), box_distance(p, lo, hi));
 }
 
 double taper_scale(Params k, double y) {
@@ -158,9 +163,7 @@ double pulled_apart(Params k, dvec3 p, double child) {
 }
 
 double box_met(Params k, dvec3 p, double child) {
-  const dvec3 beyond = glm::max(vec(k, 0) - p, p - vec(k, 3));
-  const double inside = std::max({beyond.x, beyond.y, beyond.z});
-  return met(child, k[6] * (inside <= 0 ? inside : glm::length(glm::max(beyond, dvec3(0)))));
+  return met(child, k[6] * box_distance(p, vec(k, 0), vec(k, 3)));
 }
 
 }  // namespace
@@ -219,7 +222,7 @@ double altered(Kind kind, Params k, dvec3 p, double child) {
     case Kind::Repetition:
       return std::min(child, repetition_limit(k, p));
     case Kind::PolarRepetition:
-      return std::min(child, polar_limit(k, p));
+      return polar_value(k, p, child);
     case Kind::Twist:
       return tube_met(child, p, k[1], k[2]);
     case Kind::Taper:

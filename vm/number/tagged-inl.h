@@ -25,8 +25,7 @@ HWY_INLINE Tagged<T> operator-(const Tagged<T>& a) {
 }
 template <class T>
 HWY_INLINE Tagged<T> operator+(const Tagged<T>& a, const Tagged<T>& b) {
-  // A formula added to a distance has no surface of its own.
-  return {a.v + b.v, select(a.surface < constant<T>(0.0), b.surface, a.surface)};
+  return {a.v + b.v, a.surface};
 }
 template <class T>
 HWY_INLINE Tagged<T> operator-(const Tagged<T>& a, const Tagged<T>& b) {

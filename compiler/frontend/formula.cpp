@@ -1,0 +1,76 @@
+#include "compiler/frontend/formula.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "compiler/frontend/formula_evaluate.h"
+#include "compiler/frontend/formula_parser.h"
+
+namespace fathom::compiler {
+namespace {
+
+// Reads `name = expression` into the context. A name whose expression is in error is defined all the same, so that
+// the lines after it are read as they were meant.
+void read_definition(const FormulaText& text, FormulaContext& context, std::span<const FunctionSpec> functions) {
+  FormulaParser parser(text, context);
+  const std::optional<Token> name = parser.definition();
+  if (!name) return;
+  const Span place = text.span_of(name->text);
+  std::string misfit = misfit_name(name->text, functions);
+  if (misfit.empty() && context.scope.use(name->text)) misfit = "is a parameter of the scene";
+  if (misfit.empty() && context.definitions.contains(name->text)) misfit = "is defined already";
+  if (!misfit.empty()) {
+    context.diagnostics.error("E0407", place, fmt::format("the name `{}` {}", name->text, misfit), "",
+                              {"choose another name"});
+    context.good = false;
+  }
+  const auto value = parser.expression_to_end();
+  context.definitions.emplace(name->text, value ? *value : context.builder.constant(0, place));
+}
+
+std::optional<Formula> finish(FormulaContext& context, std::optional<FormulaId> root) {
+  if (!root || !context.good) return std::nullopt;
+  return std::move(context.builder).finish(*root);
+}
+
+std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& context,
+                                  std::span<const FunctionSpec> functions) {
+  std::optional<FormulaId> result;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto* line = std::get_if<std::string>(&lines[i].data);
+    if (line == nullptr) {
+      context.diagnostics.error("E0101", lines[i].span, "a line of a formula must be a string");
+      context.good = false;
+    } else if (i + 1 < lines.size()) {
+      read_definition({*line, lines[i].span}, context, functions);
+    } else {
+      result = FormulaParser({*line, lines[i].span}, context).expression_to_end();
+    }
+  }
+  return finish(context, result);
+}
+
+}  // namespace
+
+std::optional<Formula> read_formula(const syntax::Value& value, const Scope& scope,
+                                    std::span<const FunctionSpec> functions, Diagnostics& diagnostics) {
+  FormulaContext context{scope, formula_functions(functions), true, diagnostics};
+  const auto* lines = std::get_if<syntax::List>(&value.data);
+  if (lines && !lines->empty()) return read_lines(*lines, context, functions);
+  if (const auto* text = std::get_if<std::string>(&value.data)) {
+    return finish(context, FormulaParser({*text, value.span}, context).expression_to_end());
+  }
+  diagnostics.error("E0101", value.span, "a formula must be a string or a list of strings", "",
+                    {"such as \"length(x, y, z) - 1\" or [\"d = length(x, z)\", \"d - 1\"]"});
+  return std::nullopt;
+}
+
+std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
+  FormulaContext context{scope, formula_functions(constant_functions()), false, diagnostics};
+  const FormulaText text{std::get<std::string>(value.data), value.span};
+  const std::optional<Formula> formula = finish(context, FormulaParser(text, context).expression_to_end());
+  return formula ? std::optional(evaluate(*formula)) : std::nullopt;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,86 @@
+#include "compiler/frontend/formula_builder.h"
+
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "compiler/frontend/formula_evaluate.h"
+
+namespace fathom::compiler {
+namespace {
+
+// A product of 64 factors rounds 7 times when it is made of squares, no more than a power by logarithms would.
+constexpr double kLargestWhole = 64;
+
+constexpr std::string_view kAxes = "xyz";
+
+}  // namespace
+
+FormulaId FormulaBuilder::constant(double value, Span span) {
+  nodes_.push_back({"const", value, {}, span});
+  return static_cast<FormulaId>(nodes_.size() - 1);
+}
+
+FormulaId FormulaBuilder::coordinate(char axis, Span span) {
+  nodes_.push_back({kAxes.substr(kAxes.find(axis), 1), 0, {}, span});
+  return static_cast<FormulaId>(nodes_.size() - 1);
+}
+
+FormulaId FormulaBuilder::call(std::string_view function, std::span<const FormulaId> arguments, Span span) {
+  std::vector<double> values;
+  for (const FormulaId argument : arguments) {
+    if (const auto value = known(argument)) values.push_back(*value);
+  }
+  if (values.size() == arguments.size()) {
+    if (const auto value = call_function(function, values)) return constant(*value, span);
+  }
+  nodes_.push_back({function, 0, {arguments.begin(), arguments.end()}, span});
+  return static_cast<FormulaId>(nodes_.size() - 1);
+}
+
+FormulaId FormulaBuilder::power(FormulaId base, FormulaId exponent, Span span) {
+  const FormulaMaker make{*this, span};
+  const auto n = known(exponent);
+  if (!n) return make("power", {base, exponent});
+  const double size = std::abs(*n);
+  const bool whole = size <= kLargestWhole && size == std::floor(size);
+  if (!whole && size != 0.5) return make("power", {base, exponent});
+  const FormulaId result = whole ? whole_power(base, static_cast<unsigned>(size), span) : make("sqrt", {base});
+  return *n < 0 ? make("divide", {make(1.0), result}) : result;
+}
+
+// From the exponent's highest bit down: square, and multiply where the bit is set.
+FormulaId FormulaBuilder::whole_power(FormulaId base, unsigned exponent, Span span) {
+  const FormulaMaker make{*this, span};
+  if (exponent == 0) return make(1.0);
+  FormulaId result = base;
+  for (unsigned bit = std::bit_floor(exponent) / 2; bit > 0; bit /= 2) {
+    result = make("square", {result});
+    if (exponent & bit) result = make("multiply", {result, base});
+  }
+  return result;
+}
+
+std::optional<double> FormulaBuilder::known(FormulaId node) const {
+  return nodes_[node].function == "const" ? std::optional(nodes_[node].value) : std::nullopt;
+}
+
+Formula FormulaBuilder::finish(FormulaId root) && {
+  std::vector<bool> needed(root + 1, false);
+  needed[root] = true;
+  for (FormulaId id = root + 1; id-- > 0;) {
+    if (!needed[id]) continue;
+    for (const FormulaId argument : nodes_[id].arguments) needed[argument] = true;
+  }
+  Formula formula;
+  std::vector<FormulaId> places(root + 1, 0);
+  for (FormulaId id = 0; id <= root; ++id) {
+    if (!needed[id]) continue;
+    places[id] = static_cast<FormulaId>(formula.nodes.size());
+    Formula::Node& node = formula.nodes.emplace_back(std::move(nodes_[id]));
+    for (FormulaId& argument : node.arguments) argument = places[argument];
+  }
+  return formula;
+}
+
+}  // namespace fathom::compiler

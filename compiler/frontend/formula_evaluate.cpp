@@ -1,0 +1,90 @@
+#include "compiler/frontend/formula_evaluate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "vm/check.h"
+
+namespace fathom::compiler {
+namespace {
+
+struct Row {
+  std::string_view name;
+  std::size_t arity;
+  double (*apply)(double a, double b);  // b is 0 for functions of one argument
+};
+
+// This table alone uses libm, whose sin, exp, pow and their like may differ in the last bit from machine to machine;
+// it is to be replaced by the machine's own functions. The others are exact or correctly rounded everywhere.
+constexpr Row kRows[] = {
+    {"add", 2, [](double a, double b) { return a + b; }},
+    {"minus", 2, [](double a, double b) { return a - b; }},
+    {"multiply", 2, [](double a, double b) { return a * b; }},
+    {"divide", 2, [](double a, double b) { return a / b; }},
+    {"negate", 1, [](double a, double) { return -a; }},
+    {"abs", 1, [](double a, double) { return std::abs(a); }},
+    {"square", 1, [](double a, double) { return a * a; }},
+    {"sqrt", 1, [](double a, double) { return std::sqrt(a); }},
+    {"sin", 1, [](double a, double) { return std::sin(a); }},
+    {"cos", 1, [](double a, double) { return std::cos(a); }},
+    {"tan", 1, [](double a, double) { return std::tan(a); }},
+    {"asin", 1, [](double a, double) { return std::asin(a); }},
+    {"acos", 1, [](double a, double) { return std::acos(a); }},
+    {"atan", 1, [](double a, double) { return std::atan(a); }},
+    {"atan2", 2, [](double a, double b) { return std::atan2(a, b); }},
+    {"exp", 1, [](double a, double) { return std::exp(a); }},
+    {"log", 1, [](double a, double) { return std::log(a); }},
+    {"power", 2, [](double a, double b) { return std::pow(a, b); }},
+    {"floor", 1, [](double a, double) { return std::floor(a); }},
+    {"ceil", 1, [](double a, double) { return std::ceil(a); }},
+    {"nearest", 1, [](double a, double) { return std::nearbyint(a); }},  // halves to the even neighbour
+    {"sign", 1, [](double a, double) { return a > 0   ? 1.0
+                                              : a < 0 ? -1.0
+                                                      : a; }},
+    // Not a number when either is, so that it is not lost on the way.
+    {"min", 2, [](double a, double b) { return a < b || a != a ? a : b; }},
+    {"max", 2, [](double a, double b) { return a > b || a != a ? a : b; }},
+    {"modulo", 2, [](double a, double b) { return a - b * std::floor(a / b); }},
+    {"step", 2, [](double edge, double v) { return v < edge    ? 0.0
+                                                   : v >= edge ? 1.0
+                                                               : v - edge; }},
+};
+
+template <std::size_t n>
+constexpr std::array<FunctionSpec, n> specs(const Row (&rows)[n]) {
+  std::array<FunctionSpec, n> out{};
+  for (std::size_t i = 0; i < n; ++i) out[i] = {rows[i].name, static_cast<int>(rows[i].arity)};
+  return out;
+}
+
+}  // namespace
+
+std::span<const FunctionSpec> constant_functions() {
+  static constexpr auto functions = specs(kRows);
+  return functions;
+}
+
+std::optional<double> call_function(std::string_view function, std::span<const double> arguments) {
+  for (const Row& row : kRows) {
+    if (row.name != function || row.arity != arguments.size()) continue;
+    return row.apply(arguments[0], row.arity == 2 ? arguments[1] : 0);
+  }
+  return std::nullopt;
+}
+
+double evaluate(const Formula& formula) {
+  std::vector<double> values, arguments;
+  values.reserve(formula.nodes.size());
+  for (const Formula::Node& node : formula.nodes) {
+    arguments.clear();
+    for (const std::uint32_t argument : node.arguments) arguments.push_back(values[argument]);
+    const auto value = node.function == "const" ? std::optional(node.value) : call_function(node.function, arguments);
+    CHECK(value.has_value(), "a formula without x, y and z, of functions that are known here");
+    values.push_back(*value);
+  }
+  return values.back();
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,19 @@
+// The functions of formulas in double: what a scene's numbers are evaluated with.
+// Tested by: tests/compiler/formula_test.cpp
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "compiler/frontend/formula.h"
+
+namespace fathom::compiler {
+
+// Every function that call_function() knows, operators too.
+std::span<const FunctionSpec> constant_functions();
+
+// nullopt when there is no function of this name with this many arguments.
+std::optional<double> call_function(std::string_view function, std::span<const double> arguments);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,87 @@
+// One line of a formula: the parser behind read_formula().
+// Tested by: tests/compiler/formula_test.cpp, tests/golden/diagnostics (E04xx)
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/frontend/formula_builder.h"
+#include "compiler/frontend/formula_functions.h"
+#include "compiler/frontend/formula_lexer.h"
+
+namespace fathom::compiler {
+
+// What the lines of a formula share.
+struct FormulaContext {
+  const Scope& scope;
+  std::vector<FormulaFunction> functions;
+  bool has_point;  // whether there are x, y and z
+  Diagnostics& diagnostics;
+  FormulaBuilder builder = {};
+  std::map<std::string, FormulaId, std::less<>> definitions = {};
+  bool good = true;  // whether the result can be used
+};
+
+// Where a line's characters are in the scene's text.
+struct FormulaText {
+  std::string_view text;
+  Span span;  // of the string with its quotes
+
+  // An empty part is given the character after it, the closing quote at the text's end.
+  Span span_of(std::string_view part) const;
+};
+
+class FormulaParser {
+ public:
+  FormulaParser(const FormulaText& text, FormulaContext& context);
+
+  // "name =" at the line's begin; nullopt, after a report, when there is none.
+  std::optional<Token> definition();
+
+  // The rest of the line; nullopt after an error that ended the reading. Unknown names and calls do not: they are
+  // reported, spoil the context's `good`, and something stands in for them.
+  std::optional<FormulaId> expression_to_end();
+
+ private:
+  using Result = std::optional<FormulaId>;
+
+  Result expression();
+  Result term();
+  Result factor();
+  Result power();
+  Result primary();
+  Result parenthesis();
+  Result name();
+  Result call(const Token& name);
+  FormulaId resolve(const Token& name);
+  FormulaId stand_in(const Token& name);
+
+  Token take();
+  Span span(const Token& token) const { return text_.span_of(token.text); }
+  Span join(Span from, Span to) const;
+  Result operation(std::string_view function, FormulaId a, FormulaId b);
+
+  Result too_deep();
+  Result too_large(const Token& number);
+  FormulaId unknown_function(const Token& name);
+  FormulaId wrong_count(const Token& name, Span place, const FormulaFunction& function, std::size_t count);
+  Result bare_function(const Token& name);
+  Result no_value();
+  Result not_closed(const Token& open);
+  void report_rest();
+  void report(const char* code, Span span, std::string message, std::string label = "",
+              std::vector<std::string> help = {});
+
+  FormulaText text_;
+  FormulaContext& context_;
+  FormulaLexer lexer_;
+  Token next_;
+  int depth_ = 0;
+};
+
+}  // namespace fathom::compiler

@@ -1,0 +1,23 @@
+// The property `params` of a scene: its parameters, with the values that the caller gives them in place of theirs.
+// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E0407, E0408, E05xx, W0404)
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/scope.h"
+#include "compiler/frontend/syntax.h"
+
+namespace fathom::compiler {
+
+// Values for parameters by name, from the command line; the last of a name counts.
+using Definitions = std::vector<std::pair<std::string, double>>;
+
+// The scene's parameters, everything wrong with them and with `definitions` reported. `params` may be null.
+Scope read_parameters(const syntax::Value* params, const Definitions& definitions, Diagnostics& diagnostics);
+
+void warn_of_unused(const Scope& scope, Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,25 @@
+// Formulas that stand where a scene file has numbers, and what they come to.
+// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E0101, E0104, E0301)
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/records.h"
+#include "compiler/frontend/scope.h"
+#include "compiler/frontend/syntax.h"
+
+namespace fathom::compiler {
+
+// Whether formulas stand where the type has numbers, and nothing but numbers beside them.
+bool has_formulas(const syntax::Value& value, ValueType type);
+
+// The value, for which has_formulas(), with numbers only; nullopt after a report. Every formula is looked at.
+std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+
+// "; `r - 2` is -1": the formula in `written` that came to this part of evaluated(written); "" when it was no
+// formula.
+std::string explain(const syntax::Value& written, const syntax::Value& part);
+
+}  // namespace fathom::compiler
