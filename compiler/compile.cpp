@@ -114,6 +114,13 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   return result;
 }
 
+std::optional<GraphSize> measure(const Scene& scene, const Source& source) {
+  Diagnostics ignored;
+  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, ignored);
+  if (!program) return std::nullopt;
+  return GraphSize{count_nodes(scene), program->instructions(), program->cost()};
+}
+
 std::vector<std::string_view> pass_names() {
   std::vector<std::string_view> names;
   for (const Pass& pass : passes()) names.push_back(pass.name);

@@ -30,6 +30,16 @@ struct CompileOptions {
 // nullopt exactly when `diagnostics` has errors afterwards.
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options = {});
 
+// What a graph comes to as it stands.
+struct GraphSize {
+  std::size_t nodes;         // that the root reaches
+  std::size_t instructions;  // of its program
+  std::size_t cost;          // multiply-adds a point
+};
+
+// nullopt when the graph's program goes beyond a limit of the machine.
+std::optional<GraphSize> measure(const Scene& scene, const Source& source);
+
 // Names of the passes, in order.
 std::vector<std::string_view> pass_names();
 

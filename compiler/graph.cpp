@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
@@ -27,38 +28,44 @@ std::uint64_t hash_of(Kind kind, std::span<const double> params, std::span<const
 }
 
 std::string print_params(Kind kind, std::span<const double> params) {
-  if (kind == Kind::Transform && params.size() == 13) {
-    return fmt::format(" rows=[{}] factor={}", fmt::join(params.first(12), ","), params[12]);
-  }
-  if (kind == Kind::Paint && params.size() == 1) return fmt::format(" surface={}", params[0]);
-  if (kind == Kind::Scaled && params.size() == 1) return fmt::format(" factor={}", params[0]);
   std::string out;
-  std::size_t at = 0;
-  for (const ParamSpec& param : spec(kind).params) {
-    const bool rest = param.type == ParamType::Points;
-    const std::size_t count = rest ? params.size() - at : static_cast<std::size_t>(width(param.type));
-    if (count == 0) continue;
-    if (at + count > params.size()) break;
-    if (count == 1) {
-      out += fmt::format(" {}={}", param.name, params[at]);
-    } else {
-      out += fmt::format(" {}=[{}]", param.name, fmt::join(params.subspan(at, count), ","));
-    }
-    at += count;
+  for (const NamedParam& param : named_params(kind, params)) {
+    const bool list = param.values.size() > 1;
+    out += fmt::format(" {}={}{}{}", param.name, list ? "[" : "", fmt::join(param.values, ","), list ? "]" : "");
   }
-  if (at < params.size()) out += fmt::format(" derived=[{}]", fmt::join(params.subspan(at), ","));
   return out;
 }
 
-std::string print_origin(const Origin& origin, const Source& source) {
+// `place`: whether to say where in the source, too.
+std::string print_origin(const Origin& origin, const Source& source, bool place) {
   std::string out;
   if (!origin.name.empty()) out += fmt::format(" \"{}\"", origin.name);
-  if (origin.span.end > 0) {
+  if (place && origin.span.end > 0) {
     const Position at = source.locate(origin.span.begin);
     out += fmt::format(" {}:{}:{}", source.name(), at.line, at.column);
   }
   return out.empty() ? out : ";" + out;
 }
+
+// Names by place, made distinct in the order of asking.
+class PlaceNames {
+ public:
+  explicit PlaceNames(const Source& source) : source_(source) {}
+
+  std::string name(Kind kind, const Origin& origin) {
+    std::string name(spec(kind).name);
+    if (origin.span.end > 0) {
+      const Position at = source_.locate(origin.span.begin);
+      name += fmt::format("@{}:{}", at.line, at.column);
+    }
+    const int count = ++counts_[name];
+    return count == 1 ? name : fmt::format("{}.{}", name, count);
+  }
+
+ private:
+  const Source& source_;
+  std::unordered_map<std::string, int> counts_;
+};
 
 }  // namespace
 
@@ -107,26 +114,43 @@ bool Graph::equal(NodeId id, Kind kind, std::span<const double> params, std::spa
   return true;
 }
 
-std::string print_graph(const Scene& scene, const Source& source) {
+std::vector<NamedParam> named_params(Kind kind, std::span<const double> params) {
+  if (kind == Kind::Transform && params.size() == 13) {
+    return {{"rows", params.first(12)}, {"factor", params.last(1)}};
+  }
+  if (kind == Kind::Paint && params.size() == 1) return {{"surface", params}};
+  if (kind == Kind::Scaled && params.size() == 1) return {{"factor", params}};
+  std::vector<NamedParam> named;
+  std::size_t at = 0;
+  for (const ParamSpec& param : spec(kind).params) {
+    const bool rest = param.type == ParamType::Points;
+    const std::size_t count = rest ? params.size() - at : static_cast<std::size_t>(width(param.type));
+    if (count == 0) continue;
+    if (at + count > params.size()) break;
+    named.push_back({param.name, params.subspan(at, count)});
+    at += count;
+  }
+  if (at < params.size()) named.push_back({"derived", params.subspan(at)});
+  return named;
+}
+
+std::string print_graph(const Scene& scene, const Source& source, NodeNames names) {
   constexpr std::size_t kCommentColumn = 36;
   const Graph& graph = scene.graph;
   if (graph.size() == 0) return "";
-  std::vector<bool> reached(scene.root + 1, false);
-  reached[scene.root] = true;
-  for (NodeId id = scene.root + 1; id-- > 0;) {
-    if (!reached[id]) continue;
-    for (const NodeId child : graph.children(id)) reached[child] = true;
-  }
-  std::vector<NodeId> number(scene.root + 1, 0);
-  NodeId next = 0;
+  const std::vector<bool> reached = reachable(scene);
+  PlaceNames places(source);
+  std::vector<std::string> called(scene.root + 1);
+  std::size_t next = 0;
   std::string out;
   for (NodeId id = 0; id <= scene.root; ++id) {
     if (!reached[id]) continue;
-    number[id] = next++;
-    std::string line = fmt::format("%{} = {}{}", number[id], spec(graph.kind(id)).name,
-                                   print_params(graph.kind(id), graph.params(id)));
-    for (const NodeId child : graph.children(id)) line += fmt::format(" %{}", number[child]);
-    const std::string origin = print_origin(graph.origin(id), source);
+    const Kind kind = graph.kind(id);
+    const bool numbers = names == NodeNames::Numbers;
+    called[id] = numbers ? fmt::format("{}", next++) : places.name(kind, graph.origin(id));
+    std::string line = fmt::format("%{} = {}{}", called[id], spec(kind).name, print_params(kind, graph.params(id)));
+    for (const NodeId child : graph.children(id)) line += fmt::format(" %{}", called[child]);
+    const std::string origin = print_origin(graph.origin(id), source, numbers);
     if (!origin.empty())
       line = fmt::format("{:<{}}{}{}", line, kCommentColumn, line.size() < kCommentColumn ? "" : " ", origin);
     out += line + "\n";

@@ -49,8 +49,8 @@ std::string disassemble(const VerifiedProgram& verified) {
     values += row.effect.values_change;
     points += row.effect.points_change;
     const std::string source = i < program.debug.size() ? place(program, program.debug[i]) : "";
-    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, length, value_stack,
-                        point_stack, instruction_cost(program.words[at]), operation(program, at, row), source);
+    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, length, value_stack, point_stack,
+                        instruction_cost(program.words[at]), operation(program, at, row), source);
     at += length;
   }
   return text;

@@ -40,12 +40,12 @@ namespace fathom::vm::HWY_NAMESPACE {
       return meaning;                                                                  \
     }                                                                                  \
   };
-#define OP_Outline(Name, meaning)                                           \
-  struct Name##Op {                                                         \
-    template <class T, class Groups>                                        \
-    static HWY_INLINE T apply(const Vec3<T>& p, const Groups& outline) {    \
-      return meaning;                                                       \
-    }                                                                       \
+#define OP_Outline(Name, meaning)                                        \
+  struct Name##Op {                                                      \
+    template <class T, class Groups>                                     \
+    static HWY_INLINE T apply(const Vec3<T>& p, const Groups& outline) { \
+      return meaning;                                                    \
+    }                                                                    \
   };
 #define OP_Unary(Name, meaning)                                                    \
   struct Name##Op {                                                                \
@@ -74,8 +74,8 @@ namespace fathom::vm::HWY_NAMESPACE {
 #undef OP_Machine
 
 // How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs
-// to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing to choose the machine
-// works on the number alone, and the (left) operand's tag stays.
+// to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing to choose the
+// machine works on the number alone, and the (left) operand's tag stays.
 inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits {
@@ -113,13 +113,12 @@ HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
   return C::broadcast(program.wide[word]);
 }
 
-// The groups of immediates of an Outline instruction whose first one is at `word`, made into constants when asked for:
-// there is no bound to how many there are.
+// The groups of immediates of an Outline instruction whose first one is at `word`, made into constants when asked
+// for: there is no bound to how many there are.
 template <class C, int kSize>
 class Outline {
  public:
-  Outline(const Program& program, std::size_t word, std::size_t count)
-      : Outline(program.wide.data() + word, count) {}
+  Outline(const Program& program, std::size_t word, std::size_t count) : Outline(program.wide.data() + word, count) {}
   Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
 
   std::size_t count() const { return count_; }
@@ -253,8 +252,7 @@ class Machine {
   HWY_INLINE void apply_unary() {
     const auto immediates = take<Count>();
     T* a = top_;
-    for_used([&](std::size_t i)
-                 HWY_ATTR { Traits::number(a[i]) = Op::apply(Traits::number(a[i]), immediates.k); });
+    for_used([&](std::size_t i) HWY_ATTR { Traits::number(a[i]) = Op::apply(Traits::number(a[i]), immediates.k); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_binary() {

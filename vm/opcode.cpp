@@ -30,15 +30,15 @@ constexpr StackEffect effect_of(Opcode opcode, Form form) {
 }
 
 constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
-  {Opcode::Name,                                                    \
-   mnemonic,                                                        \
-   Form::form,                                                      \
-   immediates,                                                      \
-   count_names(immediates),                                         \
-   Choice::choice,                                                  \
-   cost,                                                            \
-   effect_of(Opcode::Name, Form::form),                             \
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning)                              \
+  {Opcode::Name,                                                                                 \
+   mnemonic,                                                                                     \
+   Form::form,                                                                                   \
+   immediates,                                                                                   \
+   count_names(immediates),                                                                      \
+   Choice::choice,                                                                               \
+   cost,                                                                                         \
+   effect_of(Opcode::Name, Form::form),                                                          \
    Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag || \
        Form::form == Form::Outline},
 #include "vm/opcodes.def"

@@ -36,7 +36,8 @@ struct Program {
   std::string source_name;   // of the debug entries' lines
   std::vector<DebugEntry> debug;
 
-  // Appends an instruction; of an Outline, `immediates` holds the groups in order and makes the operand. Floats are rounded from `immediates`, integers must be representable.
+  // Appends an instruction; of an Outline, `immediates` holds the groups in order and makes the operand. Floats are
+  // rounded from `immediates`, integers must be representable.
   void append(Opcode opcode, std::uint32_t operand, const std::vector<double>& immediates, DebugEntry entry);
 };
 

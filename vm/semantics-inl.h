@@ -150,12 +150,12 @@ HWY_INLINE double polygon_sense(const Outline& corners) {
   return area < 0 ? -1 : 1;
 }
 
-// A simple polygon in the xy plane, corners (x, y) in either order; z does not matter. Exact. Gradient undefined at the
-// corners and on the medial axis. For each edge, `across` is the signed offset from its line, positive to the right,
-// and `beyond` how far past its nearer end. Where the nearest point lies within an edge nothing comes between, so the
-// edge's side tells inside from outside and the distance is `across` itself: no square root, and on the outline,
-// where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Where the nearest point is a corner, the
-// sign is the parity of the edges to the right of p, an edge's lower end counting and its upper not.
+// A simple polygon in the xy plane, corners (x, y) in either order; z does not matter. Exact. Gradient undefined at
+// the corners and on the medial axis. For each edge, `across` is the signed offset from its line, positive to the
+// right, and `beyond` how far past its nearer end. Where the nearest point lies within an edge nothing comes between,
+// so the edge's side tells inside from outside and the distance is `across` itself: no square root, and on the
+// outline, where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Where the nearest point is a
+// corner, the sign is the parity of the edges to the right of p, an edge's lower end counting and its upper not.
 template <class T, class Outline>
 HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
   using C = Constant<T>;
@@ -182,8 +182,8 @@ HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
   }
   return select(past > zero, sqrt(nearest) * side, offset * constant<T>(polygon_sense(corners)));
 }
-// 1-Lipschitz: what it is at the box's middle, give or take half the diagonal. The slack outweighs the rounding at the
-// middle by far.
+// 1-Lipschitz: what it is at the box's middle, give or take half the diagonal. The slack outweighs the rounding at
+// the middle by far.
 template <class Outline>
 HWY_INLINE Interval polygon(const Vec3<Interval>& p, const Outline& corners) {
   const Real x{(p.x.lo + p.x.hi) / 2}, y{(p.y.lo + p.y.hi) / 2};
@@ -355,4 +355,5 @@ HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, cons
 HWY_AFTER_NAMESPACE();
 
 #include "vm/outlines-inl.h"
+#include "vm/solids-inl.h"
 #endif

@@ -92,8 +92,7 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
       return fail(fmt::format("{} has {} groups of immediates; at least {} are needed", row->mnemonic,
                               group_count(word), minimum_groups(row->opcode)));
     }
-    if (size - at < instruction_length(word))
-      return fail(fmt::format("{} is cut off", row->mnemonic));
+    if (size - at < instruction_length(word)) return fail(fmt::format("{} is cut off", row->mnemonic));
     if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
     if (auto reason = check_stacks(*row, limits, state)) return fail(std::move(*reason));
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));

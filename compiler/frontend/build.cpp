@@ -99,6 +99,10 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& node, Context context
     }
     built.id = maker_.make(node.kind, node.params, children, origin);
   }
+  if (node.between) {
+    const NodeId child[] = {built.id};
+    built.id = scene_.graph.add(Kind::Transform, *node.between, child, origin);
+  }
   if (node.transform) {
     const NodeId child[] = {built.id};
     built.id = scene_.graph.add(Kind::Transform, *node.transform, child, origin);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <glm/geometric.hpp>
+
 #include "compiler/frontend/placement.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/suggest.h"
@@ -144,12 +146,42 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
     const std::vector<double> numbers = reader.numbers(param.name);
     node.params.insert(node.params.end(), numbers.begin(), numbers.end());
   }
+  if (row->between) check_between(reader, record, *row, node);
   if (const syntax::Value* of = reader.value("of")) check_children(*of, *row, node);
   check_common(reader, node);
   if (!reader.good() || row->check == nullptr) return;
   if (const std::optional<std::string> problem = row->check(node.params)) {
     diagnostics_.error("E0302", type.value->span, *problem, "", {fmt::format("`{}`: {}", row->name, row->doc)});
   }
+}
+
+// Two ends in place of a length: they give it, and where the node stands.
+void NodeChecker::check_between(const RecordReader& reader, const syntax::Record& record, const NodeSpec& row,
+                                CheckedNode& node) {
+  const Between& between = *row.between;
+  const std::string ends = fmt::format("give `{}`, or both ends `a` and `b`", between.length);
+  const syntax::Property *a = record.find("a"), *b = record.find("b"), *length = record.find(between.length);
+  if (!a && !b && !length) {
+    diagnostics_.error("E0103", node.type_span, fmt::format("`{}` has no `{}`", row.name, between.length), "", {ends});
+  } else if ((a || b) && length) {
+    diagnostics_.error("E0106", length->name_span, fmt::format("both `{}` and ends are given", between.length),
+                       "the ends say how long it is", {ends});
+  } else if ((a != nullptr) != (b != nullptr)) {
+    diagnostics_.error("E0103", (a ? a : b)->name_span, fmt::format("`{}` has one end", row.name), "", {ends});
+  }
+  if (!reader.value("a") || !reader.value("b")) return;
+  const glm::dvec3 from = reader.vec3("a"), to = reader.vec3("b");
+  if (from == to) {
+    diagnostics_.error("E0302", b->value->span, "the ends `a` and `b` are the same point", "", {ends});
+    return;
+  }
+  std::size_t at = 0;
+  for (const ParamSpec& param : row.params) {
+    if (param.name == between.length) break;
+    at += static_cast<std::size_t>(width(param.type));
+  }
+  node.params[at] = between.share * glm::length(to - from);
+  node.between = placed_between(from, to, between.share);
 }
 
 void NodeChecker::check_children(const syntax::Value& of, const NodeSpec& row, CheckedNode& node) {

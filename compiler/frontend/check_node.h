@@ -60,6 +60,8 @@ class NodeChecker {
   void add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes);
   void check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node);
   void check_type(const syntax::Record& record, const syntax::Property& type, CheckedNode& node);
+  void check_between(const RecordReader& reader, const syntax::Record& record, const NodeSpec& row,
+                     CheckedNode& node);
   void check_children(const syntax::Value& of, const NodeSpec& row, CheckedNode& node);
   void check_common(const RecordReader& reader, CheckedNode& node);
   void report_unknown_type(const syntax::Record& record, const syntax::Property& type, std::string_view name,

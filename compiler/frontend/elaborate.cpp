@@ -23,9 +23,9 @@ struct CheckedScene {
 
 void check_version(const RecordReader& reader, Diagnostics& diagnostics) {
   const syntax::Value* version = reader.value("version");
-  if (version == nullptr || std::get<double>(version->data) == 1) return;
+  if (version == nullptr || std::get<double>(version->data) == kSceneVersion) return;
   diagnostics.error("E0105", version->span, fmt::format("unknown `version` {}", describe(*version)), "",
-                    {"this program reads \"version\": 1"});
+                    {fmt::format("this program reads \"version\": {}", kSceneVersion)});
 }
 
 // Whether each named node is reached from the objects.

@@ -41,4 +41,14 @@ std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rota
   return params;
 }
 
+std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share) {
+  const glm::dvec3 along = glm::normalize(to - from);
+  // Any direction across will do; the axis it leans on least keeps it well conditioned.
+  glm::dvec3 other(0);
+  other[std::abs(along.x) <= std::abs(along.z) ? 0 : 2] = 1;
+  const glm::dvec3 across = glm::normalize(glm::cross(along, other));
+  const glm::dmat3 rotation(across, along, glm::cross(across, along));
+  return transform_params(glm::dvec3(1), rotation, to - share * (to - from));
+}
+
 }  // namespace fathom::compiler

@@ -18,4 +18,8 @@ glm::dmat3 rotation_xyz(glm::dvec3 degrees);
 // `scale` (each > 0), then rotated, then moved.
 std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rotation, glm::dvec3 translation);
 
+// The same for a node whose y axis is to point from `from` to `to`, with its origin `share` of the way short of `to`.
+// The points differ.
+std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share);
+
 }  // namespace fathom::compiler

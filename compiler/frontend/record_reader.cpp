@@ -18,6 +18,7 @@ using syntax::Value;
 std::string_view expected(ValueType type) {
   switch (type) {
     case ValueType::Number:
+    case ValueType::Version:
       return "a number";
     case ValueType::Integer:
       return "a whole number";
@@ -75,6 +76,7 @@ bool has_type(const Value& value, ValueType type) {
   const bool three = number == nullptr && three_numbers(value).has_value();
   switch (type) {
     case ValueType::Number:
+    case ValueType::Version:
       return number != nullptr;
     case ValueType::Integer:
       return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));

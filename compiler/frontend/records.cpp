@@ -44,6 +44,12 @@ RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
   return record;
 }
 
+PropertySpec vertical_fov() {
+  PropertySpec property = number("fov_y", "vertical field of view, degrees", {}, {0, 180, true});
+  property.instead_of = "fov";
+  return property;
+}
+
 RecordSpec material(std::string type, std::vector<PropertySpec> own) {
   RecordSpec record{
       type,
@@ -128,7 +134,7 @@ const RecordSpec& scene_record() {
       "",
       "the scene",
       "scene",
-      {{"version", ValueType::Number, "1, the version of the scene format", {}, true, Rule::Any, {}, {}},
+      {other("version", ValueType::Version, "1, the version of the scene format", true),
        other("$schema", ValueType::Anything, "ignored; for editors"),
        other("params", ValueType::Named, "name -> parameter: a number that formulas can use"),
        other("camera", ValueType::Record, "where the picture is taken from"),
@@ -211,8 +217,8 @@ const RecordSpec& rotation_record() {
 
 const std::vector<RecordSpec>& camera_records() {
   static const std::vector<RecordSpec> records = {
-      camera("perspective", {number("fov", "horizontal field of view, degrees", {45}, {0, 180, true}),
-                             number("fov_y", "vertical field of view, degrees", {}, {0, 180, true})}),
+      camera("perspective",
+             {number("fov", "horizontal field of view, degrees", {45}, {0, 180, true}), vertical_fov()}),
       camera("orthographic", {number("width", "of the picture, scene units", {4}, {}, Rule::Positive)})};
   return records;
 }

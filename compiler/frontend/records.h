@@ -29,8 +29,11 @@ enum class ValueType {
   Scale,     // a number or three
   Rotation,  // three numbers or a record by rotation_record()
   Gradient,  // a colour or a record by gradient_record()
+  Version,   // the number kSceneVersion
   Anything,
 };
+
+inline constexpr int kSceneVersion = 1;
 
 // The machine computes in 32-bit floats: three squares of this magnitude still add up to less than their largest.
 inline constexpr double kLargest = 1e18;
@@ -52,6 +55,7 @@ struct PropertySpec {
   Rule rule = Rule::Any;
   Range range = {};
   std::vector<std::string_view> choices = {};  // the first is used when the property is absent
+  std::string_view instead_of = {};            // the property this one takes the place of: not both may be given
 };
 
 struct RecordSpec {

@@ -72,10 +72,14 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
   const RecordSpec* row = row_by_type(camera_records(), "camera", record, opening(value.span), diagnostics);
   if (row == nullptr) return camera;
   const RecordReader reader(*row, record, opening(value.span), scope, diagnostics);
-  if (record.find("fov") && record.find("fov_y") && row->find("fov")) {
-    diagnostics.error("E0106", record.find("fov_y")->name_span, "both `fov` and `fov_y` are given",
-                      "one follows from the other and the film's shape",
-                      {"keep `fov` (horizontal) or `fov_y` (vertical)"});
+  for (const PropertySpec& property : row->properties) {
+    const std::string_view other = property.instead_of;
+    if (other.empty() || !record.find(other) || !record.find(property.name)) continue;
+    diagnostics.error(
+        "E0106", record.find(property.name)->name_span,
+        fmt::format("both `{}` and `{}` are given", other, property.name),
+        "one follows from the other and the film's shape",
+        {fmt::format("keep `{}` ({}) or `{}` ({})", other, row->find(other)->doc, property.name, property.doc)});
   }
   camera.position = reader.vec3("position");
   camera.target = reader.vec3("target");

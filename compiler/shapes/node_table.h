@@ -1,6 +1,6 @@
 // The node table: one row per kind of node, and the only list of them. The JSON front end, the error messages, the
 // schema, the graph printer, the bounds, the lowering and the tests read it. Rows live with their like: solids.cpp,
-// outlines.cpp, alterations.cpp, domain.cpp, combinators.cpp, functions.cpp.
+// composed.cpp, outlines.cpp, alterations.cpp, domain.cpp, combinators.cpp, functions.cpp.
 //
 // Conventions, the same for every node:
 //   - primitives are centred at the origin, symmetric ones about the y axis (right-handed, y up);

@@ -9,6 +9,7 @@
 namespace fathom::compiler {
 
 std::vector<NodeSpec> solid_rows();
+std::vector<NodeSpec> composed_rows();
 std::vector<NodeSpec> outline_rows();
 std::vector<NodeSpec> alteration_rows();
 std::vector<NodeSpec> domain_rows();

@@ -7,6 +7,10 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
+#include <numbers>
+
+#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {
@@ -48,6 +52,12 @@ double escape_radius(double power) {
     r -= (r - 2 / rest) / (power - 1);
   }
   return r;
+}
+
+// No orbit of q -> q^2 + c returns from beyond |q| = R with R^2 - |c| = R, for there |q^2 + c| >= |q|^2 - |c| > |q|.
+double julia_escape_radius(Params p) {
+  const double c = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+  return (1 + std::sqrt(1 + 4 * c)) / 2;
 }
 
 // The corners in one plane exactly: a quad's may be off by the tolerance of check_quad.
@@ -134,9 +144,69 @@ Complaint check_mandelbulb(Params p) {
   return std::nullopt;
 }
 
+Complaint check_box_frame(Params p) {
+  const double smallest = std::min({p[0], p[1], p[2]});
+  if (2 * p[3] <= smallest) return std::nullopt;
+  return fmt::format(
+      "`thickness` {} is more than {}, half the smallest half size: the bars, 2 * `thickness` wide, "
+      "would overlap; use a box",
+      p[3], smallest / 2);
+}
+
+Complaint check_capped_torus(Params p) {
+  if (p[2] <= 180) return std::nullopt;
+  return fmt::format("`angle` is {}; it is half of what remains of the ring, at most 180 degrees", p[2]);
+}
+
+Complaint check_half_angle(Params p) {
+  if (p[0] < 90) return std::nullopt;
+  return fmt::format("`angle` is {}; it is measured from the axis to the side and must be below 90 degrees", p[0]);
+}
+
+Complaint check_menger_sponge(Params p) {
+  if (p[1] <= 8) return std::nullopt;
+  return fmt::format("`iterations` is {}; it must be a whole number from 1 to 8", p[1]);
+}
+
+Complaint check_julia(Params p) {
+  if (p[4] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[4]);
+  // |q|^2 after the escaping iteration is about bailout^4 and must be a float.
+  constexpr double kLargest = 1e6;
+  const double radius = julia_escape_radius(p);
+  if (radius > kLargest) return fmt::format("`c` is too large; every orbit escapes from beyond {:.3g}", radius);
+  if (p[5] < radius || p[5] > kLargest) {
+    return fmt::format("`bailout` is {}; for this `c` it must be between {:.6g} and {}", p[5], radius, kLargest);
+  }
+  return std::nullopt;
+}
+
 std::vector<double> mandelbulb_immediates(Params p) { return {p[0], p[1], p[2], escape_radius(p[0]), p[3]}; }
 
 std::vector<double> round_box_immediates(Params p) { return {p[0] - p[3], p[1] - p[3], p[2] - p[3], p[3]}; }
+
+std::vector<double> box_frame_immediates(Params p) {
+  return {p[0], p[1], p[2], p[0] - 2 * p[3], p[1] - 2 * p[3], p[2] - 2 * p[3]};
+}
+
+std::vector<double> capped_torus_immediates(Params p) {
+  const auto [sine, cosine] = sine_cosine(p[2]);
+  return {p[0], p[1], sine, cosine};
+}
+
+std::vector<double> infinite_cone_immediates(Params p) {
+  const auto [sine, cosine] = sine_cosine(p[0]);
+  return {sine, cosine};
+}
+
+// Radians per scene unit, and what brings the fastest change, sqrt 3 of them, to 1.
+std::vector<double> periodic_immediates(Params p) {
+  const double k = 2 * std::numbers::pi / p[0];
+  return {k, 1 / (std::numbers::sqrt3 * k)};
+}
+
+std::vector<double> julia_immediates(Params p) {
+  return {p[0], p[1], p[2], p[3], p[4], julia_escape_radius(p), p[5], p[6]};
+}
 
 std::vector<double> plane_immediates(Params p) {
   // Scaling first keeps normals of any length, 1e-200 or 1e200, from under- or overflowing.
@@ -226,5 +296,28 @@ double sheet_magnitude(Params p) {
 
 // The estimate is at least about a quarter of the distance from the set.
 Box mandelbulb_bound(Params p) { return Box::centred(dvec3(escape_radius(p[0]) + 4 * p[3])); }
+
+Box capped_torus_bound(Params p) {
+  const auto [sine, cosine] = sine_cosine(p[2]);
+  const double side = p[2] < 90 ? p[0] * sine + p[1] : p[0] + p[1];
+  return {{-side, p[0] * cosine - p[1], -p[1]}, {side, p[0] + p[1], p[1]}};
+}
+
+Box infinite_cylinder_bound(Params p) { return Box::centred({p[0], std::numeric_limits<double>::infinity(), p[0]}); }
+
+Box infinite_cone_bound(Params) {
+  Box box = Box::everything();
+  box.hi.y = 0;
+  return box;
+}
+
+Box capsule_bound(Params p) { return Box::centred({p[0], p[0] + p[1], p[0]}); }
+
+Box everywhere(Params) { return Box::everything(); }
+
+Box menger_sponge_bound(Params p) { return Box::centred(dvec3(p[0])); }
+
+// The estimate is at least the distance from the ball.
+Box julia_bound(Params p) { return Box::centred(dvec3(julia_escape_radius(p) + p[6])); }
 
 }  // namespace fathom::compiler

@@ -1,10 +1,13 @@
 // fathom dump: what the compiler made of a scene, after its front end, after a pass, or as bytecode.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli_dump_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
 
+#include "compiler/graph_export.h"
+#include "compiler/pass_diff.h"
 #include "runtime/cli/operation_table.h"
+#include "runtime/cli/program_json.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "vm/disassemble.h"
@@ -17,40 +20,90 @@ constexpr const char* kExamples =
     "fathom dump scene.json --program surface      # the one that knows the objects\n"
     "fathom dump scene.json --stage graph          # after all passes\n"
     "fathom dump scene.json --after graph          # before the first\n"
-    "fathom dump scene.json --stats                # which operations cost what";
+    "fathom dump scene.json --diff                 # what each pass changed\n"
+    "fathom dump scene.json --stats                # what costs what\n"
+    "fathom dump scene.json --stage graph --format dot | dot -Tsvg > graph.svg";
 
 enum Stage { kSyntax, kGraph, kBytecode };
+enum Format { kText, kJson, kDot, kMermaid };
 
 struct DumpRequest {
   SceneArguments scene;
   int stage = -1;    // a Stage; -1: not given
+  int format = -1;   // a Format; -1: not given
   int program = -1;  // 0 distance, 1 surface; -1: not given
   std::optional<std::string> after;
-  bool stats = false;
+  bool stats = false, diff = false;
 };
+
+// What the flags do not say follows from those that are there.
+void fill_in(DumpRequest& request) {
+  const bool bytecode = request.stats || request.program >= 0;
+  const bool graph = request.after || request.diff || request.format == kDot || request.format == kMermaid;
+  if (request.stage < 0) request.stage = graph && !bytecode ? kGraph : kBytecode;
+}
+
+// An ExitCode, after a message, when the flags do not go together.
+std::optional<ExitCode> check_request(const DumpRequest& request, const Streams& streams) {
+  const auto refuse = [&](std::string_view problem, const char* help) {
+    return fail(streams, kUsage, problem, {help});
+  };
+  if (request.stage != kBytecode && (request.stats || request.program >= 0)) {
+    return refuse(fmt::format("{} is about bytecode", request.stats ? "--stats" : "--program"),
+                  "use it with --stage bytecode");
+  }
+  if (request.stage != kGraph && request.diff) {
+    return refuse("--diff compares graphs", "use it with --stage graph, and without --stats or --program");
+  }
+  if ((request.stats || request.diff) && request.format > kText) {
+    return refuse(fmt::format("{} is text", request.stats ? "--stats" : "--diff"), "leave out --format");
+  }
+  if (request.stage == kSyntax && request.format > kText) {
+    return refuse("the syntax is printed as text only", "the scene file itself is the JSON");
+  }
+  if (request.stage == kBytecode && request.format > kJson) {
+    return refuse("bytecode is a sequence, not a graph to draw", "use --stage graph, or --format text or json");
+  }
+  if (request.stage == kSyntax && request.after) {
+    return refuse("--after names a pass, and the syntax is what passes start from",
+                  "use it with --stage graph or --stage bytecode");
+  }
+  return std::nullopt;
+}
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DumpRequest& request) {
   Arguments arguments("dump", "Prints what the compiler made of a scene.", kExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.option("--stage", "STAGE", "syntax, graph or bytecode (default: bytecode, or graph with --after)",
+  arguments.option("--stage", "STAGE",
+                   "syntax, graph or bytecode (default: bytecode, or graph where other options are about it)",
                    one_of({"syntax", "graph", "bytecode"}, request.stage));
   arguments.option("--after", "PASS", "Stop after this pass of the compiler; graph stops before the first",
                    pass_name(request.after));
   arguments.option("--program", "PROGRAM", "distance (the default) or surface",
                    one_of({"distance", "surface"}, request.program));
-  arguments.flag("--stats", "Print how often each operation occurs and its cost in multiply-adds", request.stats);
+  arguments.option("--format", "FORMAT", "text (the default) or json; for graphs also dot and mermaid",
+                   one_of({"text", "json", "dot", "mermaid"}, request.format));
+  arguments.flag("--diff", "Print what each pass changed in the distance's graph, and what that saved", request.diff);
+  arguments.flag("--stats", "Print what operations and nodes cost, in multiply-adds a point", request.stats);
   if (const auto code = arguments.parse(args, streams)) return code;
+  fill_in(request);
+  return check_request(request, streams);
+}
 
-  if (request.stage < 0) request.stage = request.after && !request.stats && request.program < 0 ? kGraph : kBytecode;
-  if (request.stage != kBytecode && (request.stats || request.program >= 0)) {
-    return fail(streams, kUsage, fmt::format("{} is about bytecode", request.stats ? "--stats" : "--program"),
-                {"use it with --stage bytecode"});
-  }
-  if (request.stage == kSyntax && request.after) {
-    return fail(streams, kUsage, "--after names a pass, and the syntax is what passes start from",
-                {"use it with --stage graph or --stage bytecode"});
-  }
-  return std::nullopt;
+std::string print(const compiler::Scene& scene, const compiler::Source& source, int format) {
+  if (format == kJson) return graph_json(scene, source);
+  if (format == kDot) return graph_dot(scene, source);
+  if (format == kMermaid) return graph_mermaid(scene, source);
+  return print_graph(scene, source);
+}
+
+std::string print_bytecode(const compiler::CompiledScene& scene, const DumpRequest& request) {
+  const bool surface = request.program == 1;
+  const char* name = surface ? "surface" : "distance";
+  const vm::VerifiedProgram& program = surface ? scene.surface : scene.distance;
+  if (request.stats) return operation_table(program) + "\n" + cost_by_node(program);
+  if (request.format == kJson) return program_json(program, name, scene.summary);
+  return fmt::format("; {}: {}\n", name, scene.summary) + vm::disassemble(program);
 }
 
 }  // namespace
@@ -62,27 +115,24 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   const compiler::Source& source = std::get<compiler::Source>(read);
 
-  std::string syntax, graph;
+  std::string syntax;
+  compiler::Scene graph;
+  compiler::PassDiff diff(source);
   compiler::CompileOptions options;
   options.stop_after = request.after;
   if (request.stage == kSyntax) {
     options.on_syntax = [&](const compiler::syntax::File& file) { syntax = compiler::syntax::print_syntax(file); };
-  }
-  if (request.stage == kGraph) {
-    options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = print_graph(scene, source); };
+  } else if (request.diff) {
+    options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) { diff.add(pass, scene); };
+  } else if (request.stage == kGraph) {
+    options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = scene; };
   }
   const auto compiled = compile_scene(source, request.scene, streams, options);
   if (request.stage == kSyntax) streams.out << syntax;  // of a scene with errors in it, too
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
-  if (request.stage == kGraph) streams.out << graph;
-  if (request.stage == kBytecode) {
-    const vm::VerifiedProgram& program = request.program == 1 ? scene.surface : scene.distance;
-    if (!request.stats) {
-      streams.out << fmt::format("; {}: {}\n", request.program == 1 ? "surface" : "distance", scene.summary);
-    }
-    streams.out << (request.stats ? operation_table(program) : vm::disassemble(program));
-  }
+  if (request.stage == kGraph) streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
+  if (request.stage == kBytecode) streams.out << print_bytecode(scene, request);
   return kDone;
 }
 

@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <system_error>
 
+#include "runtime/cli/output_file.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/verbosity.h"
@@ -63,27 +63,6 @@ std::vector<std::string> output_files(const RenderRequest& request) {
     files.push_back(*request.stats_json);
   }
   return files;
-}
-
-// One name for a file however it is written, whether it exists or not.
-std::filesystem::path canonical_name(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
-}
-
-// Whether no output would overwrite the scene or another output.
-std::optional<ExitCode> check_collisions(const RenderRequest& request, const Streams& streams) {
-  std::vector<std::filesystem::path> taken;
-  if (request.scene.path != "-") taken.push_back(canonical_name(request.scene.path));
-  for (const std::string& file : output_files(request)) {
-    std::filesystem::path path = canonical_name(file);
-    if (std::find(taken.begin(), taken.end(), path) != taken.end()) {
-      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is the scene or another output", file),
-                  {"give each output a name of its own"});
-    }
-    taken.push_back(std::move(path));
-  }
-  return std::nullopt;
 }
 
 // Whether every file could be written, as far as can be known before there is anything to write.
@@ -159,7 +138,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   RenderRequest& request = std::get<RenderRequest>(parsed);
-  if (const auto code = check_collisions(request, streams)) return *code;
+  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;

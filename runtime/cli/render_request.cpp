@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "runtime/image_io.h"
+#include "runtime/cli/output_file.h"
 
 namespace fathom::cli {
 namespace {
@@ -15,15 +14,6 @@ constexpr const char* kExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
     "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...";
-
-constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes some 100 bytes
-
-Verdict read_output(std::string_view text, std::string& path) {
-  path = text;
-  if (runtime::image_format_of(path)) return std::nullopt;
-  return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
-                   "valid endings: .png, .jpg, .jpeg, .bmp"};
-}
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
@@ -58,11 +48,6 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
   arguments.flag("--no-denoise", "Accepted for compatibility; there is no denoiser", request.no_denoise);
-}
-
-std::string default_output(const std::string& scene) {
-  const std::string stem = scene == "-" ? "" : std::filesystem::path(scene).stem().string();
-  return (stem.empty() ? "out" : stem) + ".png";
 }
 
 }  // namespace
@@ -108,19 +93,10 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     width = request.size->width;
     height = request.size->height;
   }
-  if (height > compiler::kMaxSide || width * height > kMaxPixels) {
-    return fail(streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
-                {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide,
-                             kMaxPixels / 1000000)});
-  }
+  if (const auto code = check_picture_size(width, height, streams)) return code;
   scene.film.width = static_cast<int>(width);
   scene.film.height = static_cast<int>(height);
   return std::nullopt;
-}
-
-std::string beside(const std::string& path, const std::string& suffix) {
-  const std::size_t dot = path.rfind('.');
-  return path.substr(0, dot) + "-" + suffix + path.substr(dot);
 }
 
 }  // namespace fathom::cli

@@ -34,7 +34,4 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
 
-// "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
-std::string beside(const std::string& path, const std::string& suffix);
-
 }  // namespace fathom::cli

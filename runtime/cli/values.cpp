@@ -121,6 +121,23 @@ Verdict read_box(std::string_view text, PointBox& box) {
   return std::nullopt;
 }
 
+Verdict read_rectangle(std::string_view text, Rectangle& rectangle) {
+  const auto n = to_numbers(text, 4, false);
+  if (!n || !((*n)[0] < (*n)[2]) || !((*n)[1] < (*n)[3])) {
+    return complain(fmt::format("`{}` is not a rectangle", text),
+                    n ? "give the corner with the smaller coordinates first" : "write its two corners: -1,-1,1,1");
+  }
+  rectangle = {{(*n)[0], (*n)[1]}, {(*n)[2], (*n)[3]}};
+  return std::nullopt;
+}
+
+Verdict read_finite(std::string_view text, double& number) {
+  const auto value = to_number(text);
+  if (!value) return complain(fmt::format("`{}` is not a number", text));
+  number = *value;
+  return std::nullopt;
+}
+
 Verdict read_positive(std::string_view text, double& number) {
   const auto value = to_number(text);
   if (!value || *value <= 0) return complain(fmt::format("`{}` is not a positive number", text));

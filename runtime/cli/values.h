@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
@@ -28,6 +29,9 @@ struct PixelSize {
 };
 struct PointBox {
   glm::dvec3 lo, hi;
+};
+struct Rectangle {
+  glm::dvec2 lo, hi;
 };
 
 // The whole text as a finite number, in decimal or scientific notation.
@@ -52,6 +56,10 @@ Verdict read_point(std::string_view text, glm::dvec3& point);
 // "x0,y0,z0,x1,y1,z1", two opposite corners with the smaller coordinates first.
 Verdict read_box(std::string_view text, PointBox& box);
 
+// "x0,y0,x1,y1", two opposite corners with the smaller coordinates first, the corners apart in both.
+Verdict read_rectangle(std::string_view text, Rectangle& rectangle);
+
+Verdict read_finite(std::string_view text, double& number);
 Verdict read_positive(std::string_view text, double& number);
 Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
 Verdict read_seed(std::string_view text, std::uint64_t& seed);

@@ -16,6 +16,8 @@ int run_render(std::span<const std::string> args, const Streams& streams);
 int run_check(std::span<const std::string> args, const Streams& streams);
 int run_dump(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
+int run_slice(std::span<const std::string> args, const Streams& streams);
+int run_schema(std::span<const std::string> args, const Streams& streams);
 
 struct Verb {
   std::string_view name;
@@ -28,6 +30,8 @@ inline constexpr std::array kVerbs = {
     Verb{"check", "scene.json", "prints what is wrong with the scene and how large it is", run_check},
     Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
+    Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
+    Verb{"schema", "", "prints the JSON Schema of scene files", run_schema},
 };
 
 }  // namespace fathom::cli

@@ -41,6 +41,27 @@ TEST_CASE("a scene with one surface carries no material code", "[compile]") {
   CHECK(scene->distance.instructions() == 1);
 }
 
+// An object of one material is one surface, however many nodes it has and wherever the material is written.
+TEST_CASE("an object of one material has no tag in any program, whatever its nodes", "[compile]") {
+  const char* const parts = R"([{"type": "sphere", "radius": 1}, {"use": "part", "scale": 2}, {"use": "part"}])";
+  const std::string materials = R"("materials": {"red": {"type": "specular"}}, )";
+  const std::string nodes = R"("nodes": {"part": {"type": "onion", "thickness": 0.1, "of": {"type": "box",
+    "half_size": [1, 1, 1], "translate": [0, 1, 0]}}}, )";
+  for (const std::string& object :
+       {std::string(R"({"type": "smooth_union", "k": 0.2, "material": "red", "of": )") + parts + "}",
+        std::string(
+            R"({"type": "union", "material": "red", "of": [{"type": "intersection", "material": "red", "of": )") +
+            parts + "}]}"}) {
+    const Source source("scene.json", R"({"version": 1, )" + materials + nodes + R"("objects": [)" + object + "]}");
+    Diagnostics diagnostics;
+    const auto scene = compile(source, diagnostics);
+    REQUIRE(scene);
+    CHECK(scene->surfaces.size() == 1);
+    CHECK(vm::disassemble(scene->distance).find(" tag ") == std::string::npos);
+    CHECK(vm::disassemble(scene->surface) == vm::disassemble(scene->distance));
+  }
+}
+
 TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[compile]") {
   for (const bool left : {true, false}) {
     std::string node = R"({"type": "sphere", "radius": 1})";

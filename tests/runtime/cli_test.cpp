@@ -1,40 +1,19 @@
 // The program as its users meet it: exit codes, messages, data on stdout, files written and not written.
-#include <sys/wait.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+
+#include "tests/support/program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::kBall;
+using fathom::tests::png_size;
+using fathom::tests::Result;
 
-struct Result {
-  int code;
-  std::string out, err;
-};
-
-const char* const kBall = R"({
-  "version": 1,
-  "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
-  "film": {"width": 32, "height": 16},
-  "render": {"spp": 2},
-  "background": [1, 1, 1],
-  "objects": [{"name": "ball", "type": "sphere", "radius": 0.5}]
-})";
-
-const char* const kTwo = R"({
-  "version": 1,
-  "materials": {"red": {"type": "diffuse", "color": [1, 0, 0]}, "blue": {"type": "diffuse", "color": [0, 0, 1]}},
-  "objects": [
-    {"name": "left", "type": "sphere", "radius": 1, "translate": [-2, 0, 0], "material": "red"},
-    {"name": "right", "type": "box", "half_size": [1, 1, 1], "translate": [2, 0, 0], "material": "blue"}
-  ]
-})";
+}  // namespace
 
 const char* const kDial = R"({
   "version": 1,
@@ -43,63 +22,6 @@ const char* const kDial = R"({
   "render": {"spp": 1},
   "objects": [{"name": "ball", "type": "sphere", "radius": "twice/2"}]
 })";
-
-// An empty folder to run the program in, removed with everything in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "fathom-cli-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-    write("ball.json", kBall);
-    write("two.json", kTwo);
-  }
-  ~Folder() { fs::remove_all(path_); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-  std::string read(const std::string& name) const {
-    std::stringstream text;
-    text << std::ifstream(path_ / name).rdbuf();
-    return text.str();
-  }
-  bool has(const std::string& name) const { return fs::exists(path_ / name); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-  }
-
-  // `arguments` as for a shell; standard input is `in`.
-  Result run(const std::string& arguments, const std::string& in = "") const {
-    const fs::path io = path_.string() + ".io";  // beside the folder, which stays the user's
-    fs::create_directories(io);
-    std::ofstream(io / "in") << in;
-    const std::string command = "cd '" + path_.string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
-                                (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
-                                (io / "err").string() + "'";
-    const int status = std::system(command.c_str());
-    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
-                  read("../" + io.filename().string() + "/err")};
-    fs::remove_all(io);
-    return result;
-  }
-
- private:
-  fs::path path_;
-};
-
-using Catch::Contains;
-
-// Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
-std::pair<int, int> png_size(const std::string& bytes) {
-  REQUIRE(bytes.size() > 24);
-  const auto big_endian = [&](std::size_t at) {
-    int value = 0;
-    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes[at + i]);
-    return value;
-  };
-  return {big_endian(16), big_endian(20)};
-}
-
-}  // namespace
 
 TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong") {
   struct Case {
@@ -159,12 +81,31 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"dump ball.json --stage graph --stats", "--stats is about bytecode"},
       {"dump ball.json --stage syntax --program surface", "--program is about bytecode"},
       {"dump ball.json --stage syntax --after graph", "--after names a pass"},
+      {"dump ball.json --format xml", "is not one of text, json, dot, mermaid"},
+      {"dump ball.json --stage bytecode --format dot", "bytecode is a sequence, not a graph to draw"},
+      {"dump ball.json --program surface --format mermaid", "bytecode is a sequence"},
+      {"dump ball.json --stage syntax --format json", "the syntax is printed as text only"},
+      {"dump ball.json --stats --format json", "--stats is text"},
+      {"dump ball.json --diff --format dot", "--diff is text"},
+      {"dump ball.json --diff --stats", "--diff compares graphs"},
+      {"dump ball.json --diff --stage bytecode", "--diff compares graphs"},
       {"eval ball.json", "no point to evaluate at"},
       {"eval ball.json --at 1,2", "--at: `1,2` is not a point"},
       {"eval ball.json --at 1,2,x", "--at: `1,2,x` is not a point"},
       {"eval ball.json --box 1,0,0,0,1,1", "the first corner's x is above the second's"},
       {"eval ball.json --box 0,0,0,1,1,1 --number f32", "--box needs --number range"},
       {"eval - --points -", "cannot both come from standard input"},
+      {"slice", "the scene is missing"},
+      {"slice ball.json -o out.gif", "valid endings: .png, .jpg, .jpeg, .bmp"},
+      {"slice ball.json --axis w", "--axis: `w` is not one of x, y, z"},
+      {"slice ball.json --at high", "--at: `high` is not a number"},
+      {"slice ball.json --size 12", "write it as 1920x1080"},
+      {"slice ball.json --size 65535x65535", "too large"},
+      {"slice ball.json --box 0,0,1", "write its two corners"},
+      {"slice ball.json --box 0,1,1,0", "the corner with the smaller coordinates first"},
+      {"slice ball.json --show sing", "did you mean `sign`?"},
+      {"slice ball.json --threads 0", "--threads: `0`"},
+      {"schema ball.json", "unexpected argument `ball.json`"},
   };
   const Folder folder;
   for (const Case& c : cases) {
@@ -185,7 +126,7 @@ TEST_CASE("cli: help and version go to stdout and succeed") {
     CHECK_THAT(result.out, Contains("fathom render scene.json") && Contains("Exit status") && Contains("65"));
     CHECK(result.err == "");
   }
-  for (const std::string verb : {"render", "check", "dump", "eval"}) {
+  for (const std::string verb : {"render", "check", "dump", "eval", "slice", "schema"}) {
     const Result result = folder.run(verb + " --help");
     CHECK(result.code == 0);
     CHECK_THAT(result.out, Contains("Examples:\n  fathom " + verb));
@@ -216,7 +157,7 @@ TEST_CASE("cli: the version is the project's") {
 
 TEST_CASE("cli: files that cannot be read or written are exit code 74") {
   const Folder folder;
-  for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0"}) {
+  for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0", "slice"}) {
     const Result result = folder.run(std::string(verb) + " missing.json");
     CHECK(result.code == 74);
     CHECK_THAT(result.err, Contains("cannot read `missing.json`: No such file or directory"));
@@ -243,6 +184,9 @@ TEST_CASE("cli: no output may overwrite the scene or another output") {
     CHECK_THAT(result.err, Contains("would be overwritten"));
   }
   CHECK(folder.run("check ball.json").code == 0);
+  folder.write("scene.png", kBall);
+  CHECK_THAT(folder.run("slice scene.png -o ./scene.png").err, Contains("would be overwritten"));
+  CHECK(folder.read("scene.png") == kBall);
 }
 
 TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
@@ -254,6 +198,8 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   CHECK_FALSE(folder.has("bad.png"));
   CHECK(folder.run("dump bad.json").code == 65);
   CHECK(folder.run("eval bad.json --at 0,0,0").code == 65);
+  CHECK(folder.run("slice bad.json -o bad.png").code == 65);
+  CHECK_FALSE(folder.has("bad.png"));
   const Result check = folder.run("check bad.json");
   CHECK(check.code == 1);
   CHECK(check.out == "");
@@ -314,19 +260,6 @@ TEST_CASE("cli: eval reads points from a file, and names the line that is none")
   CHECK(bad.code == 65);
   CHECK(bad.out == "");
   CHECK_THAT(bad.err, Contains("bad.txt:2: `0 2` is not a point"));
-}
-
-TEST_CASE("cli: dump prints each stage on stdout") {
-  const Folder folder;
-  CHECK_THAT(folder.run("dump ball.json").out, Contains("sphere") && Contains("0.5"));
-  CHECK_THAT(folder.run("dump two.json --program surface").out, Contains("tag"));
-  CHECK_THAT(folder.run("dump two.json --program distance").out, !Contains("tag"));
-  CHECK_THAT(folder.run("dump ball.json --stage syntax").out, Contains("radius"));
-  CHECK_THAT(folder.run("dump ball.json --stage graph").out, Contains("%0 = sphere radius=0.5"));
-  CHECK_THAT(folder.run("dump two.json --after graph").out, Contains("%0 = ") && Contains("union"));
-  CHECK_THAT(folder.run("dump two.json --after graph --stage bytecode").out, Contains("box"));
-  CHECK_THAT(folder.run("dump two.json --stats").out, Contains("sphere") && Contains("total"));
-  CHECK(folder.run("dump two.json").err == "");
 }
 
 TEST_CASE("cli: render writes the picture, and what is asked for beside it") {

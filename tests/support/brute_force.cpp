@@ -77,7 +77,7 @@ BruteForce::BruteForce(Kind kind, std::span<const double> k) {
       build_sheet(k.first(12), k[12]);
       break;
     default:
-      build_revolved(kind, k);
+      if (!build_solid(kind, k)) build_revolved(kind, k);
   }
 }
 

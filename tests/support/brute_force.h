@@ -4,7 +4,7 @@
 //     BruteForce truth(Kind::Cone, params);
 //     truth.distance(p)      // negative inside
 //
-// Not for Mandelbulbs, whose boundary nobody can parametrise.
+// Not for fractals, whose boundary nobody can parametrise, nor for other fields that are not exact.
 // Tested by: tests/compiler/shapes_test.cpp
 #pragma once
 
@@ -41,6 +41,13 @@ class BruteForce {
   void build_round_cone(double bottom, double top, double height);
   void build_plane(glm::dvec3 normal, double offset);
   void build_sheet(std::span<const double> corners, double thickness);
+  // The solids of brute_force_solids.cpp; false for all others.
+  bool build_solid(compiler::Kind kind, std::span<const double> k);
+  void build_box_frame(glm::dvec3 half, double thickness);
+  void build_capped_torus(double major, double minor, double degrees);
+  void build_polyhedron(compiler::Kind kind, double radius);
+  void build_pyramid(double half_width, double half_height);
+  void add_quad(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 d);
   void revolve(std::function<glm::dvec2(double t)> profile);
 
   std::vector<Patch> patches_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <initializer_list>
 #include <limits>
 #include <span>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "compiler/shapes/node_table.h"
 #include "tests/support/judge_domain.h"
+#include "tests/support/judge_geometry.h"
 #include "tests/support/judge_outlines.h"
 #include "vm/check.h"
 
@@ -30,17 +30,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 dvec3 vec(Params k, std::size_t first) { return {k[first], k[first + 1], k[first + 2]}; }
 dvec2 half_plane(dvec3 p) { return {std::hypot(p.x, p.z), p.y}; }
 
-// The foot of p on the line through a and b is a + t(b - a) with t = <p-a, b-a> / |b-a|^2; the nearest point of the
-// segment has t clamped, since |p - a - t(b-a)|^2 is a parabola in t.
-template <typename V>
-double distance_to_segment(V p, V a, V b) {
-  const V ab = b - a;
-  const double length2 = glm::dot(ab, ab);
-  const double t = length2 > 0 ? std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) : 0.0;
-  const V nearest = t < 0.5 ? a + t * ab : b - (1 - t) * ab;
-  return glm::length(p - nearest);
-}
-
 // A solid of revolution with a straight profile from (bottom, -h) to (top, h): its boundary is three segments of the
 // half-plane, and a point is inside when it lies between the caps and nearer to the axis than the slanted line.
 double frustum(dvec3 p, double bottom, double top, double h) {
@@ -51,13 +40,6 @@ double frustum(dvec3 p, double bottom, double top, double h) {
   const double at = (q.y + h) / (2 * h);
   const bool inside = std::abs(q.y) < h && q.x < bottom + at * (top - bottom);
   return inside ? -to_boundary : to_boundary;
-}
-
-// Outside, the nearest point of a box is p clamped to it; inside, the nearest face is an axis away.
-double box(dvec3 p, dvec3 half) {
-  const dvec3 outside = p - glm::clamp(p, -half, half);
-  if (outside != dvec3(0)) return std::hypot(outside.x, outside.y, outside.z);
-  return -std::min({half.x - p.x, half.x + p.x, half.y - p.y, half.y + p.y, half.z - p.z, half.z + p.z});
 }
 
 // The points within `minor` of the circle of radius `major` around the y axis (the definition of a torus). The
@@ -78,23 +60,6 @@ double round_cone(dvec3 p, double bottom, double top, double h) {
   double t = s > 0 ? 0.0 : 1.0;
   if (std::abs(s) < 1) t = std::clamp((q.y - q.x * s / std::sqrt((1 - s) * (1 + s))) / h, 0.0, 1.0);
   return std::hypot(q.x, q.y - t * h) - (bottom + t * (top - bottom));
-}
-
-// Distance to a planar convex polygon: to its plane where p projects into it (left of every edge, seen from the side
-// the normal points to), else to its nearest edge. Newell's sum gives the normal.
-double polygon(dvec3 p, std::initializer_list<dvec3> corners) {
-  const std::vector<dvec3> v(corners);
-  dvec3 normal(0);
-  for (std::size_t i = 0; i < v.size(); ++i) normal += glm::cross(v[i] - v[0], v[(i + 1) % v.size()] - v[0]);
-  normal = glm::normalize(normal);
-  bool projects_inside = true;
-  double to_edge = kInfinity;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const dvec3 a = v[i], b = v[(i + 1) % v.size()];
-    projects_inside = projects_inside && glm::dot(glm::cross(b - a, p - a), normal) >= 0;
-    to_edge = std::min(to_edge, distance_to_segment(p, a, b));
-  }
-  return projects_inside ? std::abs(glm::dot(p - v[0], normal)) : to_edge;
 }
 
 // Distance estimate 0.5 ln|w| |w| / |w'| of the escaping orbit of w -> w^n + p in White and Nylander's triplex
@@ -124,9 +89,9 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::Sphere:
       return std::hypot(p.x, p.y, p.z) - k[0];
     case Kind::Box:
-      return box(p, vec(k, 0));
+      return distance_to_box(p, vec(k, 0));
     case Kind::RoundBox:
-      return box(p, vec(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
+      return distance_to_box(p, vec(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
     case Kind::Torus:
       return torus(p, k[0], k[1]);
     case Kind::Plane:
@@ -140,14 +105,16 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::RoundCone:
       return round_cone(p, k[0], k[1], k[2]);
     case Kind::Triangle:
-      return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
+      return distance_to_polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
     case Kind::Quad:
-      return polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
+      return distance_to_polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
     case Kind::Mandelbulb:
       return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]) - k[3];
-    default:
-      CHECK(false, "a primitive");
-      return 0;
+    default: {
+      const std::optional<double> distance = judge_solid(kind, k, p);
+      CHECK(distance.has_value(), "a primitive");
+      return *distance;
+    }
   }
 }
 

@@ -95,7 +95,7 @@ class Maker {
     Kind kind;
     do {
       kind = kinds[static_cast<std::size_t>(random_.below(static_cast<int>(kinds.size())))];
-    } while (kind == Kind::Plane && !options_.planes);
+    } while (!options_.planes && !compiler::spec(kind).bound(random_params(kind, random_)).finite());
     return add(kind, random_params(kind, random_), {});
   }
 
@@ -215,6 +215,45 @@ std::vector<double> random_params(Kind kind, Random& random) {
       return cone(random);
     case Kind::RoundCone:
       return round_cone(random);
+    case Kind::BoxFrame: {
+      const double x = size(), y = size(), z = size(), share[] = {0.5, 0.25, 0.1, 0.01};
+      return {x, y, z, rounded(std::min({x, y, z}) * share[random.below(4)])};
+    }
+    case Kind::CappedTorus: {
+      const double major = random.length(0.2, 1.5), ratio[] = {0.9, 0.5, 0.1, 0.01};
+      const double angle[] = {180, 90, 30, rounded(random.uniform(1, 179))};
+      return {major, rounded(major * ratio[random.below(4)]), angle[random.below(4)]};
+    }
+    case Kind::Ellipsoid:
+      return {size(), size(), size()};
+    case Kind::Link: {
+      std::vector<double> ring = torus(random);
+      ring.push_back(size());
+      return ring;
+    }
+    case Kind::InfiniteCylinder:
+    case Kind::Tetrahedron:
+    case Kind::Octahedron:
+    case Kind::Dodecahedron:
+    case Kind::Icosahedron:
+      return {size()};
+    case Kind::InfiniteCone:
+      return {rounded(random.uniform(2, 88))};
+    case Kind::Capsule:
+    case Kind::Pyramid:
+      return {size(), size()};
+    case Kind::Gyroid:
+    case Kind::SchwarzP:
+    case Kind::SchwarzD:
+      return {random.length(0.2, 4)};
+    case Kind::MengerSponge:
+      return {size(), 1.0 + random.below(5)};
+    case Kind::Julia: {
+      const dvec3 c = random.in_box(0.6);
+      const double detail[] = {0, 0x1p-10, 0x1p-6};
+      const double w = rounded(random.uniform(-0.6, 0.6)), iterations = 1.0 + random.below(12);
+      return {c.x, c.y, c.z, w, iterations, 2.0 + random.below(7), detail[random.below(3)]};
+    }
     case Kind::Triangle:
       return sheet(random, false);
     case Kind::Quad:

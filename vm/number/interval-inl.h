@@ -1,6 +1,7 @@
 // Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation
 // by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a
-// NaN bound gives the whole line. The elementary functions are in interval_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
+// NaN bound gives the whole line. The elementary functions are in interval_elementary-inl.h. Source: Moore, "Interval
+// Analysis", 1966.
 #if defined(FATHOM_VM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_INL
 #undef FATHOM_VM_INTERVAL_INL

@@ -1,6 +1,7 @@
-// Elementary functions of Interval: Real's kernels at the ends, widened by kKernelSlack, far above their error. Where a
-// function is undefined in part of the operand the result is the hull over the rest; where in all of it, the whole
-// line. A jump inside the operand gives the hull of both sides.
+// Elementary functions of Interval: Real's kernels at the ends, widened by kKernelSlack, far above their error. Where
+// a function is undefined in part of the operand the result is the hull over the rest; where in all of it, the whole
+// line. So a range says nothing of points where a part of the formula is undefined. A jump inside the operand gives
+// the hull of both sides.
 #if defined(FATHOM_VM_INTERVAL_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_ELEMENTARY_INL
 #undef FATHOM_VM_INTERVAL_ELEMENTARY_INL
@@ -110,7 +111,9 @@ inline Interval compare(Interval a, Interval b) {
   if (equal) return {0, 0};
   return {a.lo < b.hi ? -1.0 : (a.lo == b.hi ? 0.0 : 1.0), b.lo < a.hi ? 1.0 : (b.lo == a.hi ? 0.0 : -1.0)};
 }
-inline Interval step(Interval edge, Interval x) { return {x.lo < edge.hi ? 0.0 : 1.0, x.hi < edge.lo ? 0.0 : 1.0}; }
+inline Interval step(Interval edge, Interval x) {
+  return {x.lo < edge.hi ? 0.0 : 1.0, x.hi < edge.lo ? 0.0 : 1.0};
+}
 
 // |x|^y over x in [a.lo, a.hi], both >= 0.
 inline Interval positive_power(Interval a, Interval y) {
@@ -119,12 +122,12 @@ inline Interval positive_power(Interval a, Interval y) {
     for (double exponent : {y.lo, y.hi}) {
       const double value = pow(Real{base}, Real{exponent}).v;
       lo = std::min(lo, value), hi = std::max(hi, value);
-      // The kernel's relative error grows with |y log x|; between overflow and underflow that is at most 750.
     }
   }
   if (a.lo == 0 && contains(y, 0)) lo = std::min(lo, 0.0), hi = std::max(hi, 1.0);
   if (contains(y, 0)) lo = std::min(lo, 1.0), hi = std::max(hi, 1.0);
   if (std::isnan(lo) || std::isnan(hi)) return {0, std::numeric_limits<double>::infinity()};
+  // The kernel's relative error grows with |y log x|, which between underflow and overflow is at most 750.
   const Interval wide = outward(lo * (1 - 1e-12), hi * (1 + 1e-12));
   return {std::max(0.0, wide.lo), wide.hi};
 }

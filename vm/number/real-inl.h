@@ -41,7 +41,8 @@ HWY_INLINE Real length(Real x, Real y, Real z) { return sqrt(x * x + y * y + z *
 
 HWY_INLINE bool is_nan(Real a) { return a.v != a.v; }
 
-// No result is -0, as for Batch. Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding decides.
+// No result is -0, as for Batch. Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding
+// decides.
 HWY_INLINE Real round_nearest(Real a) {
   const double m = std::fabs(a.v);
   return {(m < 0x1p52 ? std::copysign((m + 0x1p52) - 0x1p52, a.v) : a.v) + 0.0};

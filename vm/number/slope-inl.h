@@ -10,11 +10,12 @@
 // norm 1 even where they are 0 and the quotient of intervals is unbounded.
 //
 // Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
-// "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: an operation hands on its operands' errors times
-// its slope over all values f32 may have there (`seen`) and adds its own. Jumps that f32 may take elsewhere than
-// exact arithmetic, and operands f32 may have outside the domain, count in full.
+// "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: an operation hands on its operands' errors
+// times its slope over all values f32 may have there (`seen`) and adds its own. Jumps that f32 may take elsewhere
+// than exact arithmetic, and operands f32 may have outside the domain, count in full.
 //
-// Tested by: tests/vm/slope_test.cpp
+// Holds at points where every operation of the program is defined: a NaN can vanish in a min or a comparison.
+// Tested by: tests/vm/formula_test.cpp
 #if defined(FATHOM_VM_SLOPE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SLOPE_INL
 #undef FATHOM_VM_SLOPE_INL
@@ -88,9 +89,7 @@ inline Slope Slope::broadcast(double value) {
   return result;
 }
 
-inline Slope operator-(const Slope& a) {
-  return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.error);
-}
+inline Slope operator-(const Slope& a) { return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.error); }
 inline Slope operator+(const Slope& a, const Slope& b) {
   const double error = a.error + b.error;
   Slope r = make_slope(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
@@ -108,7 +107,8 @@ inline Slope operator-(const Slope& a, const Slope& b) {
 }
 inline Slope operator*(const Slope& a, const Slope& b) {
   const double ma = magnitude(a.v), mb = magnitude(b.v);
-  const double error = times(magnitude(seen(a)), b.error) + times(mb, a.error) + rounding(magnitude(seen(a) * seen(b)));
+  const double error =
+      times(magnitude(seen(a)), b.error) + times(mb, a.error) + rounding(magnitude(seen(a) * seen(b)));
   Slope r = make_slope(a.v * b.v, a.v * b.dx + b.v * a.dx, a.v * b.dy + b.v * a.dy, a.v * b.dz + b.v * a.dz,
                        times(ma, b.norm) + times(mb, a.norm), error);
   r.nonnegative = a.nonnegative && b.nonnegative;

@@ -12,23 +12,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-inline constexpr double kKernelUnits = 8;  // 4 ulp
+inline constexpr double kKernelUnits = 8;   // 4 ulp
 inline constexpr double kAngleLimit = 1e4;  // up to here the f32 kernels know their angle
 
 // f(a) with f's derivative over the exact and over the f32 operands.
 inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_slope, Interval seen_v) {
   return chain(a, v, slope, times(magnitude(seen_slope), a.error) + rounding(kKernelUnits * magnitude(seen_v)));
 }
+// Where f32 does not know its angle, both values are in [-1, 1]; of an overflow the sine is NaN.
+inline double wave_error(Interval s) { return magnitude(s) < 3.4e38 ? 2 / kUnit : kUnbounded; }
 inline Slope sin(const Slope& a) {
   const Interval s = seen(a);
   Slope r = smooth(a, sin(a.v), cos(a.v), cos(s), sin(s));
-  if (!(magnitude(s) <= kAngleLimit)) r.error = 2 / kUnit;
+  if (!(magnitude(s) <= kAngleLimit)) r.error = wave_error(s);
   return r;
 }
 inline Slope cos(const Slope& a) {
   const Interval s = seen(a);
   Slope r = smooth(a, cos(a.v), -sin(a.v), sin(s), cos(s));
-  if (!(magnitude(s) <= kAngleLimit)) r.error = 2 / kUnit;
+  if (!(magnitude(s) <= kAngleLimit)) r.error = wave_error(s);
   return r;
 }
 inline Slope tan(const Slope& a) {
@@ -106,7 +108,8 @@ inline Slope pow(const Slope& x, const Slope& y) {
   // A root or power of what may be 0 but not less: t |log t| as above, and |x|^y moves by no more than its range.
   if (x.nonnegative && y.v.lo > 0) {
     const Interval range = pow(seen(x), seen(y));
-    r.error = bound((range.hi - range.lo) / kUnit + 8 * range.hi + 8 * range.hi * std::fabs(log(Real{range.hi + 1}).v) + 8);
+    r.error =
+        bound((range.hi - range.lo) / kUnit + 8 * range.hi + 8 * range.hi * std::fabs(log(Real{range.hi + 1}).v) + 8);
     if (y.norm == 0 && y.v.lo > 1.0) {
       const Interval slope = y.v * pow(x.v, y.v - Interval{1, 1});
       return chain(x, r.v, slope, r.error);
@@ -124,8 +127,12 @@ inline Slope ceil(const Slope& a) { return steps(ceil(a.v), ceil(seen(a))); }
 inline Slope round_nearest(const Slope& a) { return steps(round_nearest(a.v), round_nearest(seen(a))); }
 inline Slope sign(const Slope& a) { return steps(sign(a.v), sign(seen(a))); }
 inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logical_not(seen(a))); }
-inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
-inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
+inline Slope compare(const Slope& a, const Slope& b) {
+  return steps(compare(a.v, b.v), compare(seen(a), seen(b)));
+}
+inline Slope step(const Slope& edge, const Slope& x) {
+  return steps(step(edge.v, x.v), step(seen(edge), seen(x)));
+}
 
 inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());

@@ -1,0 +1,185 @@
+#include "compiler/frontend/schema.h"
+
+#include <cmath>
+#include <optional>
+#include <nlohmann/json.hpp>
+
+#include "compiler/frontend/records.h"
+
+namespace fathom::compiler {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Whole numbers without a fraction, which editors show as they are.
+Json plain(double number) {
+  constexpr double kExact = 9007199254740992;  // 2^53
+  if (std::floor(number) == number && std::abs(number) <= kExact) return static_cast<std::int64_t>(number);
+  return number;
+}
+
+Json reference(std::string_view definition) { return {{"$ref", "#/$defs/" + std::string(definition)}}; }
+
+// A value that may be written in two ways.
+Json either(Json one, Json other) { return {{"anyOf", Json::array({std::move(one), std::move(other)})}}; }
+
+Json string_schema() { return {{"type", "string"}}; }
+
+// A number in the range and under the rule of a property, or a formula of the scene's parameters, which only the
+// compiler can check.
+Json number_schema(const PropertySpec& property, const char* type = "number") {
+  Json schema = {{"type", type}};
+  const Range& range = property.range;
+  const bool above_zero = property.rule == Rule::Positive && range.least <= 0;
+  const bool from_zero = property.rule == Rule::NotNegative && range.least < 0;
+  schema[above_zero || range.open ? "exclusiveMinimum" : "minimum"] =
+      plain(above_zero || from_zero ? 0 : range.least);
+  schema[range.open ? "exclusiveMaximum" : "maximum"] = plain(range.most);
+  return either(std::move(schema), string_schema());
+}
+
+Json list_schema(Json items, int least, std::optional<int> most = std::nullopt) {
+  Json schema = {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
+  if (most) schema["maxItems"] = *most;
+  return schema;
+}
+
+Json three_schema(const PropertySpec& property) {
+  Json schema = list_schema(number_schema(property), 3, 3);
+  if (property.rule == Rule::NotZero) schema["not"] = {{"items", {{"const", 0}}}};
+  return schema;
+}
+
+Json record_schema(const RecordSpec& record, bool type_required);
+
+// What the value of a property of `record` must be.
+Json value_schema(const PropertySpec& property, const RecordSpec& record) {
+  switch (property.type) {
+    case ValueType::Number:
+      return number_schema(property);
+    case ValueType::Integer:
+      return number_schema(property, "integer");
+    case ValueType::Vec2:
+      return list_schema(number_schema(property), 2, 2);
+    case ValueType::Vec3:
+    case ValueType::Color:
+      return three_schema(property);
+    case ValueType::Points:
+      return list_schema(list_schema(number_schema(property), 2, 2), 3);
+    case ValueType::Formula:
+      return either(string_schema(), list_schema(string_schema(), 1));
+    case ValueType::Text:
+    case ValueType::Choice:
+      if (property.name == "type") return {{"const", record.type}};
+      return string_schema();
+    case ValueType::Record:
+      return reference(property.name);
+    case ValueType::Named:  // "materials" holds what the definition "material" says
+      return {{"type", "object"},
+              {"additionalProperties", reference(property.name.substr(0, property.name.size() - 1))}};
+    case ValueType::Node:
+      return reference("node");
+    case ValueType::Nodes:
+      return list_schema(reference("node"), 1);
+    case ValueType::Scale:
+    case ValueType::Rotation:
+      return reference(property.name);
+    case ValueType::Gradient:  // one colour for both ends
+      return either(three_schema(gradient_record().properties[0]), record_schema(gradient_record(), false));
+    case ValueType::Version:
+      return {{"const", kSceneVersion}};
+    case ValueType::Anything:
+      break;
+  }
+  return Json::object();
+}
+
+Json default_of(const PropertySpec& property) {
+  if (property.fallback.size() == 1) return plain(property.fallback[0]);
+  Json numbers = Json::array();
+  for (const double number : property.fallback) numbers.push_back(plain(number));
+  return numbers;
+}
+
+Json property_schema(const PropertySpec& property, const RecordSpec& record) {
+  Json schema = value_schema(property, record);
+  schema["description"] = property.doc;
+  if (!property.fallback.empty()) schema["default"] = default_of(property);
+  if (property.type == ValueType::Choice && !property.required) schema["default"] = property.choices[0];
+  return schema;
+}
+
+// `type_required`: the record is not the one meant when `type` is absent.
+Json record_schema(const RecordSpec& record, bool type_required) {
+  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"required", Json::array()}};
+  Json excluded = Json::array();
+  for (const PropertySpec& property : record.properties) {
+    schema["properties"][std::string(property.name)] = property_schema(property, record);
+    if (property.required || (type_required && property.name == "type")) schema["required"].push_back(property.name);
+    if (!property.instead_of.empty()) excluded.push_back({{"required", {property.instead_of, property.name}}});
+  }
+  if (!excluded.empty()) schema["not"] = {{"anyOf", excluded}};
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+// One of the records of a family, told apart by `type`.
+Json family_schema(const std::vector<RecordSpec>& family) {
+  Json rows = Json::array();
+  for (const RecordSpec& record : family) {
+    rows.push_back(record_schema(record, &record != &family[0]));
+    rows.back()["title"] = record.type;
+  }
+  return {{"oneOf", rows}};
+}
+
+// What the properties `scale` and `rotate` of every node refer to.
+Json scale_schema() {
+  const PropertySpec& scale = *use_record().find("scale");
+  return either(number_schema(scale), three_schema(scale));
+}
+Json rotate_schema() {
+  return either(three_schema(*use_record().find("rotate")), record_schema(rotation_record(), false));
+}
+
+// A length, or the two ends it is measured between.
+Json between_schema(const Between& between) {
+  const Json ends = {{"anyOf", {{{"required", {"a"}}}, {{"required", {"b"}}}}}};
+  const Json length = {{"required", {between.length}}};
+  return {{"oneOf", Json::array({{{"required", {between.length}}, {"not", ends}}, {{"required", {"a", "b"}}, {"not", length}}})}};
+}
+
+Json node_schema() {
+  Json rows = Json::array();
+  for (const NodeSpec& node : node_table()) {
+    if (node.category == Category::Internal || node.category == Category::Function) continue;
+    rows.push_back(record_schema(node_record(node.kind), true));
+    if (node.between) rows.back().update(between_schema(*node.between));
+    rows.back()["title"] = node.name;
+    rows.back()["description"] = node.doc;
+  }
+  rows.push_back(record_schema(use_record(), false));
+  rows.back()["title"] = use_record().noun;
+  rows.back()["description"] = "a node of `nodes`, placed";
+  return {{"oneOf", rows}};
+}
+
+}  // namespace
+
+std::string scene_schema() {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "Fathom scene"},
+                 {"description", "A scene of signed distance fields. Comments (// and /* */) are allowed."}};
+  schema.update(record_schema(scene_record(), false));
+  schema["$defs"] = {{"camera", family_schema(camera_records())},
+                     {"film", record_schema(film_record(), false)},
+                     {"render", record_schema(render_record(), false)},
+                     {"param", either(number_schema({}), record_schema(parameter_record(), false))},
+                     {"material", family_schema(material_records())},
+                     {"node", node_schema()},
+                     {"scale", scale_schema()},
+                     {"rotate", rotate_schema()}};
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace fathom::compiler

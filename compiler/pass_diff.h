@@ -1,0 +1,37 @@
+// What each pass of the compiler changed, for `fathom dump --diff`:
+//
+//     ; pass fold: 14 -> 9 nodes, 21 -> 13 ops, cost 95 -> 61
+//     --- unpaint
+//     +++ fold
+//     @@ -1,3 +1,2 @@
+//     ...
+//
+// The graphs are printed with names by place (compiler/graph.h), so that a node keeps its name when others go.
+// Tested by: tests/runtime/cli_dump_test.cpp
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "compiler/compile.h"
+
+namespace fathom::compiler {
+
+class PassDiff {
+ public:
+  explicit PassDiff(const Source& source) : source_(source) {}
+
+  // To be called after each pass, and before the first: CompileOptions::on_pass.
+  void add(std::string_view pass, const Scene& scene);
+
+  // One part for each pass that changed something.
+  std::string text() const;
+
+ private:
+  const Source& source_;
+  std::string last_pass_, last_graph_, text_;
+  std::optional<GraphSize> last_size_;
+};
+
+}  // namespace fathom::compiler

@@ -1,0 +1,65 @@
+#include "runtime/cli/output_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/image_io.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes some 100 bytes
+
+// One name for a file however it is written, whether it exists or not.
+std::filesystem::path canonical_name(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+}
+
+}  // namespace
+
+Verdict read_output(std::string_view text, std::string& path) {
+  path = text;
+  if (runtime::image_format_of(path)) return std::nullopt;
+  return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
+                   "valid endings: .png, .jpg, .jpeg, .bmp"};
+}
+
+std::string default_output(const std::string& scene) {
+  const std::string stem = scene == "-" ? "" : std::filesystem::path(scene).stem().string();
+  return (stem.empty() ? "out" : stem) + ".png";
+}
+
+std::string beside(const std::string& path, const std::string& suffix) {
+  const std::size_t dot = path.rfind('.');
+  return path.substr(0, dot) + "-" + suffix + path.substr(dot);
+}
+
+std::optional<ExitCode> check_picture_size(double width, double height, const Streams& streams) {
+  if (width <= compiler::kMaxSide && height <= compiler::kMaxSide && width * height <= kMaxPixels)
+    return std::nullopt;
+  return fail(
+      streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
+      {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide, kMaxPixels / 1000000)});
+}
+
+std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,
+                                         const Streams& streams) {
+  std::vector<std::filesystem::path> taken;
+  if (scene != "-") taken.push_back(canonical_name(scene));
+  for (const std::string& file : outputs) {
+    std::filesystem::path path = canonical_name(file);
+    if (std::find(taken.begin(), taken.end(), path) != taken.end()) {
+      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is the scene or another output", file),
+                  {"give each output a name of its own"});
+    }
+    taken.push_back(std::move(path));
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,32 @@
+// Pictures as a verb writes them: their names on the command line, and that none takes the place of another file.
+// Tested by: tests/runtime/cli_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/cli/streams.h"
+#include "runtime/cli/values.h"
+
+namespace fathom::cli {
+
+// A file name with the ending of a picture format.
+Verdict read_output(std::string_view text, std::string& path);
+
+// "scenes/ball.json" -> "ball.png", in the current folder; "out.png" for standard input.
+std::string default_output(const std::string& scene);
+
+// "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
+std::string beside(const std::string& path, const std::string& suffix);
+
+// An ExitCode, after a message, when a picture of that size would be too large.
+std::optional<ExitCode> check_picture_size(double width, double height, const Streams& streams);
+
+// An ExitCode, after a message, when one of `outputs` is the scene's file or another output.
+std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,
+                                         const Streams& streams);
+
+}  // namespace fathom::cli

@@ -1,0 +1,140 @@
+// fathom slice: the field on a plane as a picture, where it is solid or how far the surface is.
+//
+//     $ fathom slice ball.json --show sign -o ball.png
+//     inside 107968 of 262144 pixels
+//
+// Tested by: tests/runtime/cli_slice_test.cpp
+#include "runtime/slice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <thread>
+
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/image_io.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom slice scene.json -o out.png                          # across z, as seen from the front\n"
+    "fathom slice scene.json -o out.png --axis y --at 0.5        # from above, at the height 0.5\n"
+    "fathom slice scene.json -o out.png --show sign --box -1,-1,1,1 --size 1024x1024\n"
+    "\n"
+    "Across z the picture's right is +x and up is +y, across y right is +x and up is -z, across x right is -z and\n"
+    "up is +y. --box takes x,y across z; x,z across y; z,y across x.";
+
+enum Show { kSign, kDistance };
+
+struct SliceRequest {
+  SceneArguments scene;
+  std::string output;
+  int axis = static_cast<int>(runtime::Axis::Z);
+  int show = kDistance;
+  std::optional<double> at;
+  std::optional<Rectangle> box;
+  std::optional<PixelSize> size;
+  std::optional<int> threads;
+};
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, SliceRequest& request) {
+  std::optional<std::string> output;
+  Arguments arguments("slice", "Draws the field on a plane across one of the axes.", kExamples);
+  add_scene_arguments(arguments, request.scene);
+  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp", into(read_output, output));
+  arguments.option("--axis", "AXIS", "The axis the plane lies across: x, y or z (z)",
+                   one_of({"x", "y", "z"}, request.axis));
+  arguments.option("--at", "OFFSET", "Where on that axis the plane is, scene units (0)",
+                   into(read_finite, request.at));
+  arguments.option("--size", "WxH", "Width and height in pixels (512x512)", into(read_size, request.size));
+  arguments.option("--box", "X0,Y0,X1,Y1", "The part of the plane to show (the scene's bound and a tenth more)",
+                   into(read_rectangle, request.box));
+  arguments.option("--show", "WHAT", "sign: white inside, black outside; distance: coloured bands (the default)",
+                   one_of({"sign", "distance"}, request.show));
+  arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
+                   whole(request.threads, 1, 4096));
+  if (const auto code = arguments.parse(args, streams)) return code;
+
+  if (!request.size) request.size = PixelSize{512, 512};
+  if (const auto code = check_picture_size(request.size->width, request.size->height, streams)) return code;
+  request.output = output.value_or(beside(default_output(request.scene.path), "slice"));
+  if (!output) {
+    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output));
+  }
+  return std::nullopt;
+}
+
+runtime::Slice place_slice(const SliceRequest& request, const compiler::Box& bound) {
+  runtime::Slice slice = runtime::frame_slice(bound, static_cast<runtime::Axis>(request.axis), request.at.value_or(0),
+                                              request.size->width, request.size->height);
+  if (request.box) {
+    slice.lo = request.box->lo;
+    slice.hi = request.box->hi;
+  }
+  return slice;
+}
+
+// The line on standard output for a picture of the signs.
+std::string count_inside(const std::vector<float>& field) {
+  const auto inside = std::count_if(field.begin(), field.end(), [](float value) { return value < 0; });
+  return fmt::format("inside {} of {} pixels\n", inside, field.size());
+}
+
+// The line on standard output for a picture of the distances.
+std::string describe_bands(const std::vector<float>& field, double step) {
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+  for (const float value : field) {
+    least = std::min(least, value);  // leaves NaN aside: it is the second argument
+    most = std::max(most, value);
+  }
+  return fmt::format("a line every {:.6g} scene units, distances from {} to {}\n", step, least, most);
+}
+
+// A picture and what standard output says of it.
+struct Drawing {
+  runtime::Picture picture;
+  std::string line;
+};
+
+Drawing draw(const SliceRequest& request, const runtime::Slice& slice, const std::vector<float>& field) {
+  if (request.show == kSign) return {runtime::sign_picture(field, slice.width, slice.height), count_inside(field)};
+  const double step = runtime::band_step(slice.hi.y - slice.lo.y);
+  return {runtime::distance_picture(field, slice.width, slice.height, step), describe_bands(field, step)};
+}
+
+void note_invalid(const std::vector<float>& field, const Streams& streams) {
+  const auto invalid = std::count_if(field.begin(), field.end(), [](float value) { return std::isnan(value); });
+  if (invalid > 0) note(streams, fmt::format("{} of {} values are not a number", invalid, field.size()));
+}
+
+}  // namespace
+
+int run_slice(std::span<const std::string> args, const Streams& streams) {
+  SliceRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  if (const auto code = check_collisions(request.scene.path, {request.output}, streams)) return *code;
+  if (const auto problem = runtime::check_image_path(request.output)) return fail(streams, kIo, *problem);
+  auto source = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+
+  const runtime::Slice slice = place_slice(request, scene.bound);
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::vector<float> field =
+      runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors));
+  note_invalid(field, streams);
+  const Drawing drawing = draw(request, slice, field);
+  if (const auto problem = runtime::write_image(drawing.picture, request.output)) return fail(streams, kIo, *problem);
+  streams.out << drawing.line;
+  streams.err << fmt::format("wrote {} ({}x{})\n", request.output, slice.width, slice.height);
+  return kDone;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,112 @@
+// fathom dump and fathom schema as their users meet them.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::Result;
+
+}  // namespace
+
+TEST_CASE("cli: schema is JSON on stdout") {
+  const Result result = Folder().run("schema");
+  CHECK(result.code == 0);
+  CHECK(result.err == "");
+  const auto schema = nlohmann::json::parse(result.out);
+  CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
+  CHECK(schema["required"] == nlohmann::json({"version", "objects"}));
+}
+
+TEST_CASE("cli: dump prints each stage on stdout") {
+  const Folder folder;
+  CHECK_THAT(folder.run("dump ball.json").out, Contains("sphere") && Contains("0.5"));
+  CHECK_THAT(folder.run("dump two.json --program surface").out, Contains("tag"));
+  CHECK_THAT(folder.run("dump two.json --program distance").out, !Contains("tag"));
+  CHECK_THAT(folder.run("dump ball.json --stage syntax").out, Contains("radius"));
+  CHECK_THAT(folder.run("dump ball.json --stage graph").out, Contains("%0 = sphere radius=0.5"));
+  CHECK_THAT(folder.run("dump two.json --after graph").out, Contains("%0 = ") && Contains("union"));
+  CHECK_THAT(folder.run("dump two.json --after graph --stage bytecode").out, Contains("box"));
+  CHECK_THAT(folder.run("dump two.json --stats").out, Contains("sphere") && Contains("total"));
+  CHECK(folder.run("dump two.json").err == "");
+}
+
+TEST_CASE("cli: dump prints JSON and drawings") {
+  const Folder folder;
+  const auto program = nlohmann::json::parse(folder.run("dump two.json --program surface --format json").out);
+  CHECK(program["program"] == "surface");
+  CHECK(program["code"].size() == program["instructions"]);
+  std::size_t cost = 0, end = 0;
+  for (const auto& line : program["code"]) {
+    CHECK(line["offset"] == end);
+    cost += line["cost"].get<std::size_t>();
+    end += 1 + line["immediates"].size();
+    CHECK(line.contains("operand") == (line["op"] == "tag"));
+  }
+  CHECK(program["cost"] == cost);
+  CHECK(program["words"] == end);
+  CHECK(program["code"].back()["values"] == nlohmann::json({2, 1}));
+  const auto graph = nlohmann::json::parse(folder.run("dump two.json --stage graph --format json").out);
+  CHECK(graph["nodes"].size() == 5);  // sphere, box, their transforms, union
+  const auto first = nlohmann::json::parse(folder.run("dump two.json --after graph --format json").out);
+  CHECK(first["nodes"].size() == 7);  // and two paints
+  CHECK_THAT(folder.run("dump two.json --format dot").out, Contains("digraph scene {") && Contains("n4 -> n1;"));
+  CHECK_THAT(folder.run("dump two.json --format mermaid").out, Contains("flowchart TD") && Contains("n4 -->|1| n1"));
+}
+
+TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
+  const Folder folder;
+  folder.write("fold.json", R"({"version": 1, "objects": [
+    {"type": "round", "radius": 0.25, "of": {"type": "sphere", "radius": 1}},
+    {"type": "box", "half_size": [1, 1, 1]}]})");
+  const Result result = folder.run("dump fold.json --diff");
+  CHECK(result.code == 0);
+  CHECK(result.out ==
+        R"(; pass unpaint: 6 -> 4 nodes, 6 -> 4 ops, cost 24 -> 24
+--- graph
++++ unpaint
+@@ -1,6 +1,4 @@
+ %sphere@2:45 = sphere radius=1
+ %round@2:5 = round radius=0.25 %sphere@2:45
+-%paint@2:5 = paint surface=0 %round@2:5
+ %box@3:5 = box half_size=[1,1,1]
+-%paint@3:5 = paint surface=1 %box@3:5
+-%union = union %paint@2:5 %paint@3:5
++%union = union %round@2:5 %box@3:5
+; pass fold: 4 -> 3 nodes, 4 -> 3 ops, cost 24 -> 23
+--- unpaint
++++ fold
+@@ -1,4 +1,3 @@
+-%sphere@2:45 = sphere radius=1
+-%round@2:5 = round radius=0.25 %sphere@2:45
++%sphere@2:5 = sphere radius=1.25
+ %box@3:5 = box half_size=[1,1,1]
+-%union = union %round@2:5 %box@3:5
++%union = union %sphere@2:5 %box@3:5
+)");
+  CHECK(folder.run("dump fold.json --diff --after graph").out == "; no pass changed anything\n");
+  CHECK_THAT(folder.run("dump fold.json --diff --after unpaint").out, !Contains("pass fold"));
+}
+
+TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first") {
+  CHECK(Folder().run("dump two.json --stats").out ==
+        R"(operation             count  cost each      cost   share
+box                       1         14        14   56.0%
+sphere                    1          8         8   32.0%
+translate                 2          1         2    8.0%
+min                       1          1         1    4.0%
+drop                      2          0         0    0.0%
+total                     7                   25
+
+place    ops      cost   share  node
+6:5        1        14   56.0%  box "right"
+5:5        1         8   32.0%  sphere "left"
+-          1         1    4.0%  union
+5:5        2         1    4.0%  transform "left"
+6:5        2         1    4.0%  transform "right"
+total      7        25
+)");
+}

@@ -1,0 +1,94 @@
+// The program under test: run in a folder of its own, with two small scenes in it.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace fathom::tests {
+
+struct Result {
+  int code;
+  std::string out, err;
+};
+
+inline const char* const kBall = R"({
+  "version": 1,
+  "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+  "film": {"width": 32, "height": 16},
+  "render": {"spp": 2},
+  "background": [1, 1, 1],
+  "objects": [{"name": "ball", "type": "sphere", "radius": 0.5}]
+})";
+
+inline const char* const kTwo = R"({
+  "version": 1,
+  "materials": {"red": {"type": "diffuse", "color": [1, 0, 0]}, "blue": {"type": "diffuse", "color": [0, 0, 1]}},
+  "objects": [
+    {"name": "left", "type": "sphere", "radius": 1, "translate": [-2, 0, 0], "material": "red"},
+    {"name": "right", "type": "box", "half_size": [1, 1, 1], "translate": [2, 0, 0], "material": "blue"}
+  ]
+})";
+
+// An empty folder to run the program in, removed with everything in it.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "fathom-cli-XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+    write("ball.json", kBall);
+    write("two.json", kTwo);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  std::string read(const std::string& name) const {
+    std::stringstream text;
+    text << std::ifstream(path_ / name).rdbuf();
+    return text.str();
+  }
+  bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+  }
+
+  // `arguments` as for a shell; standard input is `in`.
+  Result run(const std::string& arguments, const std::string& in = "") const {
+    const std::filesystem::path io = path_.string() + ".io";  // beside the folder, which stays the user's
+    std::filesystem::create_directories(io);
+    std::ofstream(io / "in") << in;
+    const std::string command = "cd '" + path_.string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
+                                (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
+                                (io / "err").string() + "'";
+    const int status = std::system(command.c_str());
+    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
+                  read("../" + io.filename().string() + "/err")};
+    std::filesystem::remove_all(io);
+    return result;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
+inline std::pair<int, int> png_size(const std::string& bytes) {
+  REQUIRE(bytes.size() > 24);
+  const auto big_endian = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  return {big_endian(16), big_endian(20)};
+}
+
+}  // namespace fathom::tests
