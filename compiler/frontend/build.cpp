@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/frontend/formula_nodes.h"
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -92,6 +93,7 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& node, Context context
       children.push_back(inner.id);
       built.painted = built.painted && inner.painted;
     }
+    if (node.formula) children.push_back(make_formula(maker_, *node.formula, node.name));
     if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
       const NodeSpec& row = spec(node.kind);
       diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/placement.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/suggest.h"
@@ -143,6 +144,11 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
   node.type_span = type.value->span;
   const RecordReader reader(node_record(row->kind), record, type.value->span, scope_, diagnostics_, "E0301");
   for (const ParamSpec& param : row->params) {
+    if (param.type == ParamType::Formula) {
+      const syntax::Value* formula = reader.value(param.name);
+      if (formula) node.formula = read_formula(*formula, scope_, machine_functions(), diagnostics_);
+      continue;
+    }
     const std::vector<double> numbers = reader.numbers(param.name);
     node.params.insert(node.params.end(), numbers.begin(), numbers.end());
   }

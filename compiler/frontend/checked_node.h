@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/frontend/formula.h"
 #include "compiler/graph.h"
 
 namespace fathom::compiler {
@@ -21,6 +22,7 @@ struct CheckedNode {
   std::optional<std::uint32_t> use;  // which of the named nodes
   std::vector<double> params;
   std::vector<CheckedNode> children;
+  std::optional<Formula> formula;  // the last child, after `children`
   std::optional<std::array<double, 13>> between;    // see Between: where the primitive itself stands, a Transform
   std::optional<std::array<double, 13>> transform;  // see Kind::Transform
   std::optional<std::uint32_t> material;            // its own

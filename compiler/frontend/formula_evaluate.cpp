@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vm/check.h"
+#include "vm/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -16,8 +17,8 @@ struct Row {
   double (*apply)(double a, double b);  // b is 0 for functions of one argument
 };
 
-// This table alone uses libm, whose sin, exp, pow and their like may differ in the last bit from machine to machine;
-// it is to be replaced by the machine's own functions. The others are exact or correctly rounded everywhere.
+// What is not exact or correctly rounded everywhere is the machine's own, so that the same file gives the same scene on
+// every machine.
 constexpr Row kRows[] = {
     {"add", 2, [](double a, double b) { return a + b; }},
     {"minus", 2, [](double a, double b) { return a - b; }},
@@ -27,16 +28,16 @@ constexpr Row kRows[] = {
     {"abs", 1, [](double a, double) { return std::abs(a); }},
     {"square", 1, [](double a, double) { return a * a; }},
     {"sqrt", 1, [](double a, double) { return std::sqrt(a); }},
-    {"sin", 1, [](double a, double) { return std::sin(a); }},
-    {"cos", 1, [](double a, double) { return std::cos(a); }},
-    {"tan", 1, [](double a, double) { return std::tan(a); }},
-    {"asin", 1, [](double a, double) { return std::asin(a); }},
-    {"acos", 1, [](double a, double) { return std::acos(a); }},
-    {"atan", 1, [](double a, double) { return std::atan(a); }},
-    {"atan2", 2, [](double a, double b) { return std::atan2(a, b); }},
-    {"exp", 1, [](double a, double) { return std::exp(a); }},
-    {"log", 1, [](double a, double) { return std::log(a); }},
-    {"power", 2, [](double a, double b) { return std::pow(a, b); }},
+    {"sin", 1, [](double a, double) { return vm::real::sin(a); }},
+    {"cos", 1, [](double a, double) { return vm::real::cos(a); }},
+    {"tan", 1, [](double a, double) { return vm::real::tan(a); }},
+    {"asin", 1, [](double a, double) { return vm::real::asin(a); }},
+    {"acos", 1, [](double a, double) { return vm::real::acos(a); }},
+    {"atan", 1, [](double a, double) { return vm::real::atan(a); }},
+    {"atan2", 2, [](double a, double b) { return vm::real::atan2(a, b); }},
+    {"exp", 1, [](double a, double) { return vm::real::exp(a); }},
+    {"log", 1, [](double a, double) { return vm::real::log(a); }},
+    {"power", 2, [](double a, double b) { return vm::real::pow(a, b); }},
     {"floor", 1, [](double a, double) { return std::floor(a); }},
     {"ceil", 1, [](double a, double) { return std::ceil(a); }},
     {"nearest", 1, [](double a, double) { return std::nearbyint(a); }},  // halves to the even neighbour

@@ -22,6 +22,7 @@
 #include "compiler/affine.h"
 #include "compiler/make_node.h"
 #include "compiler/shapes/rows.h"
+#include "vm/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -36,9 +37,11 @@ double largest_stretch(double a, double b, double c) {
   return std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * determinant * determinant))) / 2);
 }
 
+double distance_from_axis(double x, double z) { return std::sqrt(x * x + z * z); }
+
 // The greatest distance of the box from the y axis.
 double radius_about_y(const Box& box) {
-  return std::hypot(std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
+  return distance_from_axis(std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
                     std::max(std::abs(box.lo.z), std::abs(box.hi.z)));
 }
 
@@ -282,11 +285,11 @@ struct Wedge {
 // The wedge about the y axis that holds the box; the whole turn when the box meets the axis.
 Wedge wedge_of(const Box& box) {
   if (box.lo.x <= 0 && box.hi.x >= 0 && box.lo.z <= 0 && box.hi.z >= 0) return {0, std::numbers::pi};
-  const double middle = std::atan2(box.lo.z + box.hi.z, box.lo.x + box.hi.x);
+  const double middle = vm::real::atan2(box.lo.z + box.hi.z, box.lo.x + box.hi.x);
   double half = 0;
   for (double x : {box.lo.x, box.hi.x}) {
     for (double z : {box.lo.z, box.hi.z}) {
-      half = std::max(half, std::abs(std::remainder(std::atan2(z, x) - middle, 2 * std::numbers::pi)));
+      half = std::max(half, std::abs(std::remainder(vm::real::atan2(z, x) - middle, 2 * std::numbers::pi)));
     }
   }
   return {middle, half};
@@ -340,7 +343,7 @@ Code polar_code(Params p) {
   Code code{.points = {}};
   if (sides == kAll) {
     for (int i = 0; i < static_cast<int>(count); ++i) {
-      const double c = std::cos(i * angle), s = std::sin(i * angle);
+      const double c = vm::real::cos(i * angle), s = vm::real::sin(i * angle);
       code.points.push_back({{Opcode::Affine, {c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0}}});
     }
     return code;
@@ -460,7 +463,7 @@ Box bent_box(const Arc& a, const Box& box) {
   Box bent;
   for (double angle : angles) {
     for (double rho : {a.innermost, a.outermost}) {
-      const double x = rho * std::sin(angle), y = (a.radius - rho * std::cos(angle)) * a.side;
+      const double x = rho * vm::real::sin(angle), y = (a.radius - rho * vm::real::cos(angle)) * a.side;
       bent = unite(bent, {{x, y, box.lo.z}, {x, y, box.hi.z}});
     }
   }

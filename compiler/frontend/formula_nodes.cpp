@@ -1,0 +1,54 @@
+#include "compiler/frontend/formula_nodes.h"
+
+#include <array>
+#include <vector>
+
+#include "vm/check.h"
+
+namespace fathom::compiler {
+namespace {
+
+int arity(const NodeSpec& row) {
+  const std::vector<double> any(row.params.size(), 0.0);
+  switch (vm::info(row.code(any).after.back().opcode).form) {
+    case vm::Form::Unary:
+      return 1;
+    case vm::Form::Binary:
+      return 2;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::span<const FunctionSpec> machine_functions() {
+  static const std::vector<FunctionSpec> functions = [] {
+    std::vector<FunctionSpec> made;
+    for (const NodeSpec& row : node_table()) {
+      if (row.category != Category::Function) continue;
+      if (const int operands = arity(row); operands > 0) made.push_back({row.name, operands});
+    }
+    return made;
+  }();
+  return functions;
+}
+
+NodeId make_formula(NodeMaker& maker, const Formula& formula, const std::string& name) {
+  std::vector<NodeId> made, operands;
+  for (const Formula::Node& node : formula.nodes) {
+    const Origin origin{node.span, name};
+    if (node.function == "const") {
+      made.push_back(maker.make(Kind::Constant, std::array<double, 1>{node.value}, {}, origin));
+      continue;
+    }
+    const NodeSpec* row = find_function(node.function);
+    CHECK(row != nullptr, "formulas are of the machine's functions");
+    operands.clear();
+    for (const std::uint32_t argument : node.arguments) operands.push_back(made[argument]);
+    made.push_back(maker.make(row->kind, {}, operands, origin));
+  }
+  return made.back();
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,19 @@
+// From a formula to nodes of the graph, one for each of its operations.
+// Tested by: tests/compiler/formula_field_test.cpp
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "compiler/frontend/formula.h"
+#include "compiler/make_node.h"
+
+namespace fathom::compiler {
+
+// The functions of the node table: what a formula of x, y and z can be made of.
+std::span<const FunctionSpec> machine_functions();
+
+// The node that is the formula's value. `name` is that of the scene's node it belongs to.
+NodeId make_formula(NodeMaker& maker, const Formula& formula, const std::string& name);
+
+}  // namespace fathom::compiler
