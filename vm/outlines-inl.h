@@ -321,7 +321,7 @@ HWY_INLINE Interval ellipse(const Vec3<Interval>& p, const Interval* k) {
   for (int i = 0; i < 4; ++i) middle[i] = {0.5 * (k[i].lo + k[i].hi)};
   const auto at = [&](double px, double py) HWY_ATTR { return ellipse(Vec3<Real>{{px}, {py}, {0}}, middle).v; };
   const double slack = 1e-14 * (x.hi + y.hi + k[0].hi);
-  return {at(x.lo, y.lo) - slack, at(x.hi, y.hi) + slack};
+  return outward(at(x.lo, y.lo) - slack, at(x.hi, y.hi) + slack);
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
