@@ -121,7 +121,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   compiler::CompileOptions options;
   options.stop_after = request.after;
   if (request.stage == kSyntax) {
-    options.on_syntax = [&](const compiler::syntax::File& file) { syntax = compiler::syntax::print_syntax(file); };
+    options.on_syntax = [&](const compiler::ReadScene& read_as) { syntax = print_syntax(read_as.file); };
   } else if (request.diff) {
     options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) { diff.add(pass, scene); };
   } else if (request.stage == kGraph) {
