@@ -101,7 +101,10 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
   const bool surface = request.program == 1;
   const char* name = surface ? "surface" : "distance";
   const vm::VerifiedProgram& program = surface ? scene.surface : scene.distance;
-  if (request.stats) return operation_table(program) + "\n" + cost_by_node(program);
+  if (request.stats) {
+    return fmt::format("{}\n{} of the graph\n\n{}", operation_table(program), count_of(scene.node_count, "node"),
+                       cost_by_node(program));
+  }
   if (request.format == kJson) return program_json(program, name, scene.summary);
   return fmt::format("; {}: {}\n", name, scene.summary) + vm::disassemble(program);
 }
