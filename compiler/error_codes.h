@@ -60,6 +60,18 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0402", "unused named node"},
     {"W0403", "large numbers cancel in float"},
     {"W0404", "unused parameter"},
+    // W05xx: warnings about what is sound but surely not meant, or dear (compiler/lints.h)
+    {"W0501", "a part that never shows"},
+    {"W0502", "an operation that leaves nothing"},
+    {"W0503", "a cut that cuts nothing off"},
+    {"W0504", "a repetition that evaluates many copies"},
+    {"W0505", "a blend wider than what it joins bears"},
+    {"W0506", "a part thinner than floats tell apart"},
+    {"W0507", "a lamp that sends out no light"},
+    {"W0508", "steps many times shorter"},
+    {"W0509", "a formula without a bound"},
+    {"W0510", "the camera is inside a solid"},
+    {"W0511", "an offset of what is no distance"},
 };
 
 }  // namespace fathom::compiler
