@@ -65,7 +65,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0502", "an operation that leaves nothing"},
     {"W0503", "a cut that cuts nothing off"},
     {"W0504", "a repetition that evaluates many copies"},
-    {"W0505", "a blend wider than what it joins bears"},
+    {"W0505", "a blend too wide for what it joins"},
     {"W0506", "a part thinner than floats tell apart"},
     {"W0507", "a lamp that sends out no light"},
     {"W0508", "steps many times shorter"},

@@ -184,15 +184,16 @@ class Linter {
       overlaps = copies > 2;
     }
     if (!overlaps || copies < 2) return;
-    warn("W0504", id, fmt::format("{} copies of the {} are evaluated at every point", copies, word(graph_.children(id)[0])),
+    warn("W0504", id,
+         fmt::format("{} copies of the {} are evaluated at every point", copies, word(graph_.children(id)[0])),
          "the node reaches across its cell",
          kind(id) == Kind::Repetition
              ? "keep the node, and its jitter, within half a \"period\" of the origin, or make the period larger"
              : "make the node narrower as seen from the axis, move it further out, or make fewer copies");
   }
 
-  // A blend of width k moves the surface by up to k/4, a cut edge by up to k/2: beyond half a part's thickness nothing
-  // of its shape is left.
+  // A blend of width k moves the surface by up to k/4, a cut edge by up to k/2: beyond half a part's thickness
+  // nothing of its shape is left.
   void check_blend(NodeId id) {
     if (!is_blend(kind(id))) return;
     const double width = graph_.params(id)[0];
@@ -201,9 +202,9 @@ class Linter {
       const double extent = least_extent(box(operand));
       if (moved <= extent / 2) continue;
       const std::string_view name = spec(kind(id)).params[0].name;
-      warn("W0505", id, fmt::format("the blend is wider than the {} it joins bears", word(operand)),
-           fmt::format("`{}` of {:.4g} moves the surface by up to {:.4g}, and that is {:.4g} thick", name, width, moved,
-                       extent),
+      warn("W0505", id, fmt::format("the blend is too wide for the {}", word(operand)),
+           fmt::format("`{}` of {:.4g} moves the surface by up to {:.4g}, and that is {:.4g} thick", name, width,
+                       moved, extent),
            fmt::format("with `{}` up to {:.4g} the part keeps its shape", name, width * extent / 2 / moved));
       return;
     }
@@ -218,9 +219,11 @@ class Linter {
     std::string help = "turn, bend or displace less, or make what is turned narrower";
     if (kind(worst) == Kind::Bounded) help = "give the formula a smaller slope, or a smaller box";
     if (kind(worst) == Kind::Taper) help = "taper less: steps shrink with the smallest scale";
-    if (kind(worst) == Kind::Twist) help = "turn less, or make what is turned narrower: what counts is its radius times the turn";
+    if (kind(worst) == Kind::Twist)
+      help = "turn less, or make what is turned narrower: its radius times the turn counts";
     const std::string below = worst == id ? "" : fmt::format(", most of it by the {} below", word(worst));
-    warn("W0508", id, fmt::format("this {} makes steps {:.3g} times shorter{}", word(id), field_.steepness(id), below),
+    warn("W0508", id,
+         fmt::format("this {} makes steps {:.3g} times shorter{}", word(id), field_.steepness(id), below),
          "rays take that many times longer here", help);
   }
 
@@ -244,7 +247,7 @@ class Linter {
       warn("W0511", id,
            fmt::format("the {} moves the surface up to {:.3g} times as far as it says", word(id), s.most / s.least),
            "a part of it is scaled by different amounts, which keeps no distances",
-           "put the scale around this node, or give the shape its size by its own parameters");
+           "give the shape its size by its own parameters, or scale this node instead, which scales the offset too");
       uneven[id] = kEven;  // said once
     }
   }
@@ -295,8 +298,8 @@ class Linter {
       const double thin = thickness(id) * scale[id], resolution = kErrors * vm::kFloatError * away[id];
       if (thin < resolution) {
         warn("W0506", id, fmt::format("the {} is thinner than floats tell apart", word(id)),
-             fmt::format("{:.2g} thick, {:.3g} from the camera or the origin, where {:.2g} is the least to rely on", thin,
-                         away[id], resolution),
+             fmt::format("{:.2g} thick, {:.3g} from the camera or the origin, where {:.2g} is the least to rely on",
+                         thin, away[id], resolution),
              "make it thicker, or bring camera and scene closer to the origin");
       }
       if (!keeps_thinness(kind(id))) continue;
@@ -346,7 +349,9 @@ void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgr
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
   const Graph& graph = scene.graph;
   bool any = false;
-  for (NodeId id = 0; id <= scene.root; ++id) any = any || (graph.kind(id) == Kind::Bounded && graph.params(id)[8] != 1);
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    any = any || (graph.kind(id) == Kind::Bounded && graph.params(id)[8] != 1);
+  }
   if (!any) return;
   const FieldGraph field(scene);
   std::set<std::uint32_t> warned;
@@ -354,10 +359,12 @@ void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
     if (!field.reached(id) || graph.kind(id) != Kind::Bounded || !field.estimates(id)) continue;
     const Span span = graph.origin(id).span;
     if (!warned.insert(span.begin).second) continue;
-    diagnostics.warning("W0509", span, fmt::format("no bound on how fast this {} changes: the picture may be wrong", field.place(id).type),
-                        fmt::format("steps trust {:.3g}, a guess from slopes that were seen", field.known(id).lipschitz),
-                        {"rays can pass through what is steeper. Avoid jumps (floor, step, sign, mod) and infinite slopes "
-                         "(sqrt or log at 0, tan), or keep them out of the box"});
+    diagnostics.warning(
+        "W0509", span,
+        fmt::format("no bound on how fast this {} changes: the picture may be wrong", field.place(id).type),
+        fmt::format("steps trust {:.3g}, a guess from slopes that were seen", field.known(id).lipschitz),
+        {"rays can pass through what is steeper; avoid jumps (floor, step, sign, mod) and infinite "
+         "slopes (sqrt or log at 0, tan), or keep them out of the box"});
   }
 }
 

@@ -13,7 +13,8 @@
 namespace fathom::compiler {
 
 // `scene` is the graph before the first pass, `surface` its program.
-void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgram& surface, Diagnostics& diagnostics);
+void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgram& surface,
+          Diagnostics& diagnostics);
 
 // The one of them that every compilation reports (W0509), for with it a picture may be wrong.
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics);

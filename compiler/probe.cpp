@@ -18,11 +18,11 @@ namespace fathom::compiler {
 namespace {
 
 constexpr std::size_t kMaxInstructions = 1'000'000;
-constexpr double kEndless = 1e17;          // a box's side beyond this stands for one without end
-constexpr std::uint64_t kFewest = 256;     // points of a row
-constexpr std::uint64_t kChunk = 4096;     // points a thread takes at once
-constexpr int kWalk = 3;                   // steps towards the surface
-constexpr double kTolerance = 1 + 1e-6;    // what rounding can add to a ratio
+constexpr double kEndless = 1e17;        // a box's side beyond this stands for one without end
+constexpr std::uint64_t kFewest = 256;   // points of a row
+constexpr std::uint64_t kChunk = 4096;   // points a thread takes at once
+constexpr int kWalk = 3;                 // steps towards the surface
+constexpr double kTolerance = 1 + 1e-6;  // what rounding can add to a ratio
 
 // SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014), from a point's number.
 class Random {
@@ -30,7 +30,8 @@ class Random {
   Random(std::uint64_t row, std::uint64_t point) : state_((row + 1) * 0x9E3779B97F4A7C15u ^ (point << 20)) { next(); }
   double uniform(double lo, double hi) { return lo + (hi - lo) * static_cast<double>(next() >> 11) * 0x1p-53; }
   glm::dvec3 direction() {
-    const double y = uniform(-1, 1), angle = uniform(0, 2 * std::numbers::pi), r = std::sqrt(std::max(0.0, 1 - y * y));
+    const double y = uniform(-1, 1), angle = uniform(0, 2 * std::numbers::pi),
+                 r = std::sqrt(std::max(0.0, 1 - y * y));
     return {r * std::cos(angle), y, r * std::sin(angle)};
   }
 

@@ -1,5 +1,5 @@
-// Tries to refute the Lipschitz constants a scene was compiled with: gradients and difference quotients at many points,
-// in double, of the whole field, of every object and of every node that has a proof of its own.
+// Tries to refute the Lipschitz constants a scene was compiled with: gradients and difference quotients at many
+// points, in double, of the whole field, of every object and of every node that has a proof of its own.
 //
 // Each node is probed in its own space: half of the points uniform in its box grown by a fifth (infinite sides end at
 // `reach` from the origin), half walked from there towards the surface. Points depend on their number alone, so
@@ -29,8 +29,8 @@ struct ProbeRow {
   What what;
   NodeId node;
   Place place;
-  bool certified;             // only a certified constant can break
-  double declared;            // Lipschitz constant
+  bool certified;   // only a certified constant can break
+  double declared;  // Lipschitz constant
   std::uint64_t points = 0;
   double gradient = 0;        // the longest seen
   double quotient = 0;        // the largest |f(p) - f(q)| / |p - q| seen, rounding taken off
@@ -42,8 +42,8 @@ struct ProbeRow {
   bool broken() const;
 };
 
-// The scene, its objects in file order, then nodes, children first. `scene` is the graph before the first pass. When a
-// constant breaks that no node below accounts for, the nodes below are probed too, whatever their constants.
+// The scene, its objects in file order, then nodes, children first. `scene` is the graph before the first pass. When
+// a constant breaks that no node below accounts for, the nodes below are probed too, whatever their constants.
 std::vector<ProbeRow> probe(const Scene& scene, const std::vector<Surface>& surfaces, const ProbeOptions& options);
 
 // The broken rows below which no other is broken: where the wrong constant is.

@@ -33,8 +33,8 @@ struct CostlyNode {
 
 struct ObjectReport {
   std::string name;
-  Knowledge knowledge;   // of its own field
-  double lipschitz = 1;  // of its own field, before levelling
+  Knowledge knowledge;                  // of its own field
+  double lipschitz = 1;                 // of its own field, before levelling
   std::optional<CostlyNode> costliest;  // none when every node leaves steps as long as they were
 };
 
@@ -81,10 +81,10 @@ class FieldGraph {
 
  private:
   const Scene& scene_;
-  std::vector<Knowledge> known_;      // [node]
-  std::vector<bool> reached_;         // [node]
+  std::vector<Knowledge> known_;          // [node]
+  std::vector<bool> reached_;             // [node]
   std::vector<double> cost_, steepness_;  // [node]
-  std::vector<NodeId> costliest_;     // [node]
+  std::vector<NodeId> costliest_;         // [node]
 };
 
 }  // namespace fathom::compiler

@@ -34,7 +34,8 @@ class Culling {
 
   // Cuts that do not reach what is left.
   std::vector<NodeId> without_idle_cuts(const Graph& graph, const std::vector<NodeId>& operands) {
-    std::vector<NodeId> kept = without({operands.begin() + 1, operands.end()}, containment_.idle_cuts(graph, operands));
+    std::vector<NodeId> kept =
+        without({operands.begin() + 1, operands.end()}, containment_.idle_cuts(graph, operands));
     kept.insert(kept.begin(), operands[0]);
     return kept;
   }

@@ -21,7 +21,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Columns as wide as their widest cell, two blanks apart; the first row is the heading.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   const auto width_of = [](const std::string& cell) {  // in code points
-    return std::count_if(cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    return std::count_if(cell.begin(), cell.end(),
+                         [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
   };
   std::vector<std::ptrdiff_t> widths;
   for (const auto& row : rows) {
@@ -114,9 +115,7 @@ std::string_view word(ProbeRow::What what) {
   return what == ProbeRow::What::Scene ? "scene" : what == ProbeRow::What::Object ? "object" : "node";
 }
 
-std::string verdict(const ProbeRow& row) {
-  return row.broken() ? "BROKEN" : row.certified ? "holds" : "estimate";
-}
+std::string verdict(const ProbeRow& row) { return row.broken() ? "BROKEN" : row.certified ? "holds" : "estimate"; }
 
 }  // namespace
 

@@ -40,8 +40,10 @@ Report report_of(const std::string& objects) {
 
 TEST_CASE("the report has a row for each object, by its own field", "[report]") {
   const Report report = report_of(R"({"type": "sphere", "radius": 1},
-    {"name": "both", "type": "intersection", "of": [{"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 1, 1]}]},
-    {"name": "rope", "type": "twist", "turn": 90, "translate": [9, 0, 0], "of": {"type": "box", "half_size": [1, 3, 1]}})");
+    {"name": "both", "type": "intersection", "of": [
+      {"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 1, 1]}]},
+    {"name": "rope", "type": "twist", "turn": 90, "translate": [9, 0, 0], "of":
+      {"type": "box", "half_size": [1, 3, 1]}})");
   REQUIRE(report.objects.size() == 3);
   CHECK(report.certified);
   CHECK(report.estimates.empty());
@@ -69,16 +71,16 @@ TEST_CASE("a steep part within an object counts, though it is levelled", "[repor
 }
 
 TEST_CASE("costs along a path multiply to the whole", "[report]") {
-  const Report report = report_of(R"({"type": "twist", "turn": 10, "of": {"type": "displacement", "formula": "sin(20*x)/5",
-    "of": {"type": "box", "half_size": [1, 1, 1]}}})");
+  const Report report = report_of(R"_({"type": "twist", "turn": 10, "of": {"type": "displacement",
+    "formula": "sin(20*x)/5", "of": {"type": "box", "half_size": [1, 1, 1]}}})_");
   REQUIRE(report.objects[0].costliest);
   CHECK(report.objects[0].costliest->place.type == "displacement");
   CHECK(report.objects[0].costliest->times < report.objects[0].lipschitz);
 }
 
 TEST_CASE("the nodes that are estimates are named, not what is made of them", "[report]") {
-  const Report report = report_of(R"({"type": "round", "radius": 0.1, "of": {"name": "bulb", "type": "mandelbulb"}},
-    {"type": "sphere", "radius": 1}, {"name": "jump", "type": "expression", "formula": "y - floor(x)"})");
+  const Report report = report_of(R"_({"type": "round", "radius": 0.1, "of": {"name": "bulb", "type": "mandelbulb"}},
+    {"type": "sphere", "radius": 1}, {"name": "jump", "type": "expression", "formula": "y - floor(x)"})_");
   CHECK_FALSE(report.certified);
   REQUIRE(report.estimates.size() == 2);
   CHECK(report.estimates[0].name == "bulb");
@@ -88,16 +90,17 @@ TEST_CASE("the nodes that are estimates are named, not what is made of them", "[
 }
 
 TEST_CASE("one union as the only object is one object", "[report]") {
-  const char* const balls = R"({"name": "pair", "type": "union", "of": [
-    {"type": "sphere", "radius": 1, "material": "a"}, {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "a"}]})";
+  const char* const balls = R"({"version": 1, "materials": {"a": {"type": "diffuse"}},
+    "objects": [{"name": "pair", "type": "union", "of": [
+      {"type": "sphere", "radius": 1, "material": "a"},
+      {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "a"}]}]})";
   CompileOptions options;
   Scene graph;
   options.on_pass = [&](std::string_view pass, const Scene& scene) {
     if (pass == "graph") graph = scene;
   };
   Diagnostics diagnostics;
-  const auto scene = compile(Source("scene.json", std::string(R"({"version": 1, "materials": {"a": {"type": "diffuse"}}, "objects": [)") +
-                                                      balls + "]}"), diagnostics, options);
+  const auto scene = compile(Source("scene.json", balls), diagnostics, options);
   REQUIRE(scene);
   const Report report = make_report(graph, scene->surfaces);
   REQUIRE(report.objects.size() == 1);
@@ -109,7 +112,7 @@ TEST_CASE("lints are for check; a formula without a bound is for everyone", "[re
   CHECK(compiled(hidden).diagnostics.all().empty());
   REQUIRE(compiled(hidden, true).diagnostics.all().size() == 1);
   CHECK(compiled(hidden, true).diagnostics.all()[0].code == "W0501");
-  const std::string jump = R"({"type": "expression", "formula": "y - floor(x)"})";
+  const std::string jump = R"_({"type": "expression", "formula": "y - floor(x)"})_";
   REQUIRE(compiled(jump).diagnostics.all().size() == 1);
   CHECK(compiled(jump).diagnostics.all()[0].code == "W0509");
 }
