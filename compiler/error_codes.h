@@ -55,6 +55,8 @@ inline constexpr ErrorCode kErrorCodes[] = {
     // E05xx: the command line's values for a scene
     {"E0501", "a value for a parameter that the scene does not have"},
     {"E0502", "a value for a parameter out of its range"},
+    {"E0306", "a solid where an outline is needed, or the other way round"},
+    {"E0307", "an outline placed out of its plane"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},

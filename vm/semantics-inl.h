@@ -77,33 +77,39 @@ HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_hei
 // the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface,
 // where the planes' branch is taken.
 template <class T>
-HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
+HWY_INLINE T cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
-  const T rho = length(p.x, p.z);
-  const T qx = rho - k[1], qy = p.y + k[0];  // from the bottom rim
+  const T qx = rho - k[1], qy = y + k[0];    // from the bottom rim
   const T side = qx * k[3] + qy * k[4];      // distance to the side's line
   const T along = qy * k[3] - qx * k[4];     // from the bottom rim up the side
   const T beyond = along - max(zero, min(k[5], along));
-  const T cap = abs(p.y) - k[0];
-  const T past_rim = max(zero, rho - select(p.y < zero, k[1], k[2]));
+  const T cap = abs(y) - k[0];
+  const T past_rim = max(zero, rho - select(y < zero, k[1], k[2]));
   const T outside = sqrt(min(sqr(side) + sqr(beyond), sqr(past_rim) + sqr(cap)));
   const T inside = max(side, cap);
   // Never less than `inside`, but on a rim rounding can leave `outside` 0 and without a gradient where `inside` is
   // not.
   return select(zero < inside, max(outside, inside), inside);
 }
+template <class T>
+HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
+  return cone_profile(length(p.x, p.z), p.y, k);
+}
 
 // k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis,
 // y). Gradient undefined at the balls' centres and on the axis inside.
 template <class T>
-HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
+HWY_INLINE T round_cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
-  const T rho = length(p.x, p.z);
-  const T along = p.y * k[3] - rho * k[4];  // where the foot on the side lies, 0 at the lower ball
-  const T lower = length(rho, p.y) - k[0];
-  const T upper = length(rho, p.y - k[2]) - k[1];
-  const T side = rho * k[3] + p.y * k[4] - k[0];
+  const T along = y * k[3] - rho * k[4];  // where the foot on the side lies, 0 at the lower ball
+  const T lower = length(rho, y) - k[0];
+  const T upper = length(rho, y - k[2]) - k[1];
+  const T side = rho * k[3] + y * k[4] - k[0];
   return select(along < zero, lower, select(k[3] * k[2] < along, upper, side));
+}
+template <class T>
+HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
+  return round_cone_profile(length(p.x, p.z), p.y, k);
 }
 
 // A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts the polygon into the xy
@@ -350,5 +356,6 @@ HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, cons
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
+#include "vm/outlines-inl.h"
 #include "vm/solids-inl.h"
 #endif

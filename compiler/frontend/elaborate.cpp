@@ -4,6 +4,7 @@
 
 #include "compiler/frontend/build.h"
 #include "compiler/frontend/check_node.h"
+#include "compiler/frontend/check_sorts.h"
 #include "compiler/frontend/name_order.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/settings.h"
@@ -85,6 +86,7 @@ CheckedScene check_nodes(const RecordReader& reader, const Scope& parameters, Di
   if (const syntax::Value* objects = reader.value("objects"))
     scene.objects = checker.check_list(*objects, "`objects`");
   scene.order = order_names(scene.uses, scene.node_names, diagnostics);
+  if (!diagnostics.has_errors()) check_sorts(scene.named, scene.order, scene.objects, diagnostics);
   return scene;
 }
 

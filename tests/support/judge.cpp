@@ -12,6 +12,7 @@
 #include "compiler/shapes/node_table.h"
 #include "tests/support/judge_domain.h"
 #include "tests/support/judge_geometry.h"
+#include "tests/support/judge_outlines.h"
 #include "vm/check.h"
 
 namespace fathom::test {
@@ -83,6 +84,7 @@ double mandelbulb(dvec3 p, double power, int iterations, double bailout) {
 }
 
 double primitive(Kind kind, Params k, dvec3 p) {
+  if (compiler::spec(kind).sort == compiler::Sort::Outline) return judge_outline(kind, k, dvec2(p));
   switch (kind) {
     case Kind::Sphere:
       return std::hypot(p.x, p.y, p.z) - k[0];

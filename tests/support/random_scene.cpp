@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "compiler/make_node.h"
+#include "tests/support/random_outlines.h"
 
 namespace fathom::test {
 namespace {
@@ -90,11 +91,36 @@ class Maker {
   }
 
   NodeId primitive() {
+    if (options_.outlines && random_.chance(0.2)) return of_outline();
     const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, options_.mandelbulbs);
     Kind kind;
     do {
       kind = kinds[static_cast<std::size_t>(random_.below(static_cast<int>(kinds.size())))];
     } while (!options_.planes && !compiler::spec(kind).bound(random_params(kind, random_)).finite());
+    return add(kind, random_params(kind, random_), {});
+  }
+
+  NodeId of_outline() {
+    const NodeId shape = outline(2);
+    if (random_.chance(0.5)) return add(Kind::Extrude, {random_.length(0.05, 1.5)}, {shape});
+    return add(Kind::Revolve, {random_.chance(0.3) ? 0 : random_.uniform(-1, 2)}, {shape});
+  }
+
+  NodeId outline(int depth) {
+    const int choice = depth == 0 ? 5 : random_.below(10);
+    if (choice == 0) return add(Kind::Round, {random_.length(0.01, 0.3)}, {outline(depth - 1)});
+    if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {outline(depth - 1)});
+    if (choice == 2) {
+      const double scale = random_.length(0.5, 2), angle = random_.uniform(-4, 4);
+      const dvec3 move(random_.uniform(-1, 1), random_.uniform(-1, 1), 0);
+      return add(Kind::Transform, transform_params(dvec3(scale), {0, 0, 1}, angle, move), {outline(depth - 1)});
+    }
+    if (choice <= 4) {
+      const NodeId a = outline(depth - 1), b = outline(depth - 1);
+      return add(choice == 3 ? Kind::Union : Kind::Subtraction, {}, {a, b});
+    }
+    const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Outline, false);
+    const Kind kind = kinds[static_cast<std::size_t>(random_.below(static_cast<int>(kinds.size())))];
     return add(kind, random_params(kind, random_), {});
   }
 
@@ -181,6 +207,7 @@ std::vector<Kind> primitive_kinds(compiler::Sort sort, bool estimates) {
 }
 
 std::vector<double> random_params(Kind kind, Random& random) {
+  if (compiler::spec(kind).sort == compiler::Sort::Outline) return random_outline_params(kind, random);
   const auto size = [&] { return random.length(0.05, 1.5); };
   // A rounding within `outer`, sometimes none and sometimes all of it.
   const auto rounding = [&](double outer) {

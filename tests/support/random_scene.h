@@ -40,10 +40,11 @@ std::vector<double> random_params(compiler::Kind kind, Random& random);
 struct GraphOptions {
   int depth = 4;
   bool mandelbulbs = false;
-  bool planes = true;  // unbounded parts
-  bool paints = true;  // surface numbers 1 .. 6
-  bool squash = true;  // three different scales
-  bool bends = true;   // what folds, repeats or bends space, and joins at an edge
+  bool planes = true;    // unbounded parts
+  bool paints = true;    // surface numbers 1 .. 6
+  bool squash = true;    // three different scales
+  bool outlines = true;  // drawn out and turned
+  bool bends = true;     // what folds, repeats or bends space, and joins at an edge
 };
 compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
 

@@ -85,11 +85,17 @@ compiler::Scene scene_of(std::uint64_t seed, bool mandelbulbs) {
   return random_scene(random, options);
 }
 
+std::vector<Kind> all_primitives() {
+  std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, true);
+  for (const Kind kind : primitive_kinds(compiler::Sort::Outline, true)) kinds.push_back(kind);
+  return kinds;
+}
+
 // Every primitive alone, then random graphs.
 std::vector<compiler::Scene> scenes(int graphs) {
   std::vector<compiler::Scene> all;
   Random random(7);
-  for (const Kind kind : primitive_kinds(compiler::Sort::Solid, true)) {
+  for (const Kind kind : all_primitives()) {
     all.push_back(single(kind, random_params(kind, random)));
   }
   for (int seed = 0; seed < graphs; ++seed) all.push_back(scene_of(static_cast<std::uint64_t>(seed), seed % 4 == 0));
@@ -206,7 +212,7 @@ TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
   for (std::uint64_t seed = 0; seed < 1700; ++seed) {
     Random random(seed);
     const bool primitive = seed % 3 == 0;
-    const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, true);
+    const std::vector<Kind> kinds = all_primitives();
     const Kind kind = kinds[static_cast<std::size_t>(random.below(static_cast<int>(kinds.size())))];
     const compiler::Scene scene =
         primitive ? single(kind, random_params(kind, random)) : scene_of(seed, seed % 7 == 0);

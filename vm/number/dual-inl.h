@@ -20,6 +20,11 @@ struct Dual {
   N dx, dy, dz;  // its derivatives along x, y and z
 };
 
+template <class N>
+HWY_INLINE N value_of(const Dual<N>& a) {
+  return a.v;
+}
+
 // A dual with value v and a's derivatives times s.
 template <class N>
 HWY_INLINE Dual<N> chain(N v, const Dual<N>& a, N s) {

@@ -43,6 +43,12 @@ HWY_INLINE Constant<T> constant(double value) {
   return Constant<T>::broadcast(value);
 }
 
+// A number without its derivatives, for what does not change the result in first order.
+template <class T>
+HWY_INLINE Constant<T> value_of(const T& a) {
+  return a;
+}
+
 // x = 2^exponent * mantissa with mantissa in [sqrt 1/2, sqrt 2), for x finite and positive.
 template <class N>
 struct Scaled {

@@ -1,0 +1,404 @@
+#include "compiler/shapes/outline_facts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+
+#include "compiler/shapes/rows.h"
+#include "compiler/shapes/solid_facts.h"
+#include "compiler/sine_cosine.h"
+
+namespace fathom::compiler {
+namespace {
+
+using glm::dvec2;
+using vm::Opcode;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSqrt2 = 1.4142135623730951;
+
+dvec2 vec2_at(Params p, std::size_t i) { return {p[i], p[i + 1]}; }
+double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
+
+Box box_2d(dvec2 lo, dvec2 hi) { return {{lo.x, lo.y, -kInfinity}, {hi.x, hi.y, kInfinity}}; }
+// Of points and their mirror images across x = 0.
+Box mirrored_hull(std::initializer_list<dvec2> points) {
+  Box box;
+  for (dvec2 q : points) {
+    q.x = std::abs(q.x);
+    box = unite(box, box_2d({-q.x, q.y}, q));
+  }
+  return box;
+}
+Box hull(Params points) {
+  Box box;
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2)
+    box = unite(box, box_2d(vec2_at(points, i), vec2_at(points, i)));
+  return box;
+}
+
+// The point at a distance from the origin, at an angle from +y towards +x, degrees.
+dvec2 polar(double radius, double degrees) {
+  const SineCosine at = sine_cosine(degrees);
+  return {radius * at.sine, radius * at.cosine};
+}
+
+// The part of a circle about the origin at most `angle` from +y.
+Box arc_box(double radius, double angle) {
+  const dvec2 end = polar(radius, angle);
+  return mirrored_hull({{0, radius}, {angle >= 90 ? radius : end.x, radius}, end});
+}
+
+Complaint check_angle(double angle, bool closed, const char* other) {
+  if (angle > 0 && (angle < 180 || (closed && angle == 180))) return std::nullopt;
+  return fmt::format("`angle` is {}; it must be above 0 and {} 180{}", angle, closed ? "at most" : "below", other);
+}
+Complaint check_sides(double sides, const char* name) {
+  if (sides >= 3 && sides <= 64) return std::nullopt;
+  return fmt::format("`{}` is {}; it must be a whole number from 3 to 64", name, sides);
+}
+Complaint check_thickness(double thickness, double radius, const char* other) {
+  if (thickness < radius) return std::nullopt;
+  return fmt::format("`thickness` {} is not smaller than `radius` {}, which leaves no hole; use `{}`", thickness,
+                     radius, other);
+}
+
+// Mirror lines that fold half the plane onto a sector of 180 / n degrees from +y: each halves the number of sectors.
+std::vector<double> sector_folds(int n) {
+  std::vector<double> normals;
+  int sectors = n;
+  while (normals.size() < 12) {
+    if (sectors == 1) {
+      normals.insert(normals.end(), {0, 0});
+      continue;
+    }
+    sectors = (sectors + 1) / 2;
+    const SineCosine line = sine_cosine(180.0 * sectors / n);
+    normals.insert(normals.end(), {-line.cosine, line.sine});
+  }
+  return normals;
+}
+
+// Where the circles of a moon meet, x > 0.
+dvec2 moon_corner(double radius, double cut, double distance) {
+  const double y = ((radius - cut) * (radius + cut) + distance * distance) / (2 * distance);
+  return {std::sqrt((radius - y) * (radius + y)), y};
+}
+
+// A slanted profile between y = -half_height and half_height, as cone_immediates.
+std::vector<double> profile(double bottom, double top, double half_height) {
+  const double p[] = {bottom, top, half_height};
+  return cone_immediates(p);
+}
+
+// An egg's side is an arc about (-c, 0) that touches the bottom from without: c^2 + height^2 = (c + bottom - top)^2.
+double egg_centre(Params p) {
+  const double less = p[0] - p[1];
+  return (p[2] - less) * (p[2] + less) / (2 * less);
+}
+
+// Whether segments ab and cd have a point in common.
+bool between(dvec2 a, dvec2 b, dvec2 q) {
+  return q.x >= std::min(a.x, b.x) && q.x <= std::max(a.x, b.x) && q.y >= std::min(a.y, b.y) &&
+         q.y <= std::max(a.y, b.y);
+}
+bool meet(dvec2 a, dvec2 b, dvec2 c, dvec2 d) {
+  const double sc = cross(b - a, c - a), sd = cross(b - a, d - a), sa = cross(d - c, a - c), sb = cross(d - c, b - c);
+  if (((sc > 0 && sd < 0) || (sc < 0 && sd > 0)) && ((sa > 0 && sb < 0) || (sa < 0 && sb > 0))) return true;
+  return (sc == 0 && between(a, b, c)) || (sd == 0 && between(a, b, d)) || (sa == 0 && between(c, d, a)) ||
+         (sb == 0 && between(c, d, b));
+}
+
+}  // namespace
+
+Complaint check_rounded_rectangle(Params p) {
+  const double smallest = std::min(p[0], p[1]);
+  if (p[2] <= smallest) return std::nullopt;
+  return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size",
+                     p[2], smallest);
+}
+
+Complaint check_segment(Params p) {
+  if (vec2_at(p, 0) != vec2_at(p, 2)) return std::nullopt;
+  return "ends `a` and `b` coincide; use `circle`";
+}
+
+Complaint check_polygon(Params p) {
+  const std::size_t n = p.size() / 2;
+  if (n < 3) return fmt::format("`points` has {}; an outline needs at least 3", n);
+  constexpr std::size_t kMostCorners = 4096;
+  if (n > kMostCorners) return fmt::format("`points` has {}; at most {} are possible", n, kMostCorners);
+  const auto at = [&](std::size_t i) { return vec2_at(p, 2 * (i % n)); };
+  double area = 0, size = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (at(i) == at(i + 1)) {
+      return fmt::format("points {} and {} are the same; leave one out (the last joins the first by itself)", i,
+                         (i + 1) % n);
+    }
+    area += cross(at(i) - at(0), at(i + 1) - at(0));
+    size = std::max(size, glm::length(at(i) - at(0)));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    // Neighbours share a point; they overlap when the next turns right back.
+    const dvec2 edge = at(i + 1) - at(i), next = at(i + 2) - at(i + 1);
+    if (cross(edge, next) == 0 && glm::dot(edge, next) < 0) {
+      return fmt::format("the outline turns right back at point {}; leave that point out", (i + 1) % n);
+    }
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if ((j + 1) % n == i || !meet(at(i), at(i + 1), at(j), at(j + 1))) continue;
+      return fmt::format("the edges after points {} and {} meet; give the corners in order around the outline", i, j);
+    }
+  }
+  if (std::abs(area) <= 1e-12 * size * size) return "the points lie on one line; move one off it";
+  return std::nullopt;
+}
+
+Complaint check_regular_polygon(Params p) { return check_sides(p[0], "sides"); }
+
+Complaint check_star(Params p) {
+  if (Complaint complaint = check_sides(p[0], "points")) return complaint;
+  if (p[2] < p[1]) return std::nullopt;
+  return fmt::format("`inner_radius` {} is not smaller than `radius` {}; for no tips at all use `regular_polygon`",
+                     p[2], p[1]);
+}
+
+Complaint check_trapezoid(Params p) {
+  if (p[0] > 0 || p[1] > 0) return std::nullopt;
+  return "both widths are 0; one of `bottom_half_width` and `top_half_width` must be positive";
+}
+
+Complaint check_uneven_capsule(Params p) {
+  if (std::abs(p[0] - p[1]) <= p[2]) return std::nullopt;
+  return fmt::format("the radii differ by {}, more than `height` {}: one disk holds the other; use `circle`",
+                     std::abs(p[0] - p[1]), p[2]);
+}
+
+Complaint check_arc(Params p) {
+  if (Complaint complaint = check_angle(p[1], true, ", a full circle")) return complaint;
+  return check_thickness(p[2], p[0], p[1] == 180 ? "circle" : "pie");
+}
+
+Complaint check_pie(Params p) { return check_angle(p[1], true, ", a full disk"); }
+
+Complaint check_cut_disk(Params p) {
+  if (std::abs(p[1]) < p[0]) return std::nullopt;
+  return fmt::format("`height` {} is not within the disk of `radius` {}: {}", p[1], p[0],
+                     p[1] > 0 ? "nothing is cut off; use `circle`" : "nothing is left");
+}
+
+Complaint check_horseshoe(Params p) {
+  if (Complaint complaint = check_angle(p[1], false, "")) return complaint;
+  if (Complaint complaint = check_thickness(p[3], p[0], "pie")) return complaint;
+  const SineCosine at = sine_cosine(p[1]);
+  const double inner = p[0] - p[3], clear = inner * at.sine + std::min(0.0, p[2] * at.cosine);
+  if (clear >= 0) return std::nullopt;
+  return fmt::format("the legs cross each other: give a `length` of at most {:.6g}, or a smaller `angle`",
+                     inner * at.sine / -at.cosine);
+}
+
+Complaint check_lens(Params p) {
+  if (p[1] < p[0]) return std::nullopt;
+  return fmt::format(
+      "`half_width` {} is not smaller than `half_height` {}; turn the lens with rotate, or use `circle`", p[1], p[0]);
+}
+
+Complaint check_moon(Params p) {
+  const double radius = p[0], cut = p[1], distance = p[2];
+  const char* others = "`radius`, `cut_radius` and `distance` do not fit together: ";
+  if (distance >= radius + cut) return fmt::format("{}the cut is outside the disk; use `circle`", others);
+  if (cut >= radius + distance) return fmt::format("{}the cut holds the whole disk; nothing is left", others);
+  if (radius >= cut + distance) {
+    return fmt::format("{}the cut is a hole within the disk; use `subtraction` of two circles", others);
+  }
+  return std::nullopt;
+}
+
+Complaint check_egg(Params p) {
+  if (!(p[1] < p[0])) {
+    return fmt::format("`top_radius` {} is not smaller than `bottom_radius` {}; use `uneven_capsule`", p[1], p[0]);
+  }
+  if (p[2] > p[0] - p[1]) return std::nullopt;
+  return fmt::format(
+      "`height` {} is not larger than {}, by how much the radii differ: the bottom holds the top; use "
+      "`circle`",
+      p[2], p[0] - p[1]);
+}
+
+Complaint check_cross(Params p) {
+  if (p[1] < p[0]) return std::nullopt;
+  return fmt::format("`half_width` {} is not smaller than `half_length` {}; use `rectangle`", p[1], p[0]);
+}
+
+// The arms' inner corners exist while the arms' ends lie beyond them: radius <= sqrt 2 (half size - radius).
+Complaint check_rounded_x(Params p) {
+  const double most = p[0] * kSqrt2 / (1 + kSqrt2);
+  if (p[1] <= most) return std::nullopt;
+  return fmt::format(
+      "`radius` {} is larger than {:.6g}, for which the arms of `half_size` {} fill what is between them", p[1], most,
+      p[0]);
+}
+
+std::vector<double> rounded_rectangle_immediates(Params p) { return {p[0] - p[2], p[1] - p[2], p[2]}; }
+
+std::vector<double> segment_immediates(Params p) {
+  const dvec2 way = vec2_at(p, 2) - vec2_at(p, 0);
+  const double length = glm::length(way);
+  return {p[0], p[1], way.x / length, way.y / length, length, p[4]};
+}
+
+std::vector<double> regular_polygon_immediates(Params p) {
+  std::vector<double> k = sector_folds(static_cast<int>(p[0]));
+  const SineCosine half = sine_cosine(180 / p[0]);
+  k.insert(k.end(), {half.sine, half.cosine, p[1]});
+  return k;
+}
+
+std::vector<double> star_immediates(Params p) {
+  std::vector<double> k = sector_folds(static_cast<int>(p[0]));
+  const dvec2 edge = polar(p[2], 180 / p[0]) - dvec2(0, p[1]);
+  const double length = glm::length(edge);
+  // Between 30 and 150 degrees to the line through the centre the edge's side is certain enough.
+  const dvec2 outwards = polar(1, 180 / p[0]);
+  const double sine = std::abs(cross(edge, outwards)) / length, sign = glm::dot(edge, outwards) < 0 ? -1e30 : 1e30;
+  k.insert(k.end(), {edge.x / length, edge.y / length, length, p[1], sine > 0.5 ? 0 : sign});
+  return k;
+}
+
+std::vector<double> trapezoid_immediates(Params p) { return profile(p[0], p[1], p[2]); }
+
+std::vector<double> parallelogram_immediates(Params p) {
+  const double side = std::sqrt(p[1] * p[1] + p[2] * p[2]);
+  return {p[0], p[1], p[2], p[1] / side, -p[2] / side, side};
+}
+
+std::vector<double> diamond_immediates(Params p) {
+  const double side = std::sqrt(p[0] * p[0] + p[1] * p[1]);
+  return {p[1] / side, p[0] / side, p[0] * p[1] / side, p[0], side};
+}
+
+std::vector<double> isosceles_triangle_immediates(Params p) {
+  std::vector<double> k = profile(0, p[0], p[1] / 2);
+  k.push_back(p[1] / 2);
+  return k;
+}
+
+std::vector<double> arc_immediates(Params p) {
+  const SineCosine at = sine_cosine(p[1]);
+  return {p[0], p[2], at.sine, at.cosine, p[0] * at.sine, p[0] * at.cosine};
+}
+
+std::vector<double> cut_disk_immediates(Params p) { return {p[0], p[1], std::sqrt((p[0] - p[1]) * (p[0] + p[1]))}; }
+
+std::vector<double> horseshoe_immediates(Params p) {
+  const SineCosine at = sine_cosine(p[1]);
+  return {p[0], p[3], at.sine, at.cosine, p[2], p[0] - p[3], p[0] + p[3]};
+}
+
+std::vector<double> lens_immediates(Params p) {
+  const double h = p[0], w = p[1], radius = (h * h + w * w) / (2 * w), centre = (h - w) * (h + w) / (2 * w);
+  return {h, centre, radius, centre / radius, h / radius};
+}
+
+std::vector<double> moon_immediates(Params p) {
+  const dvec2 corner = moon_corner(p[0], p[1], p[2]);
+  const dvec2 of_disk = corner / p[0], of_cut = (dvec2(0, p[2]) - corner) / p[1];
+  return {p[0], p[1], p[2], corner.x, corner.y, of_disk.x, of_disk.y, of_cut.x, of_cut.y};
+}
+
+std::vector<double> egg_immediates(Params p) {
+  const double centre = egg_centre(p), radius = centre + p[0], to_top = radius - p[1];
+  return {p[0], p[1], p[2], centre, radius, centre / to_top, p[2] / to_top};
+}
+
+std::vector<double> rounded_x_immediates(Params p) { return {p[1], kSqrt2 * (p[0] - p[1])}; }
+
+std::vector<double> ellipse_immediates(Params p) {
+  const double major = std::max(p[0], p[1]), minor = std::min(p[0], p[1]);
+  return {major, minor, (major - minor) * (major + minor), p[1] > p[0] ? 1.0 : 0.0};
+}
+
+Code ring_code(Params p) {
+  if (p[1] == 180) return code_of<Opcode::Arc, arc_immediates>(p);
+  const SineCosine at = sine_cosine(p[1]);
+  return one(Opcode::Ring, {p[0], p[2], at.sine, at.cosine, p[0] - p[2], p[0] + p[2]});
+}
+
+Code pie_code(Params p) {
+  if (p[1] == 180) return one(Opcode::Circle, {p[0]});
+  const SineCosine at = sine_cosine(p[1]);
+  return one(Opcode::Pie, {p[0], at.sine, at.cosine});
+}
+
+Box circle_bound(Params p) { return box_2d(dvec2(-p[0]), dvec2(p[0])); }
+Box half_sizes_bound(Params p) { return box_2d(-vec2_at(p, 0), vec2_at(p, 0)); }
+Box segment_bound(Params p) { return hull(p.first(4)).grown(p[4]); }
+Box polygon_bound(Params p) { return hull(p); }
+
+Box regular_polygon_bound(Params p) {
+  Box box;
+  for (int i = 0; i < static_cast<int>(p[0]); ++i) box = unite(box, mirrored_hull({polar(p[1], 360.0 * i / p[0])}));
+  return box;
+}
+
+Box star_bound(Params p) {
+  Box box;
+  for (int i = 0; i < static_cast<int>(p[0]); ++i) {
+    box = unite(box, mirrored_hull({polar(p[1], 360.0 * i / p[0]), polar(p[2], 180.0 * (2 * i + 1) / p[0])}));
+  }
+  return box;
+}
+
+Box trapezoid_bound(Params p) { return mirrored_hull({{p[0], -p[2]}, {p[1], p[2]}}); }
+Box parallelogram_bound(Params p) {
+  const dvec2 half(p[0] + std::abs(p[2]), p[1]);
+  return box_2d(-half, half);
+}
+Box isosceles_triangle_bound(Params p) { return mirrored_hull({{0, 0}, {p[0], p[1]}}); }
+Box uneven_capsule_bound(Params p) {
+  const double radius = std::max(p[0], p[1]);
+  return box_2d({-radius, std::min(-p[0], p[2] - p[1])}, {radius, std::max(p[0], p[2] + p[1])});
+}
+Box arc_bound(Params p) { return arc_box(p[0], p[1]).grown(p[2]); }
+Box ring_bound(Params p) { return unite(arc_box(p[0] + p[2], p[1]), mirrored_hull({polar(p[0] - p[2], p[1])})); }
+Box pie_bound(Params p) { return unite(arc_box(p[0], p[1]), mirrored_hull({dvec2(0)})); }
+Box cut_disk_bound(Params p) {
+  const double chord = std::sqrt((p[0] - p[1]) * (p[0] + p[1]));
+  return mirrored_hull({{0, -p[0]}, {p[1] >= 0 ? p[0] : chord, p[1]}});
+}
+Box horseshoe_bound(Params p) {
+  const SineCosine at = sine_cosine(p[1]);
+  const dvec2 leg = p[2] * dvec2(at.cosine, -at.sine);
+  const dvec2 outer = polar(p[0] + p[3], p[1]), inner = polar(p[0] - p[3], p[1]);
+  return unite(arc_box(p[0] + p[3], p[1]), mirrored_hull({inner, outer + leg, inner + leg}));
+}
+Box lens_bound(Params p) { return box_2d({-p[1], -p[0]}, {p[1], p[0]}); }
+// What is left of the disk lies below the corners.
+Box moon_bound(Params p) {
+  const dvec2 corner = moon_corner(p[0], p[1], p[2]);
+  return mirrored_hull({{0, -p[0]}, {corner.y >= 0 ? p[0] : corner.x, corner.y}});
+}
+Box egg_bound(Params p) { return box_2d({-p[0], -p[0]}, {p[0], p[2] + p[1]}); }
+Box heart_bound(Params p) {
+  const double radius = p[0] * kSqrt2 / 4;
+  return mirrored_hull({{0, 0}, {0.25 * p[0] + radius, 0.75 * p[0] + radius}});
+}
+Box cross_bound(Params p) { return box_2d(dvec2(-p[0]), dvec2(p[0])); }
+Box rounded_x_bound(Params p) { return box_2d(dvec2(-p[0]), dvec2(p[0])); }
+
+// Evaluated from its first end: at most that far off, or its own size.
+double segment_magnitude(Params p) {
+  return std::min(std::max(std::abs(p[0]), std::abs(p[1])), glm::length(vec2_at(p, 2) - vec2_at(p, 0)) + p[4]);
+}
+// Each edge is evaluated from its first corner.
+double polygon_magnitude(Params p) {
+  const Box box = polygon_bound(p);
+  const dvec2 size(box.hi - box.lo), far(glm::max(glm::abs(box.hi), glm::abs(box.lo)));
+  return std::min(std::max(far.x, far.y), glm::length(size));
+}
+// The cut's circle is evaluated from its own centre.
+double moon_magnitude(Params p) { return p[2]; }
+
+}  // namespace fathom::compiler

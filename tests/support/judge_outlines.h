@@ -1,0 +1,31 @@
+// Outlines for the judge: the boundary as explicit segments and arcs, and whether a point is inside by the shape's
+// definition. The distance is that to the nearest piece of all. Slow, obvious; folds nothing, unlike the machine.
+// Tested by: tests/compiler/shapes_test.cpp (against tests/support/brute_force_outlines.h)
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <vector>
+
+#include "compiler/graph.h"
+
+namespace fathom::test {
+
+// A straight line from `a` to `b`, or the part of an ellipse about `centre`, axes along x and y, between two angles
+// from +x towards +y: centre + (radii.x cos t, radii.y sin t).
+struct Piece {
+  bool straight;
+  glm::dvec2 a, b;
+  glm::dvec2 centre, radii;
+  double from, to;  // radians, from < to <= from + 2 pi
+};
+
+// In no particular order; pieces meet in their ends only.
+std::vector<Piece> outline_boundary(compiler::Kind kind, std::span<const double> params);
+
+// Distance from a piece, at least 0. Only whole ellipses are supported unless both radii are equal.
+double distance_to(const Piece& piece, glm::dvec2 p);
+
+double judge_outline(compiler::Kind kind, std::span<const double> params, glm::dvec2 p);
+
+}  // namespace fathom::test
