@@ -89,8 +89,9 @@ Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
   for (int i = 0; i < 3; ++i) {
     const double by = params[static_cast<std::size_t>(i)];
     if (by == 0) continue;
-    k.box.lo[i] += child.box.lo[i] <= 0 ? -by : by;
-    k.box.hi[i] += child.box.hi[i] >= 0 ? by : -by;
+    // Of a child beside the plane one side moves the other way; but distances are measured from this larger box.
+    k.box.lo[i] -= by;
+    k.box.hi[i] += by;
     if (!child.symmetric[static_cast<std::size_t>(i)]) k = only_bound(k);
   }
   k.inside = std::max(k.inside, Exactness::Bound);

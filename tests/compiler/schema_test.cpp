@@ -35,7 +35,12 @@ const std::map<std::string, std::string> kBeyond = {
     {"E0303", "arithmetic over several vectors"},
     {"E0304", "arithmetic over several vectors"},
     {"E0305", "the size of the program"},
-    {"W04", "a warning; the scene is valid"},
+    {"E0306", "solids and outlines, which names can stand for"},
+    {"E0307", "arithmetic over several vectors"},
+    {"E04", "the grammar of formulas, and the names in them"},
+    {"E05", "what the command line says"},
+    {"E06", "files of another format"},
+    {"W0", "a warning; the scene is valid"},
 };
 
 json parse(const std::string& text) { return json::parse(text, nullptr, false, true); }
@@ -100,9 +105,11 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
     const std::string text = whole.substr(0, whole.find("----- expected\n")), code = name.substr(0, 5);
     CAPTURE(name);
     CHECK((kStructural.count(code) > 0) != beyond(code));
+    const bool computed = name.ends_with("_formula.txt");  // whose value the schema does not know
+    if (computed) continue;
     if (kStructural.count(code) > 0) {
       CHECK(schema_problem(parse(text), schema()) != "");
-    } else if (!name.starts_with("E00")) {
+    } else if (!name.starts_with("E00") && code != "E0408") {  // a number of E0408 may be too large for any property
       CHECK(schema_problem(parse(text), schema()) == "");
     }
   }

@@ -74,7 +74,9 @@ Axis axis_of(Params k, std::size_t i) { return {k[i], k[3 + i]}; }
 std::vector<long> numbers(Params k, std::size_t i, double a) {
   const Axis axis = axis_of(k, i);
   if (!axis.repeated()) return {0};
-  const long at = axis.nearest(a), around = 2 + std::max(0L, static_cast<long>(k[9 + i]));
+  // All copies where the machine evaluates all; else one more to either side than it does.
+  const bool all = k[9 + i] < 0;
+  const long at = axis.nearest(a), around = all ? static_cast<long>(axis.count) : 1 + static_cast<long>(k[9 + i]);
   std::vector<long> result;
   for (long n = std::max(axis.first(), at - around); n <= std::min(axis.last(), at + around); ++n) result.push_back(n);
   return result;

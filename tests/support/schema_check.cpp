@@ -39,8 +39,12 @@ std::size_t count_fitting(const Context& at, const Json& schemas) {
 
 bool check_properties(const Context& at, const Json& rule) {
   if (!at.value.is_object()) return true;
-  for (const auto& [name, schema] : rule.items()) {
-    if (at.value.contains(name) && !fits(at.value[name], schema, at.whole)) return false;
+  // Constants first: of many kinds of node only the one meant is looked into, or deep nesting would take forever.
+  for (const bool constants : {true, false}) {
+    for (const auto& [name, schema] : rule.items()) {
+      if (schema.contains("const") != constants || !at.value.contains(name)) continue;
+      if (!fits(at.value[name], schema, at.whole)) return false;
+    }
   }
   return true;
 }

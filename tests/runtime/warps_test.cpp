@@ -1,0 +1,224 @@
+// Rays at what bends, scales, repeats and displaces space, against a search of its own: fields written here in plain
+// doubles, their true Lipschitz constants, and bisection that leaves out a stretch only when its ends' distances cover
+// it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share printed by
+// "[.report]"; the compiled scenes must be right for every ray.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "compiler/compile.h"
+#include "runtime/march.h"
+#include "tests/support/random_scene.h"
+
+namespace fathom::test {
+namespace {
+
+using glm::dvec3;
+using Field = std::function<double(dvec3)>;
+
+double box(dvec3 p, dvec3 half) {
+  const dvec3 q = glm::abs(p) - half;
+  return glm::length(glm::max(q, dvec3(0))) + std::min(0.0, std::max({q.x, q.y, q.z}));
+}
+
+struct Case {
+  const char* name;
+  std::string node;
+  Field field;       // the value a naive program would step by
+  double lipschitz;  // of it, within `radius` of the origin
+  double radius;     // holds the solid
+};
+
+// Turned by -k y to be straight again.
+double blade(dvec3 p) {
+  const double angle = -5 * p.y, c = std::cos(angle), s = std::sin(angle);
+  return box({p.x * c + p.z * s, p.y, p.z * c - p.x * s}, {0.5, 1, 0.05});
+}
+
+double stretched_ring(dvec3 p) {
+  const dvec3 q = p / dvec3(3, 1, 0.4);
+  return std::hypot(std::hypot(q.x, q.z) - 0.5, q.y) - 0.2;
+}
+
+long permuted(long n) {
+  const long m = ((n % 289) + 289) % 289;
+  return m * (34 * m + 1) % 289;
+}
+
+// 5 x 5 x 5 balls, each moved by up to 0.15 along each axis.
+double scattered_balls(dvec3 p) {
+  double nearest = 1e9;
+  for (long i = -2; i <= 2; ++i) {
+    for (long j = -2; j <= 2; ++j) {
+      for (long l = -2; l <= 2; ++l) {
+        const long x = permuted(permuted(permuted(i) + j) + l), y = permuted(x + 1), z = permuted(y + 1);
+        const dvec3 centre = 0.6 * dvec3(i, j, l) + 0.15 * (dvec3(x, y, z) / 144.0 - dvec3(1));
+        nearest = std::min(nearest, glm::length(p - centre) - 0.2);
+      }
+    }
+  }
+  return nearest;
+}
+
+double rough_ball(dvec3 p) {
+  return glm::length(p) - 1 + 0.05 * std::sin(20 * p.x) * std::sin(20 * p.y) * std::sin(20 * p.z);
+}
+
+const std::vector<Case>& cases() {
+  // Largest stretch of [[1, kR], [0, 1]], R the radius of the ball the rays are searched in.
+  const double kr = 5 * 1.13;
+  static const std::vector<Case> all = {
+      {"twist, k = 5",
+       R"({"type": "twist", "turn": "5*180/pi", "of": {"type": "box", "half_size": [0.5, 1, 0.05]}})", blade,
+       (kr + std::sqrt(kr * kr + 4)) / 2, 1.13},
+      {"scale 3:1:0.4",
+       R"({"type": "torus", "major_radius": 0.5, "minor_radius": 0.2, "scale": [3, 1, 0.4]})", stretched_ring,
+       1 / 0.4, 2.2},
+      {"jittered repetition",
+       R"({"type": "repetition", "period": [0.6, 0.6, 0.6], "count": [5, 5, 5], "jitter": [0.15, 0.15, 0.15],
+           "of": {"type": "sphere", "radius": 0.2}})",
+       scattered_balls, 1, 2.8},
+      {"displacement, a w = 1",
+       R"J({"type": "displacement", "formula": "0.05*sin(20*x)*sin(20*y)*sin(20*z)",
+           "of": {"type": "sphere", "radius": 1}})J",
+       rough_ball, 2, 1.06},
+  };
+  return all;
+}
+
+struct Line {
+  dvec3 origin, direction;
+  dvec3 at(double t) const { return origin + t * direction; }
+};
+
+// From a sphere around the solid towards points spread evenly over a disc that covers it.
+Line random_line(const Case& c, Random& random) {
+  const dvec3 from = 3 * c.radius * random.direction();
+  const dvec3 side = glm::normalize(glm::cross(from, random.direction()));
+  const dvec3 target = c.radius * std::sqrt(random.uniform(0, 1)) * side;
+  return {dvec3(glm::vec3(from)), dvec3(glm::vec3(glm::normalize(target - from)))};
+}
+
+enum class Outcome { Miss, Hit, Contact };
+struct Truth {
+  Outcome outcome;
+  double t;
+};
+
+// The first zero of the field along the line within the ball that holds the solid. A touch that ten digits cannot tell
+// from a miss is a contact.
+Truth search(const Case& c, const Line& line) {
+  constexpr double kResolution = 1e-9;
+  const double middle = -glm::dot(line.origin, line.direction) / glm::dot(line.direction, line.direction);
+  const double square = c.radius * c.radius - glm::dot(line.at(middle), line.at(middle));
+  if (square <= 0) return {Outcome::Miss, 0};
+  struct Part {
+    double a, fa, b, fb;
+  };
+  const double begin = middle - std::sqrt(square), end = middle + std::sqrt(square);
+  std::vector<Part> parts = {{begin, c.field(line.at(begin)), end, c.field(line.at(end))}};
+  bool contact = false;
+  while (!parts.empty()) {
+    const Part p = parts.back();
+    parts.pop_back();
+    if (p.fa <= 0) return {Outcome::Hit, p.a};
+    if (p.fb > 0 && p.fa + p.fb > c.lipschitz * (p.b - p.a)) continue;
+    const double m = (p.a + p.b) / 2;
+    if (p.b - p.a < kResolution) {
+      if (p.fb <= 0) return {Outcome::Hit, m};
+      contact = true;
+      continue;
+    }
+    const double fm = c.field(line.at(m));
+    parts.push_back({m, fm, p.b, p.fb});
+    parts.push_back({p.a, p.fa, m, fm});
+  }
+  return {contact ? Outcome::Contact : Outcome::Miss, 0};
+}
+
+constexpr double kGross = 0.02;  // scene units: a hit this far off is another surface
+
+// Sphere tracing with the raw value as the step.
+Truth naive(const Case& c, const Line& line) {
+  double t = 0;
+  for (int i = 0; i < 1000 && t < 10 * c.radius; ++i) {
+    const double f = c.field(line.at(t));
+    if (f < 1e-5) return {Outcome::Hit, t};
+    t += f;
+  }
+  return {Outcome::Miss, 0};
+}
+
+struct Tally {
+  int rays = 0, hits = 0, contacts = 0, wrong = 0, naive_wrong = 0;
+  double worst = 0;  // largest error of a hit, scene units
+  double evaluations = 0;
+};
+
+Tally tally(const Case& c, int count) {
+  compiler::Diagnostics diagnostics;
+  const compiler::Source source(c.name, R"({"version": 1, "objects": [)" + c.node + "]}");
+  const auto scene = compiler::compile(source, diagnostics);
+  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
+  REQUIRE(scene);
+  CHECK(scene->certified);
+  Random random(11);
+  std::vector<Line> lines;
+  std::vector<runtime::Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    lines.push_back(random_line(c, random));
+    rays.push_back({lines.back().origin, lines.back().direction});
+  }
+  const runtime::MarchResult marched = runtime::march(runtime::make_field(*scene), rays);
+  Tally result{.rays = count};
+  result.evaluations = static_cast<double>(marched.counters.evaluations) / count;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Truth truth = search(c, lines[i]);
+    result.hits += truth.outcome == Outcome::Hit;
+    result.contacts += truth.outcome == Outcome::Contact;
+    if (truth.outcome == Outcome::Contact) continue;
+    const auto wrong = [&](bool hit, double t) {
+      return hit != (truth.outcome == Outcome::Hit) || (hit && std::abs(t - truth.t) > kGross);
+    };
+    const bool hit = marched.arrivals[i].status == runtime::Arrival::Status::Hit;
+    const Truth guess = naive(c, lines[i]);
+    result.wrong += wrong(hit, marched.arrivals[i].t);
+    result.naive_wrong += wrong(guess.outcome == Outcome::Hit, guess.t);
+    if (hit && truth.outcome == Outcome::Hit && !wrong(hit, marched.arrivals[i].t)) {
+      result.worst = std::max(result.worst, std::abs(marched.arrivals[i].t - truth.t));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("no ray is wrong at what is twisted, stretched, repeated or displaced", "[warps]") {
+  for (const Case& c : cases()) {
+    const Tally result = tally(c, 3000);
+    INFO(c.name << ": " << result.hits << " hits, " << result.contacts << " contacts, " << result.naive_wrong
+                << " wrong by naive steps");
+    CHECK(result.wrong == 0);
+    CHECK(result.hits > 200);
+  }
+}
+
+TEST_CASE("a hundred thousand rays at each", "[.report][.heavy]") {
+  std::printf("%-24s %8s %8s %8s %8s %10s %10s %8s\n", "", "rays", "hits", "contacts", "wrong", "naive, %", "worst",
+              "evals");
+  for (const Case& c : cases()) {
+    const Tally r = tally(c, 100000);
+    std::printf("%-24s %8d %8d %8d %8d %10.2f %10.2g %8.1f\n", c.name, r.rays, r.hits, r.contacts, r.wrong,
+                100.0 * r.naive_wrong / r.rays, r.worst, r.evaluations);
+    CHECK(r.wrong == 0);
+  }
+}
+
+}  // namespace fathom::test
