@@ -8,7 +8,7 @@
 
 #include "compiler/bounds.h"
 #include "compiler/frontend/elaborate.h"
-#include "compiler/frontend/json.h"
+#include "compiler/frontend/read_scene.h"
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
@@ -81,10 +81,10 @@ std::span<const Pass> passes() {
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
-  const std::optional<syntax::File> file = read_json(source, diagnostics);
-  if (!file) return std::nullopt;
-  if (options.on_syntax) options.on_syntax(*file);
-  std::optional<Elaborated> elaborated = elaborate(*file, diagnostics, options.definitions);
+  const std::optional<ReadScene> read = read_scene(source, diagnostics);
+  if (!read) return std::nullopt;
+  if (options.on_syntax) options.on_syntax(*read);
+  std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions);
   if (!elaborated) return std::nullopt;
 
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);

@@ -1,4 +1,4 @@
-// The compiler's one function: scene text to CompiledScene. compile.cpp reads as the list of passes.
+// The compiler's one function: scene text, in any format of read_scene.h, to CompiledScene. compile.cpp reads as the list of passes.
 // Tested by: tests/compiler/compile_test.cpp
 #pragma once
 
@@ -11,7 +11,7 @@
 #include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/parameters.h"
-#include "compiler/frontend/syntax.h"
+#include "compiler/frontend/read_scene.h"
 #include "compiler/graph.h"
 
 namespace fathom::compiler {
@@ -24,7 +24,7 @@ struct CompileOptions {
   // Values for the scene's parameters in place of its own.
   Definitions definitions;
   // Called with what the front end read.
-  std::function<void(const syntax::File& file)> on_syntax;
+  std::function<void(const ReadScene& scene)> on_syntax;
 };
 
 // nullopt exactly when `diagnostics` has errors afterwards.

@@ -57,6 +57,17 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0502", "a value for a parameter out of its range"},
     {"E0306", "a solid where an outline is needed, or the other way round"},
     {"E0307", "an outline placed out of its plane"},
+    // E06xx: formats from elsewhere
+    {"E0601", "unknown operation in an expression list"},
+    {"E0602", "an operation with too few or too many operands"},
+    {"E0603", "an operand that no line above has as its name"},
+    {"E0604", "a name given to two lines of an expression list"},
+    {"E0605", "a constant of an expression list that is not a number"},
+    {"E0606", "an expression list without a line"},
+    {"E0611", "unknown kind of nested node"},
+    {"E0612", "a property of a nested node that is missing or of the wrong type"},
+    {"E0613", "a matrix that does not only turn and move"},
+    {"E0614", "a box whose edges are rounded in ways that are not known here"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},

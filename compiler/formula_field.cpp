@@ -1,12 +1,14 @@
 #include "compiler/formula_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <queue>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "compiler/lower.h"
 #include "vm/check.h"
@@ -32,7 +34,11 @@ struct Cell {
 
 class Bisection {
  public:
-  Bisection(const vm::VerifiedProgram& program, const Box& box) : program_(program), whole_(box) { add(box); }
+  // `used`: which coordinates the formula has in it; along the others nothing changes.
+  Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
+      : program_(program), whole_(box), used_(used) {
+    add(box);
+  }
 
   FormulaBound run() {
     // Of the formula's length: about a tenth of a second.
@@ -72,6 +78,7 @@ class Bisection {
     const glm::dvec3 size = cell.box.hi - cell.box.lo, whole = whole_.hi - whole_.lo;
     int axis = -1;
     for (int i = 0; i < 3; ++i) {
+      if (!used_[static_cast<std::size_t>(i)]) continue;
       if (std::isfinite(size[i]) && size[i] > 1e-4 * whole[i] && (axis < 0 || size[i] > size[axis])) axis = i;
     }
     if (axis < 0) return false;
@@ -86,6 +93,7 @@ class Bisection {
 
   const vm::VerifiedProgram& program_;
   const Box whole_;
+  const std::array<bool, 3> used_;
   vm::Workspace workspace_;
   std::priority_queue<Cell> cells_;
   double seen_ = 0, settled_ = 0, least_ = kInfinity, most_ = -kInfinity;
@@ -98,6 +106,20 @@ vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
   auto verified = vm::verify(std::move(*program));
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
+}
+
+std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
+  std::array<bool, 3> used = {false, false, false};
+  std::vector<bool> reached(formula + 1, false);
+  reached[formula] = true;
+  for (NodeId id = formula + 1; id-- > 0;) {
+    if (!reached[id]) continue;
+    used[0] = used[0] || graph.kind(id) == Kind::X;
+    used[1] = used[1] || graph.kind(id) == Kind::Y;
+    used[2] = used[2] || graph.kind(id) == Kind::Z;
+    for (const NodeId child : graph.children(id)) reached[child] = true;
+  }
+  return used;
 }
 
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
@@ -121,7 +143,8 @@ double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.s
 }  // namespace
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
-  return Bisection(program_of(graph, formula), box).run();
+  const vm::VerifiedProgram program = program_of(graph, formula);
+  return Bisection(program, box, coordinates_of(graph, formula)).run();
 }
 
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {

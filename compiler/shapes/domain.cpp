@@ -45,6 +45,10 @@ double radius_about_y(const Box& box) {
                     std::max(std::abs(box.lo.z), std::abs(box.hi.z)));
 }
 
+// A box whose distance is part of a result is larger than the solid by this part of its size, so that on the solid's
+// surface it is the solid's own distance that counts, and its material.
+constexpr double kAside = 1e-3;
+
 Box tube(double radius, double y0, double y1) { return {{-radius, y0, -radius}, {radius, y1, radius}}; }
 
 Complaint check_bounded_about_y(std::span<const Knowledge> children, const char* what) {
@@ -301,13 +305,14 @@ std::vector<double> derive_polar(Params p, std::span<const Knowledge> children) 
   const double sector = 2 * std::numbers::pi / p[0];
   double sides = std::ceil(wedge.half / sector + 0.25);
   if (2 * sides >= p[0] || wedge.half >= std::numbers::pi) sides = kAll;
+  const double radius = radius_about_y(child.box) * (1 + kAside), margin = kAside * radius;
   return {sides,
           wedge.middle,
           sides == kAll ? 0 : sides * sector - wedge.half,
           child.reach > 0 ? child.reach : 0.25,
-          std::clamp(child.box.lo.y, -kNoLimit, kNoLimit),
-          std::clamp(child.box.hi.y, -kNoLimit, kNoLimit),
-          radius_about_y(child.box)};
+          std::clamp(child.box.lo.y - margin, -kNoLimit, kNoLimit),
+          std::clamp(child.box.hi.y + margin, -kNoLimit, kNoLimit),
+          radius};
 }
 
 Complaint check_polar(Params p) {
@@ -332,6 +337,7 @@ Knowledge know_polar(Params p, std::span<const Knowledge> children) {
   k.inside = std::max(k.inside, Exactness::Bound);
   k.reach_max = std::min(k.reach_max, k.reach);
   if (p[1] == kAll) return k;
+  k.box = tube(p[7], children[0].box.lo.y - kAside * p[7], children[0].box.hi.y + kAside * p[7]);
   k.magnitude += radius;  // the angle's sine and cosine are rounded
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result
   return only_bound(k);
@@ -476,15 +482,16 @@ std::vector<double> derive_bend(Params p, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   const Arc a = arc(p[0], child.box);
   const double inner = kInner * a.innermost, reach = child.reach > 0 ? child.reach : 0.25;
-  const Box box = bent_box(a, child.box);
+  const Box exact = bent_box(a, child.box);
+  const Box box = exact.grown(kAside * std::max(exact.hi.x - exact.lo.x, exact.hi.y - exact.lo.y));
   return {a.radius,
           a.side,
           inner,
           child.lipschitz * std::max(1.0, a.radius / inner),
           reach * (a.innermost - inner),
           reach * (std::numbers::pi * a.radius - a.farthest),
-          std::clamp(child.box.lo.z, -kNoLimit, kNoLimit),
-          std::clamp(child.box.hi.z, -kNoLimit, kNoLimit),
+          std::clamp(box.lo.z, -kNoLimit, kNoLimit),
+          std::clamp(box.hi.z, -kNoLimit, kNoLimit),
           reach,
           box.lo.x,
           box.lo.y,
@@ -521,6 +528,8 @@ Knowledge know_bend(Params p, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   Knowledge k = only_bound(mapped(child));
   k.box.lo.x = p[10], k.box.lo.y = p[11], k.box.hi.x = p[12], k.box.hi.y = p[13];
+  k.box.lo.z = p[7] <= -kNoLimit ? k.box.lo.z : p[7];
+  k.box.hi.z = p[8] >= kNoLimit ? k.box.hi.z : p[8];
   k.symmetric = {child.symmetric[0], false, child.symmetric[2]};
   k.lipschitz = p[4];
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result

@@ -101,7 +101,10 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
   const bool surface = request.program == 1;
   const char* name = surface ? "surface" : "distance";
   const vm::VerifiedProgram& program = surface ? scene.surface : scene.distance;
-  if (request.stats) return operation_table(program) + "\n" + cost_by_node(program);
+  if (request.stats) {
+    return fmt::format("{}\n{} of the graph\n\n{}", operation_table(program), count_of(scene.node_count, "node"),
+                       cost_by_node(program));
+  }
   if (request.format == kJson) return program_json(program, name, scene.summary);
   return fmt::format("; {}: {}\n", name, scene.summary) + vm::disassemble(program);
 }
@@ -121,7 +124,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   compiler::CompileOptions options;
   options.stop_after = request.after;
   if (request.stage == kSyntax) {
-    options.on_syntax = [&](const compiler::syntax::File& file) { syntax = compiler::syntax::print_syntax(file); };
+    options.on_syntax = [&](const compiler::ReadScene& read_as) { syntax = print_syntax(read_as.file); };
   } else if (request.diff) {
     options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) { diff.add(pass, scene); };
   } else if (request.stage == kGraph) {

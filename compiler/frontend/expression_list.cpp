@@ -1,0 +1,267 @@
+#include "compiler/frontend/expression_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "compiler/frontend/formula.h"
+#include "compiler/frontend/formula_nodes.h"
+#include "compiler/frontend/json_error.h"
+#include "compiler/frontend/make_syntax.h"
+
+namespace fathom::compiler {
+namespace {
+
+struct Operation {
+  std::string_view name;
+  std::size_t operands;
+  std::string_view formula;  // {0} and {1} are the operands
+};
+
+// What the operations mean is Fidget's to say: round takes halves away from zero, mod is Euclid's, compare is -1, 0 or
+// 1, and `and` and `or` give one of their operands.
+constexpr Operation kOperations[] = {
+    {"var-x", 0, "x"},
+    {"var-y", 0, "y"},
+    {"var-z", 0, "z"},
+    {"neg", 1, "-{0}"},
+    {"abs", 1, "abs({0})"},
+    {"sqrt", 1, "sqrt({0})"},
+    {"square", 1, "square({0})"},
+    {"floor", 1, "floor({0})"},
+    {"ceil", 1, "ceil({0})"},
+    {"round", 1, "sign({0})*floor(abs({0}) + 0.5)"},
+    {"sin", 1, "sin({0})"},
+    {"cos", 1, "cos({0})"},
+    {"tan", 1, "tan({0})"},
+    {"asin", 1, "asin({0})"},
+    {"acos", 1, "acos({0})"},
+    {"atan", 1, "atan({0})"},
+    {"ln", 1, "log({0})"},
+    {"exp", 1, "exp({0})"},
+    {"not", 1, "not({0})"},
+    {"add", 2, "{0} + {1}"},
+    {"sub", 2, "{0} - {1}"},
+    {"mul", 2, "{0}*{1}"},
+    {"div", 2, "{0}/{1}"},
+    {"min", 2, "min({0}, {1})"},
+    {"max", 2, "max({0}, {1})"},
+    {"atan2", 2, "atan2({0}, {1})"},
+    {"compare", 2, "compare({0}, {1})"},
+    {"mod", 2, "modulo_euclid({0}, {1})"},
+    {"and", 2, "and({0}, {1})"},
+    {"or", 2, "or({0}, {1})"},
+};
+constexpr std::string_view kConst = "const";
+
+const Operation* find_operation(std::string_view name) {
+  const auto found = std::find_if(std::begin(kOperations), std::end(kOperations),
+                                  [&](const Operation& row) { return row.name == name; });
+  return found == std::end(kOperations) ? nullptr : found;
+}
+
+std::vector<std::string_view> operation_names() {
+  std::vector<std::string_view> names = {kConst};
+  for (const Operation& row : kOperations) names.push_back(row.name);
+  return names;
+}
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kBlanks, end);
+  }
+  return words;
+}
+
+// Takes the first line off `rest`.
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find('\n'), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  return line;
+}
+
+bool is_comment(const std::vector<std::string_view>& words) { return words.empty() || words[0].starts_with('#'); }
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool in_name(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '$'; }
+
+class ListReader {
+ public:
+  ListReader(const Source& source, Diagnostics& diagnostics) : text_(source.text()), diagnostics_(diagnostics) {}
+
+  std::optional<syntax::File> read() {
+    std::string_view rest = text_;
+    while (!rest.empty()) {
+      std::vector<std::string_view> words = words_of(take_line(rest));
+      if (is_comment(words)) continue;
+      taken_.emplace(words[0]);
+      lines_.push_back(std::move(words));
+    }
+    if (lines_.empty()) {
+      diagnostics_.error("E0606", {}, "the list has no operation in it", "",
+                         {"the smallest list that means something is `_0 var-x`"});
+    }
+    for (const auto& words : lines_) read_line(words);
+    if (diagnostics_.has_errors()) return std::nullopt;
+    return syntax::File{scene()};
+  }
+
+ private:
+  Span span(std::string_view part) const {
+    const auto begin = static_cast<std::uint32_t>(part.data() - text_.data());
+    return {begin, begin + static_cast<std::uint32_t>(part.size())};
+  }
+  static Span join(Span from, Span to) { return {from.begin, to.end}; }
+
+  void read_line(const std::vector<std::string_view>& words) {
+    const Span place = join(span(words.front()), span(words.back()));
+    std::string formula = words.size() < 2 ? no_operation(words[0]) : formula_of(words, place);
+    const auto [entry, fresh] = names_.emplace(words[0], formula_name(words[0]));
+    if (!fresh) {
+      diagnostics_.error("E0604", span(words[0]), fmt::format("`{}` is given twice", words[0]), "",
+                         {"every line needs a name of its own"});
+    }
+    const bool last = &words == &lines_.back();
+    formula_.push_back({place, last ? std::move(formula) : fmt::format("{} = {}", entry->second, formula)});
+  }
+
+  std::string formula_of(const std::vector<std::string_view>& words, Span place) {
+    const std::string_view name = words[1];
+    const Operation* operation = find_operation(name);
+    if (operation == nullptr && name != kConst) return unknown_operation(name);
+    const std::size_t wanted = operation ? operation->operands : 1, given = words.size() - 2;
+    if (given != wanted) {
+      diagnostics_.error("E0602", place,
+                         fmt::format("`{}` takes {} operand{}, not {}", name, wanted, wanted == 1 ? "" : "s", given));
+      return "0";
+    }
+    if (operation == nullptr) return constant(words[2]);
+    std::array<std::string, 2> operands;
+    for (std::size_t i = 0; i < wanted; ++i) operands[i] = resolve(words[i + 2]);
+    has_z_ = has_z_ || name == "var-z";
+    return fmt::format(fmt::runtime(operation->formula), operands[0], operands[1]);
+  }
+
+  std::string no_operation(std::string_view name) {
+    diagnostics_.error("E0601", span(name), "a line without an operation", "", {"a line is: name operation operands"});
+    return "0";
+  }
+
+  std::string unknown_operation(std::string_view name) {
+    const std::string_view near = nearest(name, operation_names());
+    std::vector<std::string> help;
+    if (!near.empty()) help.push_back(fmt::format("did you mean `{}`?", near));
+    if (near.empty()) help.push_back(fmt::format("known: {}", fmt::join(operation_names(), ", ")));
+    diagnostics_.error("E0601", span(name), fmt::format("unknown operation `{}`", name), "", std::move(help));
+    return "0";
+  }
+
+  std::string constant(std::string_view word) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error == std::errc() && end == word.data() + word.size() &&
+        std::abs(value) <= std::numeric_limits<float>::max()) {
+      return fmt::format("{}", value);
+    }
+    diagnostics_.error("E0605", span(word), fmt::format("`{}` is not a number that a float can be", word), "",
+                       {"a constant is written as 0.5, -3 or 1e-3"});
+    return "0";
+  }
+
+  std::string resolve(std::string_view word) {
+    const auto found = names_.find(word);
+    if (found != names_.end()) return found->second;
+    const bool later = taken_.contains(std::string(word));
+    diagnostics_.error("E0603", span(word), fmt::format("`{}` has no value {}", word, later ? "yet" : "here"), "",
+                       {later ? "an operand must be the name of a line above" : "no line has this name"});
+    return "0";
+  }
+
+  // The name itself where formulas can have it, else one made up.
+  std::string formula_name(std::string_view name) {
+    if (misfit_name(name, machine_functions()).empty()) return std::string(name);
+    std::string made = fmt::format("line{}", names_.size() + 1);
+    while (!taken_.insert(made).second) made += '_';
+    return made;
+  }
+
+  syntax::Value scene() {
+    const Span whole = {0, static_cast<std::uint32_t>(text_.size())};
+    syntax::List lines;
+    for (auto& [place, formula] : formula_) lines.push_back({place, std::move(formula)});
+    RecordMaker object(whole), camera(whole), film(whole), material(whole), materials(whole), background(whole);
+    object.add("type", "expression")
+        .add("half_size", glm::dvec3(1))
+        .add("formula", syntax::Value{whole, std::move(lines)})
+        .add("material", "model");
+    // A drawing in the plane is seen without perspective, which would show its sides.
+    if (!has_z_) camera.add("type", "orthographic").add("width", 2.1);
+    camera.add("position", glm::dvec3(0, 0, 5)).add("target", glm::dvec3(0));
+    if (has_z_) camera.add("fov_y", 32.0);
+    film.add("width", 512.0).add("height", 512.0);
+    material.add("type", "diffuse").add("color", glm::dvec3(0.05, 0.12, 0.35));
+    materials.add("model", material.take());
+    background.add("bottom", glm::dvec3(0.6)).add("top", glm::dvec3(1));
+    syntax::List objects;
+    objects.push_back(object.take());
+    return RecordMaker(whole)
+        .add("version", 1.0)
+        .add("camera", camera.take())
+        .add("film", film.take())
+        .add("background", background.take())
+        .add("materials", materials.take())
+        .add("objects", syntax::Value{whole, std::move(objects)})
+        .take();
+  }
+
+  struct Line {
+    Span place;
+    std::string formula;
+  };
+
+  const std::string& text_;
+  Diagnostics& diagnostics_;
+  std::vector<std::vector<std::string_view>> lines_;         // their words
+  std::unordered_map<std::string_view, std::string> names_;  // of the lines so far: as the formula calls them
+  std::unordered_set<std::string> taken_;                    // names that lines have, or that were made up
+  std::vector<Line> formula_;
+  bool has_z_ = false;
+};
+
+}  // namespace
+
+bool is_expression_list(std::string_view text) {
+  bool comment = false;
+  while (!text.empty()) {
+    const std::vector<std::string_view> words = words_of(take_line(text));
+    if (is_comment(words)) {
+      comment = comment || !words.empty();
+      continue;
+    }
+    return words.size() > 1 && std::all_of(words[0].begin(), words[0].end(), in_name) && is_letter(words[1][0]) &&
+           std::all_of(words[1].begin(), words[1].end(), [](char c) { return in_name(c) || c == '-'; });
+  }
+  return comment;
+}
+
+std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics) {
+  if (!check_text(source, diagnostics)) return std::nullopt;
+  return ListReader(source, diagnostics).read();
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,27 @@
+#include "compiler/frontend/read_scene.h"
+
+#include <utility>
+
+#include "compiler/frontend/expression_list.h"
+#include "compiler/frontend/json.h"
+#include "compiler/frontend/nested_nodes.h"
+
+namespace fathom::compiler {
+
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics) {
+  if (is_expression_list(source.text())) {
+    std::optional<syntax::File> file = read_expression_list(source, diagnostics);
+    if (!file) return std::nullopt;
+    return ReadScene{SceneFormat::ExpressionList, std::move(*file)};
+  }
+  std::optional<syntax::File> file = read_json(source, diagnostics);
+  if (!file) return std::nullopt;
+  if (!is_nested_nodes(*file)) return ReadScene{SceneFormat::Scene, std::move(*file)};
+  // What is already wrong, such as a property given twice, must not be lost.
+  if (diagnostics.has_errors()) return std::nullopt;
+  std::optional<syntax::File> scene = from_nested_nodes(*file, diagnostics);
+  if (!scene) return std::nullopt;
+  return ReadScene{SceneFormat::NestedNodes, std::move(*scene)};
+}
+
+}  // namespace fathom::compiler

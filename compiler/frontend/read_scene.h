@@ -1,0 +1,22 @@
+// The front ends together: which of the formats a text is in, and the scene it describes.
+// Tested by: tests/compiler/expression_list_test.cpp, tests/compiler/nested_nodes_test.cpp
+#pragma once
+
+#include <optional>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/syntax.h"
+
+namespace fathom::compiler {
+
+enum class SceneFormat { Scene, ExpressionList, NestedNodes };
+
+struct ReadScene {
+  SceneFormat format;
+  syntax::File file;  // what an ordinary scene file would have said
+};
+
+// nullopt after reporting an error.
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler

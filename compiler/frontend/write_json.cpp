@@ -1,0 +1,99 @@
+#include "compiler/frontend/write_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace fathom::compiler {
+namespace {
+
+constexpr std::size_t kWidest = 120;  // columns of a line, where there is a choice
+
+// Control characters are refused when they are read.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string scalar(const syntax::Value& value) {
+  if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
+  if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
+  return "null";
+}
+
+// The parts of a record or list, and what goes before each.
+std::size_t parts(const syntax::Value& value) {
+  if (const auto* list = std::get_if<syntax::List>(&value.data)) return list->size();
+  if (const auto* record = std::get_if<syntax::Record>(&value.data)) return record->properties.size();
+  return 0;
+}
+const syntax::Value& part(const syntax::Value& value, std::size_t i) {
+  if (const auto* list = std::get_if<syntax::List>(&value.data)) return (*list)[i];
+  return *std::get<syntax::Record>(value.data).properties[i].value;
+}
+std::string lead(const syntax::Value& value, std::size_t i) {
+  const auto* record = std::get_if<syntax::Record>(&value.data);
+  return record ? quoted(record->properties[i].name) + ": " : "";
+}
+bool is_record(const syntax::Value& value) { return std::holds_alternative<syntax::Record>(value.data); }
+bool is_scalar(const syntax::Value& value) {
+  return !is_record(value) && !std::holds_alternative<syntax::List>(value.data);
+}
+
+// On one line, when that has at most `room` columns.
+std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t room) {
+  std::string out;
+  if (is_scalar(value)) {
+    out = scalar(value);
+  } else {
+    out = is_record(value) ? "{" : "[";
+    for (std::size_t i = 0; i < parts(value); ++i) {
+      out += (i > 0 ? ", " : "") + lead(value, i);
+      if (out.size() > room) return std::nullopt;
+      const auto inner = on_one_line(part(value, i), room - out.size());
+      if (!inner) return std::nullopt;
+      out += *inner;
+    }
+    out += is_record(value) ? "}" : "]";
+  }
+  return out.size() <= room ? std::optional(std::move(out)) : std::nullopt;
+}
+
+void write(const syntax::Value& value, std::size_t indent, std::size_t used, std::string& out) {
+  const std::size_t room = kWidest - std::min(kWidest, indent + used);
+  // The file itself is easier to read in lines.
+  const auto line = indent == 0 ? std::nullopt : on_one_line(value, room);
+  if (line || is_scalar(value)) {
+    out += line ? *line : scalar(value);
+    return;
+  }
+  out += is_record(value) ? "{\n" : "[\n";
+  for (std::size_t i = 0; i < parts(value); ++i) {
+    out.append(indent + 2, ' ');
+    const std::string name = lead(value, i);
+    out += name;
+    write(part(value, i), indent + 2, name.size() + 1, out);
+    out += i + 1 < parts(value) ? ",\n" : "\n";
+  }
+  out.append(indent, ' ');
+  out += is_record(value) ? '}' : ']';
+}
+
+}  // namespace
+
+std::string write_json(const syntax::File& file) {
+  std::string out;
+  write(file.root, 0, 0, out);
+  return out + "\n";
+}
+
+}  // namespace fathom::compiler

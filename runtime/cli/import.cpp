@@ -1,0 +1,71 @@
+// fathom import: models in formats from elsewhere as ordinary scene files.
+// Tested by: tests/runtime/cli_import_test.cpp
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+
+#include "compiler/frontend/write_json.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/verbs.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom import prospero.vm -o prospero.json\n"
+    "fathom import molecule.json | fathom check -\n"
+    "\n"
+    "Every verb reads these formats itself; import is for who wants to change what is in them.";
+
+// For a comment of one line.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+}  // namespace
+
+int run_import(std::span<const std::string> args, const Streams& streams) {
+  SceneArguments scene_arguments;
+  std::optional<std::string> output;
+  Arguments arguments("import", "Writes a model of another format as a scene file.", kExamples);
+  add_scene_arguments(arguments, scene_arguments);
+  arguments.option("-o,--output", "FILE", "Scene file to write (standard output)", any_text(output));
+  if (const auto code = arguments.parse(args, streams)) return *code;
+  if (output) {
+    if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
+  }
+  auto source = read_scene(scene_arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+
+  bool foreign = false;
+  std::string text;
+  compiler::CompileOptions options;
+  options.on_syntax = [&](const compiler::ReadScene& scene) {
+    foreign = scene.format != compiler::SceneFormat::Scene;
+    if (foreign) text = compiler::write_json(scene.file);
+  };
+  const auto compiled =
+      compile_scene(std::get<compiler::Source>(std::move(source)), scene_arguments, streams, options);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  if (!foreign) {
+    return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
+  }
+  text = fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text;
+  if (!output) {
+    streams.out << text;
+    return kDone;
+  }
+  std::ofstream file(*output, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) return fail(streams, kIo, fmt::format("cannot write `{}`", *output));
+  streams.err << fmt::format("wrote {}\n", *output);
+  return kDone;
+}
+
+}  // namespace fathom::cli
