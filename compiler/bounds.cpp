@@ -48,12 +48,14 @@ std::string_view name(Exactness exactness) {
   }
 }
 
-std::string describe(const Knowledge& k) {
+std::string describe(const Box& box) {
   const auto side = [](double lo, double hi) { return fmt::format("[{:.4g},{:.4g}]", lo, hi); };
-  const std::string box = k.box.empty() ? "empty"
-                                        : side(k.box.lo.x, k.box.hi.x) + "x" + side(k.box.lo.y, k.box.hi.y) + "x" +
-                                              side(k.box.lo.z, k.box.hi.z);
-  return fmt::format("bound {}, {} outside, Lipschitz <= {:.4g} ({})", box, name(k.outside), k.lipschitz,
+  if (box.empty()) return "empty";
+  return side(box.lo.x, box.hi.x) + "x" + side(box.lo.y, box.hi.y) + "x" + side(box.lo.z, box.hi.z);
+}
+
+std::string describe(const Knowledge& k) {
+  return fmt::format("bound {}, {} outside, Lipschitz <= {:.4g} ({})", describe(k.box), name(k.outside), k.lipschitz,
                      k.certified ? "proved" : "estimate");
 }
 

@@ -9,6 +9,7 @@
 #include "compiler/bounds.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
+#include "compiler/lints.h"
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
@@ -99,6 +100,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const std::vector<Knowledge> all_known = analyse(field.graph);
   const Knowledge& known = all_known[field.root];
   warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
+  warn_of_unbounded_formulas(elaborated->scene, diagnostics);
+  if (options.lint) lint(elaborated->scene, *elaborated, *surface, diagnostics);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(source),
                        std::move(*distance),

@@ -23,6 +23,8 @@ struct CompileOptions {
   std::function<void(std::string_view pass, const Scene& scene)> on_pass;
   // Values for the scene's parameters in place of its own.
   Definitions definitions;
+  // Warn of what is sound but surely not meant, or dear (compiler/lints.h).
+  bool lint = false;
   // Called with what the front end read.
   std::function<void(const ReadScene& scene)> on_syntax;
 };

@@ -43,6 +43,8 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0303", "the camera looks at its own position"},
     {"E0304", "the camera's up is its direction of view"},
     {"E0305", "the program would be too long for the machine"},
+    {"E0306", "a solid where an outline is needed, or the other way round"},
+    {"E0307", "an outline placed out of its plane"},
     // E04xx: formulas and parameters
     {"E0401", "malformed formula"},
     {"E0402", "unknown name in a formula"},
@@ -55,8 +57,6 @@ inline constexpr ErrorCode kErrorCodes[] = {
     // E05xx: the command line's values for a scene
     {"E0501", "a value for a parameter that the scene does not have"},
     {"E0502", "a value for a parameter out of its range"},
-    {"E0306", "a solid where an outline is needed, or the other way round"},
-    {"E0307", "an outline placed out of its plane"},
     // E06xx: formats from elsewhere
     {"E0601", "unknown operation in an expression list"},
     {"E0602", "an operation with too few or too many operands"},
@@ -73,6 +73,18 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0402", "unused named node"},
     {"W0403", "large numbers cancel in float"},
     {"W0404", "unused parameter"},
+    // W05xx: warnings about what is sound but surely not meant, or dear (compiler/lints.h)
+    {"W0501", "a part that never shows"},
+    {"W0502", "an operation that leaves nothing"},
+    {"W0503", "a cut that cuts nothing off"},
+    {"W0504", "a repetition that evaluates many copies"},
+    {"W0505", "a blend too wide for what it joins"},
+    {"W0506", "a part thinner than floats tell apart"},
+    {"W0507", "a lamp that sends out no light"},
+    {"W0508", "steps many times shorter"},
+    {"W0509", "a formula without a bound"},
+    {"W0510", "the camera is inside a solid"},
+    {"W0511", "an offset of what is no distance"},
 };
 
 }  // namespace fathom::compiler

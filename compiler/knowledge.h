@@ -34,6 +34,9 @@ struct Knowledge {
 // e.g. "bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
 std::string describe(const Knowledge& knowledge);
 
+// e.g. "[-1,1]x[-1,1.5]x[-1,1]", or "empty".
+std::string describe(const Box& box);
+
 // "exact", "a lower bound", "an estimate".
 std::string_view name(Exactness exactness);
 

@@ -290,7 +290,9 @@ HWY_INLINE T smooth_min(const T& a, const T& b, Constant<T> k, Constant<T> inv4k
 }
 template <class T>
 HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
-  const T h = max(constant<T>(0.0), k - abs(a - b));
+  // b - a, not a - b: of equals max() is b, and abs()'s derivative that of its operand, so that the gradient there is
+  // the mean of both and not 1.5 times b's less half of a's.
+  const T h = max(constant<T>(0.0), k - abs(b - a));
   return max(a, b) + h * h * inv4k;
 }
 

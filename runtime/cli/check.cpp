@@ -1,65 +1,82 @@
-// fathom check: every error and warning of a scene, and a short report of what it compiles to. No pixels.
-// Tested by: tests/runtime/cli_test.cpp
+// fathom check: every error and warning of a scene, and the exactness report: how far each object's distance can be
+// trusted, how much of it a ray may step, and which node that is due to. --probe tries to refute it. No pixels.
+// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_check_test.cpp
 #include <fmt/format.h>
 
-#include <limits>
+#include <algorithm>
+#include <glm/geometric.hpp>
 #include <ostream>
+#include <thread>
 
+#include "runtime/cli/check_report.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 constexpr const char* kExamples =
     "fathom check scene.json\n"
-    "fathom check --error-format short scene.json   # one line an error, for editors";
+    "fathom check --error-format short scene.json   # one line an error, for editors\n"
+    "fathom check --error-format json scene.json    # errors and report as JSON lines\n"
+    "fathom check --probe 1000000 scene.json        # tries to refute the Lipschitz constants";
 
-std::string describe(std::string_view name, const vm::VerifiedProgram& program) {
-  return fmt::format("  {} program: {}, {}, stacks of {} and {}, about {} a point\n", name,
-                     count_of(program.instructions(), "instruction"),
-                     count_of(program.program().words.size(), "word"), count_of(program.max_values(), "value"),
-                     count_of(program.max_points(), "point"), count_of(program.cost(), "multiply-add"));
+constexpr int kMostProbes = 100'000'000;
+
+struct CheckRequest {
+  SceneArguments scene;
+  std::optional<int> probes, threads;
+};
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, CheckRequest& request) {
+  Arguments arguments("check",
+                      "Prints every error and warning of a scene and how exact its distances are; renders nothing.",
+                      kExamples);
+  add_scene_arguments(arguments, request.scene);
+  arguments.option("--probe", "N",
+                   "Compare gradients and differences at N points with every constant the compiler proved",
+                   whole(request.probes, 1, kMostProbes));
+  arguments.option("--threads", "N", "Threads to probe with (default: one a processor)",
+                   whole(request.threads, 1, 1024));
+  return arguments.parse(args, streams);
 }
 
-// A line each, as -D takes them.
-std::string describe(const std::vector<compiler::Parameter>& parameters) {
-  std::string out;
-  for (const compiler::Parameter& parameter : parameters) {
-    out += fmt::format("  -D {}={}", parameter.name, parameter.value);
-    if (parameter.min > -kInfinity || parameter.max < kInfinity) {
-      out += fmt::format("  [{}, {}]", parameter.min, parameter.max);
-    }
-    out += (parameter.doc.empty() ? "" : "  " + parameter.doc) + "\n";
-  }
-  return out;
-}
-
-std::string report(const compiler::CompiledScene& scene) {
-  return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
-         describe("distance", scene.distance) + describe("surface", scene.surface) +
-         fmt::format("  {}, {}\n", count_of(scene.materials.size(), "material"),
-                     count_of(scene.surfaces.size(), "surface")) +
-         describe(scene.parameters);
+// Prints what the probes saw; kFoundProblems when they refute anything.
+ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& scene, const compiler::Scene& graph,
+                   const Streams& streams) {
+  compiler::ProbeOptions options;
+  options.points = static_cast<std::uint64_t>(*request.probes);
+  options.reach = 10 * glm::length(scene.camera.target - scene.camera.position);
+  options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  const std::vector<compiler::ProbeRow> rows = probe(graph, scene.surfaces, options);
+  const std::vector<const compiler::ProbeRow*> culprits = compiler::culprits(graph, rows);
+  const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
+  streams.out << (json ? probe_json(scene.source, rows, culprits) : probe_text(scene.source, rows, culprits));
+  return culprits.empty() ? kDone : kFoundProblems;
 }
 
 }  // namespace
 
 int run_check(std::span<const std::string> args, const Streams& streams) {
-  SceneArguments scene_arguments;
-  Arguments arguments("check", "Prints every error and warning of a scene and a short report; renders nothing.",
-                      kExamples);
-  add_scene_arguments(arguments, scene_arguments);
-  if (const auto code = arguments.parse(args, streams)) return *code;
+  CheckRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
 
-  auto source = read_scene(scene_arguments, streams);
+  auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  const auto scene = compile_scene(std::get<compiler::Source>(std::move(source)), scene_arguments, streams);
-  if (const auto* code = std::get_if<ExitCode>(&scene)) return *code == kBadScene ? kFoundProblems : *code;
-  streams.out << report(std::get<compiler::CompiledScene>(scene));
-  return kDone;
+  compiler::Scene graph;
+  compiler::CompileOptions options;
+  options.lint = true;
+  options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
+    if (pass == "graph") graph = stage;
+  };
+  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams, options);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code == kBadScene ? kFoundProblems : *code;
+
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+  const compiler::Report report = make_report(graph, scene.surfaces);
+  const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
+  streams.out << (json ? report_json(scene, report) : report_text(scene, report));
+  return request.probes ? run_probe(request, scene, graph, streams) : kDone;
 }
 
 }  // namespace fathom::cli

@@ -28,7 +28,7 @@ struct Verb {
 
 inline constexpr std::array kVerbs = {
     Verb{"render", "scene.json -o out.png", "renders the scene to image files", run_render},
-    Verb{"check", "scene.json", "prints what is wrong with the scene and how large it is", run_check},
+    Verb{"check", "scene.json", "prints what is wrong with the scene and how exact it is", run_check},
     Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},

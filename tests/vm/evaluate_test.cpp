@@ -381,6 +381,24 @@ TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][op
 
 // Once, a Mandelbulb's point exactly at the bailout went on iterating when a neighbour did, and overflowing
 // derivatives came out as NaN.
+TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs", "[evaluate][opcodes]") {
+  // The die of scenes/showcase.json had gradients of length sqrt 2.5 on its diagonal planes.
+  for (const Kind kind : {Kind::SmoothUnion, Kind::SmoothIntersection, Kind::SmoothSubtraction}) {
+    CAPTURE(static_cast<int>(kind));
+    compiler::Scene scene;
+    const double along_x[] = {1, 0, 0, 0}, along_y[] = {0, 1, 0, 0}, k[] = {0.5};
+    const compiler::NodeId planes[] = {scene.graph.add(Kind::Plane, along_x, {}),
+                                       scene.graph.add(Kind::Plane, along_y, {})};
+    scene.root = scene.graph.add(kind, k, planes);
+    const double y = kind == Kind::SmoothSubtraction ? -0.25 : 0.25;  // the cut's complement counts
+    vm::Workspace workspace;
+    const dvec3 gradient = vm::evaluate_surface(plain_lowering(scene), {0.25, y, 3}, workspace).gradient;
+    CHECK(gradient.x == 0.5);
+    CHECK(gradient.y == (kind == Kind::SmoothSubtraction ? -0.5 : 0.5));
+    CHECK(gradient.z == 0);
+  }
+}
+
 TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[evaluate]") {
   const IsaGuard guard;
   compiler::Scene scene;

@@ -1,0 +1,202 @@
+#include "runtime/cli/check_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "runtime/cli/streams.h"
+
+namespace fathom::cli {
+namespace {
+
+using compiler::Place;
+using compiler::ProbeRow;
+using Json = nlohmann::ordered_json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Columns as wide as their widest cell, two blanks apart; the first row is the heading.
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+  const auto width_of = [](const std::string& cell) {  // in code points
+    return std::count_if(cell.begin(), cell.end(),
+                         [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+  };
+  std::vector<std::ptrdiff_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += ' ' + row[i] + std::string(static_cast<std::size_t>(widths[i] - width_of(row[i])) + 1, ' ');
+    }
+    out += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+  }
+  return out;
+}
+
+// `twist "column" at scene.json:6:5`.
+std::string text(const Place& place, const compiler::Source& source) {
+  if (place.span.end == 0) return describe(place);
+  const compiler::Position at = source.locate(place.span.begin);
+  return fmt::format("{} at {}:{}:{}", describe(place), source.name(), at.line, at.column);
+}
+
+Json json(const Place& place, const compiler::Source& source) {
+  Json json = {{"type", place.type}, {"name", place.name}};
+  if (place.span.end == 0) return json;
+  const compiler::Position at = source.locate(place.span.begin);
+  json["file"] = source.name();
+  json["line"] = at.line;
+  json["column"] = at.column;
+  return json;
+}
+
+// JSON has no infinity: null.
+Json json(const glm::dvec3& v) {
+  Json list = Json::array();
+  for (int i = 0; i < 3; ++i) list.push_back(std::isfinite(v[i]) ? Json(v[i]) : Json(nullptr));
+  return list;
+}
+
+std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::string describe_program(std::string_view name, const vm::VerifiedProgram& program) {
+  return fmt::format("  {} program: {}, {}, stacks of {} and {}, about {} a point\n", name,
+                     count_of(program.instructions(), "instruction"),
+                     count_of(program.program().words.size(), "word"), count_of(program.max_values(), "value"),
+                     count_of(program.max_points(), "point"), count_of(program.cost(), "multiply-add"));
+}
+
+// A line each, as -D takes them.
+std::string describe_parameters(const std::vector<compiler::Parameter>& parameters) {
+  std::string out;
+  for (const compiler::Parameter& parameter : parameters) {
+    out += fmt::format("  -D {}={}", parameter.name, parameter.value);
+    if (parameter.min > -kInfinity || parameter.max < kInfinity) {
+      out += fmt::format("  [{}, {}]", parameter.min, parameter.max);
+    }
+    out += (parameter.doc.empty() ? "" : "  " + parameter.doc) + "\n";
+  }
+  return out;
+}
+
+std::string objects_table(const compiler::Report& report, const compiler::Source& source) {
+  std::vector<std::vector<std::string>> rows = {{"object", "distance", "Lipschitz", "step", "box", "costs most"}};
+  for (const compiler::ObjectReport& object : report.objects) {
+    std::string costs;
+    if (object.costliest) {
+      costs = fmt::format("{} makes steps {:.3g}x shorter", text(object.costliest->place, source),
+                          object.costliest->times);
+    }
+    rows.push_back({object.name, std::string(class_of(object.knowledge)), fmt::format("{:.4g}", object.lipschitz),
+                    fmt::format("{:.3g}", 1 / object.lipschitz), describe(object.knowledge.box), costs});
+  }
+  return table(rows);
+}
+
+std::string certificate(const compiler::Report& report, const compiler::Source& source) {
+  if (report.certified) return "certified: every step length is proved\n";
+  constexpr std::size_t kMost = 20;
+  std::vector<std::string> places;
+  for (const Place& place : report.estimates) {
+    if (places.size() < kMost) places.push_back(text(place, source));
+  }
+  if (report.estimates.size() > kMost) places.push_back(fmt::format("and {} more", report.estimates.size() - kMost));
+  return fmt::format("not certified: nothing is proved of the {}\n", fmt::join(places, ", the "));
+}
+
+std::string_view word(ProbeRow::What what) {
+  return what == ProbeRow::What::Scene ? "scene" : what == ProbeRow::What::Object ? "object" : "node";
+}
+
+std::string verdict(const ProbeRow& row) { return row.broken() ? "BROKEN" : row.certified ? "holds" : "estimate"; }
+
+}  // namespace
+
+std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report) {
+  return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
+         describe_program("distance", scene.distance) + describe_program("surface", scene.surface) +
+         fmt::format("  {}, {}\n", count_of(scene.materials.size(), "material"),
+                     count_of(scene.surfaces.size(), "surface")) +
+         describe_parameters(scene.parameters) + objects_table(report, scene.source) +
+         certificate(report, scene.source);
+}
+
+std::string report_json(const compiler::CompiledScene& scene, const compiler::Report& report) {
+  std::string out;
+  for (const compiler::ObjectReport& object : report.objects) {
+    Json costliest = nullptr;
+    if (object.costliest) {
+      costliest = json(object.costliest->place, scene.source);
+      costliest["times"] = object.costliest->times;
+    }
+    const compiler::Knowledge& known = object.knowledge;
+    out += line({{"object", object.name},
+                 {"class", class_of(known)},
+                 {"certified", known.certified},
+                 {"lipschitz", object.lipschitz},
+                 {"step", 1 / object.lipschitz},
+                 {"box", {{"lo", json(known.box.lo)}, {"hi", json(known.box.hi)}}},
+                 {"costliest", costliest}});
+  }
+  Json estimates = Json::array();
+  for (const Place& place : report.estimates) estimates.push_back(json(place, scene.source));
+  Json parameters = Json::object();
+  for (const compiler::Parameter& parameter : scene.parameters) parameters[parameter.name] = parameter.value;
+  out += line({{"scene", scene.source.name()},
+               {"certified", report.certified},
+               {"estimates", estimates},
+               {"lipschitz", scene.lipschitz},
+               {"summary", scene.summary},
+               {"instructions", scene.distance.instructions()},
+               {"cost", scene.distance.cost()},
+               {"parameters", parameters}});
+  return out;
+}
+
+std::string probe_text(const compiler::Source& source, const std::vector<ProbeRow>& rows,
+                       const std::vector<const ProbeRow*>& culprits) {
+  std::vector<std::vector<std::string>> cells = {
+      {"probed", "points", "declared", "gradient", "quotient", "seen/declared", "", "where"}};
+  for (const ProbeRow& row : rows) {
+    const bool scene = row.what == ProbeRow::What::Scene;
+    cells.push_back({std::string(word(row.what)), std::to_string(row.points), fmt::format("{:.6g}", row.declared),
+                     fmt::format("{:.6g}", row.gradient), fmt::format("{:.6g}", row.quotient),
+                     fmt::format("{:.4f}", row.ratio()), verdict(row), scene ? "" : text(row.place, source)});
+    if (row.invalid > 0) cells.back().back() += fmt::format("; no number at {}", count_of(row.invalid, "point"));
+  }
+  std::string out = table(cells);
+  for (const ProbeRow* row : culprits) {
+    out += fmt::format("{} breaks its constant: {:.6g} seen near {},{},{} of its own space, {:.6g} declared\n",
+                       text(row->place, source), row->seen(), row->at.x, row->at.y, row->at.z, row->declared);
+  }
+  return out + (culprits.empty() ? "no constant broken\n" : "");
+}
+
+std::string probe_json(const compiler::Source& source, const std::vector<ProbeRow>& rows,
+                       const std::vector<const ProbeRow*>& culprits) {
+  std::string out;
+  for (const ProbeRow& row : rows) {
+    out += line({{"probed", word(row.what)},
+                 {"node", json(row.place, source)},
+                 {"points", row.points},
+                 {"certified", row.certified},
+                 {"declared", row.declared},
+                 {"gradient", row.gradient},
+                 {"quotient", row.quotient},
+                 {"ratio", row.ratio()},
+                 {"at", json(row.at)},
+                 {"invalid", row.invalid},
+                 {"broken", row.broken()},
+                 {"culprit", std::find(culprits.begin(), culprits.end(), &row) != culprits.end()}});
+  }
+  return out;
+}
+
+}  // namespace fathom::cli

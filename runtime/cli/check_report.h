@@ -1,0 +1,23 @@
+// What `fathom check` prints of a scene without errors: for people, and as JSON lines.
+// Tested by: tests/runtime/cli_check_test.cpp
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/probe.h"
+#include "compiler/report.h"
+
+namespace fathom::cli {
+
+std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report);
+std::string report_json(const compiler::CompiledScene& scene, const compiler::Report& report);
+
+// `culprits` are those of `rows` that are to blame.
+std::string probe_text(const compiler::Source& source, const std::vector<compiler::ProbeRow>& rows,
+                       const std::vector<const compiler::ProbeRow*>& culprits);
+std::string probe_json(const compiler::Source& source, const std::vector<compiler::ProbeRow>& rows,
+                       const std::vector<const compiler::ProbeRow*>& culprits);
+
+}  // namespace fathom::cli

@@ -1,0 +1,91 @@
+// fathom check: the exactness report and the probe.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::Result;
+
+const char* const kRope = R"({
+  "version": 1,
+  "objects": [
+    {"name": "floor", "type": "plane", "normal": [0, 1, 0], "offset": -3},
+    {"name": "rope", "type": "twist", "turn": 90, "of":
+      {"type": "box", "half_size": [1, 3, 1]}}
+  ]
+})";
+
+const char* const kBulb = R"({
+  "version": 1,
+  "objects": [
+    {"type": "mandelbulb"}
+  ]
+})";
+
+std::vector<nlohmann::json> json_lines(const std::string& text) {
+  std::vector<nlohmann::json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(nlohmann::json::parse(line));
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("cli: check says how exact each object is and what costs the most") {
+  const Folder folder;
+  folder.write("rope.json", kRope);
+  folder.write("bulb.json", kBulb);
+  const Result rope = folder.run("check rope.json");
+  CHECK(rope.code == 0);
+  CHECK(rope.err == "");
+  CHECK_THAT(rope.out, Contains("\n  floor   exact     1          1      [-inf,inf]x[-inf,-3]x[-inf,inf]\n"));
+  CHECK_THAT(rope.out,
+             Contains("\n  rope    bound     2.605      0.384  [-1.414,1.414]x[-3,3]x[-1.414,1.414]  "));
+  CHECK_THAT(rope.out, Contains("twist \"rope\" at rope.json:5:5 makes steps 2.61x shorter\n"));
+  CHECK_THAT(rope.out, Contains("\ncertified: every step length is proved\n"));
+  CHECK_THAT(folder.run("check bulb.json").out,
+             Contains("\nnot certified: nothing is proved of the mandelbulb at bulb.json:4:5\n"));
+}
+
+TEST_CASE("cli: check prints the report as JSON lines") {
+  const Folder folder;
+  folder.write("rope.json", kRope);
+  const std::vector<nlohmann::json> lines = json_lines(folder.run("check rope.json --error-format json").out);
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0]["object"] == "floor");
+  CHECK(lines[0]["class"] == "exact");
+  CHECK(lines[0]["box"]["lo"][0].is_null());
+  CHECK(lines[0]["box"]["hi"][1] == -3);
+  CHECK(lines[0]["costliest"].is_null());
+  CHECK(lines[1]["costliest"]["type"] == "twist");
+  CHECK(lines[1]["costliest"]["line"] == 5);
+  CHECK(lines[2]["certified"] == true);
+  CHECK(lines[2]["estimates"].empty());
+}
+
+TEST_CASE("cli: check --probe prints what it saw of every constant") {
+  const Folder folder;
+  folder.write("rope.json", kRope);
+  folder.write("bulb.json", kBulb);
+  const Result rope = folder.run("check rope.json --probe 5000");
+  CHECK(rope.code == 0);
+  CHECK_THAT(rope.out, Contains("seen/declared") && Contains("object") && Contains("node") && Contains("holds"));
+  CHECK_THAT(rope.out, Contains("twist \"rope\" at rope.json:5:5\n") && Contains("\nno constant broken\n"));
+  CHECK(folder.run("check rope.json --probe 5000 --threads 3").out == rope.out);
+  const Result bulb = folder.run("check bulb.json --probe 1000");
+  CHECK(bulb.code == 0);  // nothing is claimed, so nothing breaks
+  CHECK_THAT(bulb.out, Contains("estimate") && Contains("no constant broken"));
+  const auto lines = json_lines(folder.run("check rope.json --probe 1000 --error-format json").out);
+  REQUIRE(lines.size() > 3);
+  CHECK(lines[3]["probed"] == "scene");
+  CHECK(lines[3]["points"] == 1000);
+  CHECK(lines.back()["broken"] == false);
+  CHECK(folder.run("check rope.json --probe 100000001").code == 2);
+  CHECK(folder.run("check rope.json --probe 0").code == 2);
+}
