@@ -75,7 +75,7 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
 
 std::span<const Pass> passes() {
   static constexpr Pass kPasses[] = {
-      {"unpaint", unpaint}, {"fold", fold},       {"arithmetic", arithmetic},       {"affine", affine},
+      {"unpaint", unpaint}, {"fold", fold},   {"arithmetic", arithmetic},         {"affine", affine},
       {"flatten", flatten}, {"share", share}, {"cull", cull, Pass::Leaves::Sign},
   };
   return kPasses;

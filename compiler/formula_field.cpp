@@ -67,7 +67,7 @@ class Bisection {
     glm::dvec3 middle;
     for (int i = 0; i < 3; ++i) {
       middle[i] = std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]) ? (box.lo[i] + box.hi[i]) / 2
-                                                                      : std::clamp(0.0, box.lo[i], box.hi[i]);
+                                                                       : std::clamp(0.0, box.lo[i], box.hi[i]);
     }
     const double slope = glm::length(vm::evaluate_surface(program_, middle, workspace_).gradient);
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
@@ -132,8 +132,8 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   }
   // A field that does not change at all has its box as its only surface.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
-  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0,
-                               certified ? 1.0 : 0.0});
+  params.insert(params.end(),
+                {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0, certified ? 1.0 : 0.0});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }

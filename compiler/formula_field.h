@@ -2,8 +2,8 @@
 // derivative, makes it a field like any other. Outside the box the field is the box's distance, met at a right angle
 // (compiler/shapes/domain.cpp, "meet"): the solid ends there.
 //
-// The bound is that of cells the box is cut into, the steepest first, until it is within a few percent of a slope that
-// does occur. A formula that jumps has none, and becomes an estimate. Source: Moore, "Interval Analysis", 1966.
+// The bound is that of cells the box is cut into, the steepest first, until it is within a few percent of a slope
+// that does occur. A formula that jumps has none, and becomes an estimate. Source: Moore, "Interval Analysis", 1966.
 // Tested by: tests/compiler/formula_field_test.cpp
 #pragma once
 
@@ -12,10 +12,10 @@
 namespace fathom::compiler {
 
 struct FormulaBound {
-  double least, most;   // of the values
-  double lipschitz;     // of the formula within the box; infinite when none was found
-  double seen;          // the steepest gradient met while looking
-  double float_error;   // of an evaluation in float, scene units; may be infinite
+  double least, most;  // of the values
+  double lipschitz;    // of the formula within the box; infinite when none was found
+  double seen;         // the steepest gradient met while looking
+  double float_error;  // of an evaluation in float, scene units; may be infinite
 };
 
 // `box` may have infinite sides. `formula` is a node that is a number.

@@ -108,7 +108,8 @@ enum class Kind : std::uint8_t {
   Displaced,
   // Bounded: a formula as a distance, within a box (shapes/functions.cpp); what Displacement and Expression become.
   Bounded,
-  // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes faster.
+  // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes
+  // faster.
   Scaled,
   // combinators; n children, all but the hard ones fold from the left
   Union,

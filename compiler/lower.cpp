@@ -81,9 +81,8 @@ class Lowering {
       result = std::max(result, plans_.at(operands[order[i]]).height + (i == 0 ? 0 : 1));
     }
     // What follows may push one value of its own.
-    const bool pushes = std::any_of(code.after.begin(), code.after.end(), [](const Instruction& i) {
-      return vm::info(i.opcode).effect.values_change > 0;
-    });
+    const bool pushes = std::any_of(code.after.begin(), code.after.end(),
+                                    [](const Instruction& i) { return vm::info(i.opcode).effect.values_change > 0; });
     return std::max(result, pushes && !operands.empty() ? 2u : 1u);
   }
 
@@ -126,8 +125,8 @@ class Lowering {
     return order;
   }
 
-  // What is still to be done, in the order of a stack: evaluate `use`; append `instructions` for its node; or remember
-  // its value in a local.
+  // What is still to be done, in the order of a stack: evaluate `use`; append `instructions` for its node; or
+  // remember its value in a local.
   enum class Step { Visit, Append, Share };
   struct Task {
     Use use;

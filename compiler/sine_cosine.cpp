@@ -5,8 +5,8 @@
 
 namespace fathom::compiler {
 
-// The angle's rest from the nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall below
-// 2^-53 after x^18/18!.
+// The angle's rest from the nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall
+// below 2^-53 after x^18/18!.
 SineCosine sine_cosine(double degrees) {
   const double turned = std::fmod(degrees, 360.0);
   const double quarters = std::floor(turned / 90.0 + 0.5);

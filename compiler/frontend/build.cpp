@@ -21,11 +21,7 @@ bool gives_material(const CheckedNode& node) {
 SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
                            const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
                            Diagnostics& diagnostics)
-    : named_(named),
-      uses_(uses),
-      materials_(materials),
-      has_paint_(named.size(), false),
-      diagnostics_(diagnostics) {
+    : named_(named), uses_(uses), materials_(materials), has_paint_(named.size(), false), diagnostics_(diagnostics) {
   for (const std::uint32_t name : order) {
     has_paint_[name] = gives_material(named[name]) || std::any_of(uses[name].begin(), uses[name].end(),
                                                                   [&](const Use& u) { return has_paint_[u.target]; });

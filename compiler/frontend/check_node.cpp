@@ -168,7 +168,8 @@ void NodeChecker::check_between(const RecordReader& reader, const syntax::Record
   const std::string ends = fmt::format("give `{}`, or both ends `a` and `b`", between.length);
   const syntax::Property *a = record.find("a"), *b = record.find("b"), *length = record.find(between.length);
   if (!a && !b && !length) {
-    diagnostics_.error("E0103", node.type_span, fmt::format("`{}` has no `{}`", row.name, between.length), "", {ends});
+    diagnostics_.error("E0103", node.type_span, fmt::format("`{}` has no `{}`", row.name, between.length), "",
+                       {ends});
   } else if ((a || b) && length) {
     diagnostics_.error("E0106", length->name_span, fmt::format("both `{}` and ends are given", between.length),
                        "the ends say how long it is", {ends});

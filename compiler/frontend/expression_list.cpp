@@ -27,8 +27,8 @@ struct Operation {
   std::string_view formula;  // {0} and {1} are the operands
 };
 
-// What the operations mean is Fidget's to say: round takes halves away from zero, mod is Euclid's, compare is -1, 0 or
-// 1, and `and` and `or` give one of their operands.
+// What the operations mean is Fidget's to say: round takes halves away from zero, mod is Euclid's, compare is -1, 0
+// or 1, and `and` and `or` give one of their operands.
 constexpr Operation kOperations[] = {
     {"var-x", 0, "x"},
     {"var-y", 0, "y"},
@@ -158,7 +158,8 @@ class ListReader {
   }
 
   std::string no_operation(std::string_view name) {
-    diagnostics_.error("E0601", span(name), "a line without an operation", "", {"a line is: name operation operands"});
+    diagnostics_.error("E0601", span(name), "a line without an operation", "",
+                       {"a line is: name operation operands"});
     return "0";
   }
 

@@ -17,8 +17,8 @@ struct Row {
   double (*apply)(double a, double b);  // b is 0 for functions of one argument
 };
 
-// What is not exact or correctly rounded everywhere is the machine's own, so that the same file gives the same scene on
-// every machine.
+// What is not exact or correctly rounded everywhere is the machine's own, so that the same file gives the same scene
+// on every machine.
 constexpr Row kRows[] = {
     {"add", 2, [](double a, double b) { return a + b; }},
     {"minus", 2, [](double a, double b) { return a - b; }},

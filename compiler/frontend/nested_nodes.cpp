@@ -37,8 +37,8 @@ constexpr BlendMode kBlendModes[] = {{"union", "union", "smooth_union"},
 // How far a matrix may be from a rotation: published files write sines and cosines with three digits.
 constexpr double kLeeway = 1e-3;
 
-// Nodes within each other in what is made; deeper ones get names of their own. A fifth of what the reader of scene files
-// takes, as each is an object in a list.
+// Nodes within each other in what is made; deeper ones get names of their own. A fifth of what the reader of scene
+// files takes, as each is an object in a list.
 constexpr int kDeepest = 400;
 
 // What a node has become. A chain of the same operator down the left is one combinator.
@@ -93,7 +93,8 @@ class Converter {
             if (!value) made_.push_back({});
           }
         } else {
-          if (type != "primitive" && !type.empty()) unknown(*record, "nodeType", type, {"binaryOperator", "primitive"});
+          if (type != "primitive" && !type.empty())
+            unknown(*record, "nodeType", type, {"binaryOperator", "primitive"});
           made_.push_back({.leaf = primitive(*record, placement, next.value->span), .span = next.value->span});
         }
       }
@@ -193,7 +194,8 @@ class Converter {
     rotation[0] = glm::normalize(rotation[0]);
     rotation[1] = glm::normalize(rotation[1] - glm::dot(rotation[0], rotation[1]) * rotation[0]);
     rotation[2] = glm::cross(rotation[0], rotation[1]);
-    const glm::dvec3 axis(rotation[1].z - rotation[2].y, rotation[2].x - rotation[0].z, rotation[0].y - rotation[1].x);
+    const glm::dvec3 axis(rotation[1].z - rotation[2].y, rotation[2].x - rotation[0].z,
+                          rotation[0].y - rotation[1].x);
     const double trace = rotation[0].x + rotation[1].y + rotation[2].z;
     const double angle = std::atan2(glm::length(axis), trace - 1) * 180 / std::numbers::pi;
     if (angle != 0 && !round) {
@@ -233,7 +235,8 @@ class Converter {
     if (diagnostics_.errors() > errors) return {};
     Placement out;
     for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) out.linear[column][row] = m[static_cast<std::size_t>(4 * row + column)];
+      for (int column = 0; column < 3; ++column)
+        out.linear[column][row] = m[static_cast<std::size_t>(4 * row + column)];
       out.offset[row] = m[static_cast<std::size_t>(4 * row + 3)];
     }
     const glm::dmat3 square = glm::transpose(out.linear) * out.linear;
@@ -280,7 +283,8 @@ class Converter {
       if (const auto* found = std::get_if<double>(&(*list)[i].data)) out.push_back(*found);
     }
     if (list && list->size() == count && out.size() == count) return out;
-    if (value) bad(value->span, fmt::format("`{}` must be a list of {} numbers, not {}", name, count, describe(*value)));
+    if (value)
+      bad(value->span, fmt::format("`{}` must be a list of {} numbers, not {}", name, count, describe(*value)));
     return std::vector<double>(count, 0.0);
   }
 
@@ -314,7 +318,8 @@ class Converter {
         .add("materials", materials_.take());
     if (!nodes_.empty()) out.add("nodes", nodes_.take());
     std::get<syntax::Record>(object.data)
-        .properties.push_back({"material", object.span, std::make_unique<syntax::Value>(make_value(whole, color_name(1)))});
+        .properties.push_back(
+            {"material", object.span, std::make_unique<syntax::Value>(make_value(whole, color_name(1)))});
     syntax::List objects;
     objects.push_back(std::move(object));
     return out.add("objects", syntax::Value{whole, std::move(objects)}).take();

@@ -1,8 +1,8 @@
 #include "compiler/frontend/schema.h"
 
 #include <cmath>
-#include <optional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "compiler/frontend/records.h"
 
@@ -146,7 +146,8 @@ Json rotate_schema() {
 Json between_schema(const Between& between) {
   const Json ends = {{"anyOf", {{{"required", {"a"}}}, {{"required", {"b"}}}}}};
   const Json length = {{"required", {between.length}}};
-  return {{"oneOf", Json::array({{{"required", {between.length}}, {"not", ends}}, {{"required", {"a", "b"}}, {"not", length}}})}};
+  return {{"oneOf", Json::array({{{"required", {between.length}}, {"not", ends}},
+                                 {{"required", {"a", "b"}}, {"not", length}}})}};
 }
 
 Json node_schema() {

@@ -54,9 +54,7 @@ class Rules {
   }
   bool is(NodeId id, double value) const { return constant(id) == value; }
   NodeId constant_node(double value) { return graph_.add(Kind::Constant, std::array<double, 1>{value}, {}, origin_); }
-  NodeId node(Kind kind, std::initializer_list<NodeId> operands) {
-    return make(kind, std::vector<NodeId>(operands));
-  }
+  NodeId node(Kind kind, std::initializer_list<NodeId> operands) { return make(kind, std::vector<NodeId>(operands)); }
   // The operand of `id` when it is a `kind`.
   std::optional<NodeId> under(Kind kind, NodeId id) const {
     if (graph_.kind(id) != kind) return std::nullopt;

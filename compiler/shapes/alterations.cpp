@@ -123,9 +123,7 @@ Code round_code(Params params) { return {.after = {{Opcode::Offset, {params[0]}}
 Code onion_code(Params params) { return {.after = {{Opcode::Onion, {params[0]}}}}; }
 Code complement_code(Params) { return {.after = {{Opcode::Negate}}}; }
 Code scaled_code(Params params) { return {.after = {{Opcode::Scale, {params[0]}}}}; }
-Code paint_code(Params params) {
-  return {.after = {{Opcode::Tag, {}, static_cast<std::uint32_t>(params[0])}}};
-}
+Code paint_code(Params params) { return {.after = {{Opcode::Tag, {}, static_cast<std::uint32_t>(params[0])}}}; }
 
 Code transform_code(Params params) {
   const Affine map = Affine::from_params(params);

@@ -64,8 +64,8 @@ Complaint check_cut_hollow_sphere(Params p) {
                      p[1], p[2], p[0]);
 }
 
-// The sides of a diamond of half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle; rounding takes its radius
-// from that.
+// The sides of a diamond of half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle; rounding takes its
+// radius from that.
 double inradius(Params p) { return p[0] * p[1] / std::sqrt(p[0] * p[0] + p[1] * p[1]); }
 NodeId rhombus(Graph& graph, Params p, const Origin& origin) {
   const double shrink = 1 - p[3] / inradius(p);

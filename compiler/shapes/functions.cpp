@@ -12,7 +12,8 @@ namespace {
 
 using vm::Opcode;
 
-// Of a number in itself nothing is known: what a formula does is proved for the whole of it (compiler/formula_field.h).
+// Of a number in itself nothing is known: what a formula does is proved for the whole of it
+// (compiler/formula_field.h).
 Knowledge know_number(Params, std::span<const Knowledge>) {
   Knowledge k;
   k.box = Box::everything();
@@ -117,15 +118,18 @@ std::vector<NodeSpec> function_rows() {
       {.kind = Kind::Expression,
        .name = "expression",
        .category = Category::Alteration,
-       .params = {{"half_size", ParamType::Vec3, Rule::Positive, 10.0, "of the box the formula holds in; the solid ends there"},
-                  {"formula", ParamType::Formula, Rule::Any, kRequired, "in x, y and z; the solid is where it is negative"}},
+       .params = {{"half_size", ParamType::Vec3, Rule::Positive, 10.0,
+                   "of the box the formula holds in; the solid ends there"},
+                  {"formula", ParamType::Formula, Rule::Any, kRequired,
+                   "in x, y and z; the solid is where it is negative"}},
        .doc = "a solid given by a formula",
        .operand = Sort::Number,
        .build = build_expression},
       {.kind = Kind::Displacement,
        .name = "displacement",
        .category = Category::Alteration,
-       .params = {{"formula", ParamType::Formula, Rule::Any, kRequired, "in x, y and z; added to the node's distance"}},
+       .params = {{"formula", ParamType::Formula, Rule::Any, kRequired,
+                   "in x, y and z; added to the node's distance"}},
        .doc = "a node whose surface moves inwards by a formula",
        .operand = Sort::Solid,
        .build = build_displacement},

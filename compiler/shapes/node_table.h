@@ -1,6 +1,6 @@
 // The node table: one row per kind of node, and the only list of them. The JSON front end, the error messages, the
 // schema, the graph printer, the bounds, the lowering and the tests read it. Rows live with their like: solids.cpp,
-// composed.cpp, outlines.cpp, alterations.cpp, domain.cpp, combinators.cpp, functions.cpp.
+// composed.cpp, outlines.cpp, alterations.cpp, domain.cpp, repetition.cpp, combinators.cpp, functions.cpp.
 //
 // Conventions, the same for every node:
 //   - primitives are centred at the origin, symmetric ones about the y axis (right-handed, y up);
@@ -113,9 +113,9 @@ struct NodeSpec {
   // What is wrong with the node given its children; as `check`. May be null.
   Complaint (*check_children)(Params params, std::span<const Knowledge> children) = nullptr;
   // Alterations that are made of other nodes: as `expand`, over the children.
-  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children,
-                  const Origin& origin) = nullptr;
-  // Primitives that are made of other nodes: adds those and returns the one that stands for it. Null for all that have code.
+  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin) = nullptr;
+  // Primitives that are made of other nodes: adds those and returns the one that stands for it. Null for all that
+  // have code.
   NodeId (*expand)(Graph& graph, Params params, const Origin& origin) = nullptr;
 
   std::optional<Between> between = std::nullopt;
@@ -123,7 +123,7 @@ struct NodeSpec {
 
 const std::vector<NodeSpec>& node_table();
 const NodeSpec& spec(Kind kind);
-const NodeSpec* find_node(std::string_view name);      // a node of scene files; nullptr when there is none of that name
+const NodeSpec* find_node(std::string_view name);  // a node of scene files; nullptr when there is none of that name
 const NodeSpec* find_function(std::string_view name);  // a function of formulas; nullptr likewise
 
 // How many doubles a parameter takes in a node (of each point, for Points).

@@ -13,6 +13,7 @@ std::vector<NodeSpec> composed_rows();
 std::vector<NodeSpec> outline_rows();
 std::vector<NodeSpec> alteration_rows();
 std::vector<NodeSpec> domain_rows();
+std::vector<NodeSpec> repetition_rows();
 std::vector<NodeSpec> combinator_rows();
 std::vector<NodeSpec> function_rows();
 

@@ -1,6 +1,7 @@
 // Rays at what bends, scales, repeats and displaces space, against a search of its own: fields written here in plain
-// doubles, their true Lipschitz constants, and bisection that leaves out a stretch only when its ends' distances cover
-// it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share printed by
+// doubles, their true Lipschitz constants, and bisection that leaves out a stretch only when its ends' distances
+// cover it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share printed
+// by
 // "[.report]"; the compiled scenes must be right for every ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -75,12 +76,10 @@ const std::vector<Case>& cases() {
   // Largest stretch of [[1, kR], [0, 1]], R the radius of the ball the rays are searched in.
   const double kr = 5 * 1.13;
   static const std::vector<Case> all = {
-      {"twist, k = 5",
-       R"({"type": "twist", "turn": "5*180/pi", "of": {"type": "box", "half_size": [0.5, 1, 0.05]}})", blade,
-       (kr + std::sqrt(kr * kr + 4)) / 2, 1.13},
-      {"scale 3:1:0.4",
-       R"({"type": "torus", "major_radius": 0.5, "minor_radius": 0.2, "scale": [3, 1, 0.4]})", stretched_ring,
-       1 / 0.4, 2.2},
+      {"twist, k = 5", R"({"type": "twist", "turn": "5*180/pi", "of": {"type": "box", "half_size": [0.5, 1, 0.05]}})",
+       blade, (kr + std::sqrt(kr * kr + 4)) / 2, 1.13},
+      {"scale 3:1:0.4", R"({"type": "torus", "major_radius": 0.5, "minor_radius": 0.2, "scale": [3, 1, 0.4]})",
+       stretched_ring, 1 / 0.4, 2.2},
       {"jittered repetition",
        R"({"type": "repetition", "period": [0.6, 0.6, 0.6], "count": [5, 5, 5], "jitter": [0.15, 0.15, 0.15],
            "of": {"type": "sphere", "radius": 0.2}})",
@@ -112,8 +111,8 @@ struct Truth {
   double t;
 };
 
-// The first zero of the field along the line within the ball that holds the solid. A touch that ten digits cannot tell
-// from a miss is a contact.
+// The first zero of the field along the line within the ball that holds the solid. A touch that ten digits cannot
+// tell from a miss is a contact.
 Truth search(const Case& c, const Line& line) {
   constexpr double kResolution = 1e-9;
   const double middle = -glm::dot(line.origin, line.direction) / glm::dot(line.direction, line.direction);

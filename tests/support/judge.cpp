@@ -127,42 +127,79 @@ double judge_number(const Graph& graph, NodeId node, dvec3 p) {
   const double a = operands.empty() ? 0 : operand(0), b = operands.size() < 2 ? 0 : operand(1);
   const auto quotient = [&] { return a - b * std::floor(a / b); };
   switch (graph.kind(node)) {
-    case Kind::X: return p.x;
-    case Kind::Y: return p.y;
-    case Kind::Z: return p.z;
-    case Kind::Constant: return graph.params(node)[0];
-    case Kind::Negate: return -a;
-    case Kind::Abs: return std::abs(a);
-    case Kind::Square: return a * a;
-    case Kind::Sqrt: return std::sqrt(a);
-    case Kind::Sin: return std::sin(a);
-    case Kind::Cos: return std::cos(a);
-    case Kind::Tan: return std::tan(a);
-    case Kind::Asin: return std::asin(std::clamp(a, -1.0, 1.0));
-    case Kind::Acos: return std::acos(std::clamp(a, -1.0, 1.0));
-    case Kind::Atan: return std::atan(a);
-    case Kind::Exp: return std::exp(a);
-    case Kind::Log: return std::log(a);
-    case Kind::Floor: return std::floor(a);
-    case Kind::Ceil: return std::ceil(a);
-    case Kind::Nearest: return std::nearbyint(a);
-    case Kind::Sign: return a > 0 ? 1 : a < 0 ? -1 : 0;
-    case Kind::Not: return a == 0 ? 1 : 0;
-    case Kind::Add: return a + b;
-    case Kind::Minus: return a - b;
-    case Kind::Multiply: return a * b;
-    case Kind::Divide: return a / b;
-    case Kind::Modulo: return quotient();
-    case Kind::ModuloEuclid: return a - std::abs(b) * std::floor(a / std::abs(b));
-    case Kind::Minimum: return std::min(a, b);
-    case Kind::Maximum: return std::max(a, b);
-    case Kind::Atan2: return std::atan2(a, b);
-    case Kind::Power: return std::pow(a, b);
-    case Kind::Compare: return a < b ? -1 : a > b ? 1 : 0;
-    case Kind::And: return a == 0 ? a : b;
-    case Kind::Or: return a == 0 ? b : a;
-    case Kind::Step: return b < a ? 0 : 1;
-    default: CHECK(false, "a function"); return 0;
+    case Kind::X:
+      return p.x;
+    case Kind::Y:
+      return p.y;
+    case Kind::Z:
+      return p.z;
+    case Kind::Constant:
+      return graph.params(node)[0];
+    case Kind::Negate:
+      return -a;
+    case Kind::Abs:
+      return std::abs(a);
+    case Kind::Square:
+      return a * a;
+    case Kind::Sqrt:
+      return std::sqrt(a);
+    case Kind::Sin:
+      return std::sin(a);
+    case Kind::Cos:
+      return std::cos(a);
+    case Kind::Tan:
+      return std::tan(a);
+    case Kind::Asin:
+      return std::asin(std::clamp(a, -1.0, 1.0));
+    case Kind::Acos:
+      return std::acos(std::clamp(a, -1.0, 1.0));
+    case Kind::Atan:
+      return std::atan(a);
+    case Kind::Exp:
+      return std::exp(a);
+    case Kind::Log:
+      return std::log(a);
+    case Kind::Floor:
+      return std::floor(a);
+    case Kind::Ceil:
+      return std::ceil(a);
+    case Kind::Nearest:
+      return std::nearbyint(a);
+    case Kind::Sign:
+      return a > 0 ? 1 : a < 0 ? -1 : 0;
+    case Kind::Not:
+      return a == 0 ? 1 : 0;
+    case Kind::Add:
+      return a + b;
+    case Kind::Minus:
+      return a - b;
+    case Kind::Multiply:
+      return a * b;
+    case Kind::Divide:
+      return a / b;
+    case Kind::Modulo:
+      return quotient();
+    case Kind::ModuloEuclid:
+      return a - std::abs(b) * std::floor(a / std::abs(b));
+    case Kind::Minimum:
+      return std::min(a, b);
+    case Kind::Maximum:
+      return std::max(a, b);
+    case Kind::Atan2:
+      return std::atan2(a, b);
+    case Kind::Power:
+      return std::pow(a, b);
+    case Kind::Compare:
+      return a < b ? -1 : a > b ? 1 : 0;
+    case Kind::And:
+      return a == 0 ? a : b;
+    case Kind::Or:
+      return a == 0 ? b : a;
+    case Kind::Step:
+      return b < a ? 0 : 1;
+    default:
+      CHECK(false, "a function");
+      return 0;
   }
 }
 
@@ -175,8 +212,8 @@ double blend(double a, double b, double k) {
   return h * a + (1 - h) * b - k * h * (1 - h);
 }
 
-// Stairs from (r, 0) to (0, r) in the quadrant of the two distances: `steps` + 1 teeth with corners on a + b = r, each
-// surface a saw-tooth of slopes along a and along b about it.
+// Stairs from (r, 0) to (0, r) in the quadrant of the two distances: `steps` + 1 teeth with corners on a + b = r,
+// each surface a saw-tooth of slopes along a and along b about it.
 double stairs(double a, double b, double r, double steps) {
   const double step = r / steps, along = std::abs(b - a) - r + step;
   const double tooth = std::abs(along - 2 * step * std::floor(along / (2 * step)) - step);

@@ -78,7 +78,8 @@ std::vector<long> numbers(Params k, std::size_t i, double a) {
   const bool all = k[9 + i] < 0;
   const long at = axis.nearest(a), around = all ? static_cast<long>(axis.count) : 1 + static_cast<long>(k[9 + i]);
   std::vector<long> result;
-  for (long n = std::max(axis.first(), at - around); n <= std::min(axis.last(), at + around); ++n) result.push_back(n);
+  for (long n = std::max(axis.first(), at - around); n <= std::min(axis.last(), at + around); ++n)
+    result.push_back(n);
   return result;
 }
 
@@ -102,7 +103,8 @@ double repetition_limit(Params k, dvec3 p) {
     const auto n = static_cast<std::size_t>(i);
     const Axis axis = axis_of(k, n);
     if (axis.repeated() && axis.count == 0) continue;
-    const double lo = axis.repeated() ? axis.middle(axis.first()) : 0, hi = axis.repeated() ? axis.middle(axis.last()) : 0;
+    const double lo = axis.repeated() ? axis.middle(axis.first()) : 0,
+                 hi = axis.repeated() ? axis.middle(axis.last()) : 0;
     out[i] = outside(p[i], lo + k[16 + n] - k[6 + n], hi + k[19 + n] + k[6 + n]);
   }
   double limit = kInfinity;
@@ -164,9 +166,7 @@ double pulled_apart(Params k, dvec3 p, double child) {
   return child + std::min(0.0, std::max({std::abs(p.x) - k[0], std::abs(p.y) - k[1], std::abs(p.z) - k[2]}));
 }
 
-double box_met(Params k, dvec3 p, double child) {
-  return met(child, k[6] * box_distance(p, vec(k, 0), vec(k, 3)));
-}
+double box_met(Params k, dvec3 p, double child) { return met(child, k[6] * box_distance(p, vec(k, 0), vec(k, 3))); }
 
 }  // namespace
 
