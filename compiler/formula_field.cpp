@@ -132,7 +132,8 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   }
   // A field that does not change at all has its box as its only surface.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
-  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, magnitude, certified ? 1.0 : 0.0});
+  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0,
+                               certified ? 1.0 : 0.0});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }

@@ -106,7 +106,7 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
     CAPTURE(name);
     CHECK((kStructural.count(code) > 0) != beyond(code));
     const bool computed = name.ends_with("_formula.txt");  // whose value the schema does not know
-    if (computed) continue;
+    if (computed || name.starts_with("E06")) continue;
     if (kStructural.count(code) > 0) {
       CHECK(schema_problem(parse(text), schema()) != "");
     } else if (!name.starts_with("E00") && code != "E0408") {  // a number of E0408 may be too large for any property

@@ -101,6 +101,8 @@ min                       1          1         1    4.0%
 drop                      2          0         0    0.0%
 total                     7                   25
 
+5 nodes of the graph
+
 place    ops      cost   share  node
 6:5        1        14   56.0%  box "right"
 5:5        1         8   32.0%  sphere "left"

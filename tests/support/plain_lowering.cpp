@@ -80,7 +80,10 @@ class Lowering {
       for (std::size_t i = 0; i < chain.size(); ++i) append(Opcode::Drop);
       if (!std::exchange(first, false)) append(Opcode::Min);
     }
-    if (compiler::spec(graph_.kind(node)).category != compiler::Category::Combinator) append(code.after);
+    if (compiler::spec(graph_.kind(node)).category == compiler::Category::Combinator) return;
+    append(code.after);
+    // What an operator measures itself, as the way to copies left out, is painted as the node is.
+    if (painted_ && !code.after.empty()) append(Opcode::Tag, {}, paint);
   }
 
   const Graph& graph_;

@@ -43,6 +43,7 @@ struct Slope {
   bool nonnegative;           // neither the exact nor the f32 value can be below 0
   bool squares;               // a sum of squares |F|^2 with
   std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
+  double root_error;          // and a bound on |sqrt(f32 value) - |F||, the root being exact, in kUnit
 
   static inline Slope broadcast(double value);
 };
@@ -64,7 +65,7 @@ inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, doubl
   const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);
   const double length = bound(std::sqrt(mx * mx + my * my + mz * mz));
   const double n = std::min(bound(norm), length);
-  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {}};
+  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {}, kUnbounded};
 }
 // f(a), f's derivative being in `slope` over a's exact values.
 inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
@@ -80,6 +81,7 @@ inline Slope jump(Interval v, Interval alternatives) {
 inline Slope exactly(Interval v) {
   Slope result = make_slope(v, {0, 0}, {0, 0}, {0, 0}, 0, 0);
   result.nonnegative = result.squares = v.lo >= 0;
+  if (result.squares) result.root_error = bound(magnitude(sqrt(v)) + 0x1p-50);
   return result;
 }
 inline Slope Slope::broadcast(double value) {
@@ -98,6 +100,8 @@ inline Slope operator+(const Slope& a, const Slope& b) {
   r.squares = a.squares && b.squares;
   if (r.squares) {
     for (std::size_t i = 0; i < 6; ++i) r.g[i] = a.g[i] + b.g[i];
+    // The roots are the lengths of the parts of F, so their errors add like those.
+    r.root_error = bound(std::hypot(a.root_error, b.root_error) + magnitude(sqrt(seen(a) + seen(b))));
   }
   return r;
 }
@@ -167,6 +171,9 @@ inline Slope sqr(const Slope& a) {
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);
   r.nonnegative = r.squares = true;
   r.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
+  // The root of a square is the number again, but that the square was rounded (by half as much of the root) or
+  // underflowed (below 2^-150, so the root is off by at most 2^-74).
+  r.root_error = bound(a.error + magnitude(seen(a)) + 0x1p-50);
   return r;
 }
 // The largest singular value of J.
@@ -184,7 +191,8 @@ inline Slope sqrt(const Slope& a) {
   }
   // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and e over the sum of the roots.
   const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
-  const double error = std::min(apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit));
+  const double error = std::min({apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit),
+                                 a.squares ? a.root_error : kUnbounded});
   const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
   const double norm = std::min(times(a.norm, magnitude(slope)), a.squares ? gram_norm(a.g) : kUnbounded);
   Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);
