@@ -2,7 +2,7 @@
 // doubles, their true Lipschitz constants, and bisection that leaves out a stretch only when its ends' distances
 // cover it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share printed
 // by
-// "[.report]"; the compiled scenes must be right for every ray.
+// the heavy test; the compiled scenes must be right for every ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -209,7 +209,7 @@ TEST_CASE("no ray is wrong at what is twisted, stretched, repeated or displaced"
   }
 }
 
-TEST_CASE("a hundred thousand rays at each", "[.report][.heavy]") {
+TEST_CASE("a hundred thousand rays at each", "[warps][heavy]") {
   std::printf("%-24s %8s %8s %8s %8s %10s %10s %8s\n", "", "rays", "hits", "contacts", "wrong", "naive, %", "worst",
               "evals");
   for (const Case& c : cases()) {

@@ -94,7 +94,8 @@ TEST_CASE("float kernels are within 4 ulp, on a sample", "[elementary]") {
   }
 }
 
-TEST_CASE("float kernels are within 4 ulp, on every float", "[elementary][heavy]") {
+// Ten minutes: build/release/tests/fathom_tests "[exhaustive]"
+TEST_CASE("float kernels are within 4 ulp, on every float", "[.][exhaustive]") {
   for (const Kernel& kernel : kKernels) {
     constexpr std::uint64_t kParts = 4, kAll = std::uint64_t{1} << 32;
     Worst worst[kParts];
