@@ -58,7 +58,7 @@ TEST_CASE("a twist whose constant is halved is named, and not what lies above it
   CHECK(guilty[0]->place.type == "twist");
 }
 
-TEST_CASE("a formula whose constant is halved is named; an estimate never breaks", "[probe]") {
+TEST_CASE("a formula whose constant is halved is named, and an estimate never breaks", "[probe]") {
   for (const double certified : {1.0, 0.0}) {
     Scene scene;
     Graph& graph = scene.graph;

@@ -107,7 +107,7 @@ TEST_CASE("one union as the only object is one object", "[report]") {
   CHECK(report.objects[0].name == "pair");
 }
 
-TEST_CASE("lints are for check; a formula without a bound is for everyone", "[report]") {
+TEST_CASE("lints are for check, and a formula without a bound is for everyone", "[report]") {
   const std::string hidden = R"({"type": "sphere", "radius": 2}, {"type": "sphere", "radius": 1})";
   CHECK(compiled(hidden).diagnostics.all().empty());
   REQUIRE(compiled(hidden, true).diagnostics.all().size() == 1);

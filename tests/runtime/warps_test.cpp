@@ -1,8 +1,7 @@
 // Rays at what bends, scales, repeats and displaces space, against a search of its own: fields written here in plain
 // doubles, their true Lipschitz constants, and bisection that leaves out a stretch only when its ends' distances
-// cover it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share printed
-// by
-// the heavy test; the compiled scenes must be right for every ray.
+// cover it. Sphere tracing with steps as long as the raw value, as most programs do, is wrong for the share that the
+// heavy test prints; the compiled scenes must be right for every ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
