@@ -96,9 +96,7 @@ HWY_INLINE T cell_limit(const Vec3<T>& p, const Constant<T>* k) {
     const Constant<T>* of = k + 9 * axis;
     return sqr(abs(in_cell(a, cell_number(a, of), of)) + of[6]);
   };
-  const auto out2 = [k](const T& a, int axis) HWY_ATTR {
-    return sqr(beyond(a, k[9 * axis + 7], k[9 * axis + 8]));
-  };
+  const auto out2 = [k](const T& a, int axis) HWY_ATTR { return sqr(beyond(a, k[9 * axis + 7], k[9 * axis + 8])); };
   const T x = out2(p.x, 0), y = out2(p.y, 1), z = out2(p.z, 2);
   return sqrt(min(near2(p.x, 0) + y + z, min(x + near2(p.y, 1) + z, x + y + near2(p.z, 2))));
 }
@@ -114,9 +112,9 @@ template <class T>
 HWY_INLINE Vec3<T> sector(const Vec3<T>& p, const Constant<T>* k) {
   return turn_about_y(p, floor(atan2(p.z, p.x) * k[0] + k[1]) * k[2]);
 }
-// The way to the sectors' copies that are not evaluated. k: as sector, where shift rounds to the nearest copy's middle
-// at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; lowest and highest y of a
-// copy. A half-plane at an angle of a from p is rho sin a away, and rho beyond a right angle.
+// The way to the sectors' copies that are not evaluated. k: as sector, where shift rounds to the nearest copy's
+// middle at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; lowest and highest
+// y of a copy. A half-plane at an angle of a from p is rho sin a away, and rho beyond a right angle.
 template <class T>
 HWY_INLINE T sector_limit(const Vec3<T>& p, const Constant<T>* k) {
   const T angle = atan2(p.z, p.x);
@@ -152,8 +150,8 @@ HWY_INLINE Vec3<T> taper(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // A circular bend: the x axis goes round the centre (0, k[0]); arc length along it is kept (Alan Barr, "Global and
-// Local Deformations of Solid Primitives", 1984, section 4.4). k: radius > 0, +1 to bend towards +y and -1 towards -y,
-// and the radius within which nothing is followed.
+// Local Deformations of Solid Primitives", 1984, section 4.4). k: radius > 0, +1 to bend towards +y and -1 towards
+// -y, and the radius within which nothing is followed.
 template <class T>
 HWY_INLINE Vec3<T> bend(const Vec3<T>& p, const Constant<T>* k) {
   const T below = k[0] - p.y * k[1];

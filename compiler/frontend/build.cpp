@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
+#include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
 #include "vm/check.h"
 
@@ -74,39 +76,38 @@ void SceneBuilder::build_named(std::uint32_t name, Context context) {
   }
 }
 
-SceneBuilder::Built SceneBuilder::build(const CheckedNode& node, Context context) {
-  const bool own_paint = node.material && node.material != context.material;
-  if (node.material) context.material = node.material;
-  const Origin origin{node.span, node.name};
-  Built built{0, false};
-  if (node.use) {
-    built = built_.at(key(*node.use, context));
-  } else {
-    std::vector<NodeId> children;
-    built.painted = !node.children.empty();
-    for (const CheckedNode& child : node.children) {
-      const Built inner = build(child, context);
-      children.push_back(inner.id);
-      built.painted = built.painted && inner.painted;
-    }
-    if (node.formula) children.push_back(make_formula(maker_, *node.formula, node.name));
-    if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
-      const NodeSpec& row = spec(node.kind);
-      diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
-      return {children[0], true};  // something to go on with
-    }
-    built.id = maker_.make(node.kind, node.params, children, origin);
+SceneBuilder::Built SceneBuilder::build(const CheckedNode& root, Context context) {
+  const auto enter = [](const CheckedNode& node, Context above) {
+    return node.material ? Context{above.object, node.material, node.material != above.material}
+                         : Context{above.object, above.material, false};
+  };
+  return fold_nodes<Built>(root, context, enter,
+                           [this](const CheckedNode& node, Context here, std::span<const Built> children) {
+                             Built built = node.use ? built_.at(key(*node.use, here)) : make(node, children);
+                             const Origin origin{node.span, node.name};
+                             if (node.between) built.id = transform(built.id, *node.between, origin);
+                             if (node.transform) built.id = transform(built.id, *node.transform, origin);
+                             if (here.is_new && !built.painted) built = {paint(built.id, here, origin), true};
+                             return built;
+                           });
+}
+
+SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const Built> over) {
+  std::vector<NodeId> children;
+  for (const Built& child : over) children.push_back(child.id);
+  if (node.formula) children.push_back(make_formula(maker_, *node.formula, node.name));
+  if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
+    const NodeSpec& row = spec(node.kind);
+    diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
+    return {children[0], true};  // something to go on with
   }
-  if (node.between) {
-    const NodeId child[] = {built.id};
-    built.id = scene_.graph.add(Kind::Transform, *node.between, child, origin);
-  }
-  if (node.transform) {
-    const NodeId child[] = {built.id};
-    built.id = scene_.graph.add(Kind::Transform, *node.transform, child, origin);
-  }
-  if (own_paint && !built.painted) built = {paint(built.id, context, origin), true};
-  return built;
+  const bool painted = !over.empty() && std::all_of(over.begin(), over.end(), std::mem_fn(&Built::painted));
+  return {maker_.make(node.kind, node.params, children, {node.span, node.name}), painted};
+}
+
+NodeId SceneBuilder::transform(NodeId child, std::span<const double> params, const Origin& origin) {
+  const NodeId children[] = {child};
+  return scene_.graph.add(Kind::Transform, params, children, origin);
 }
 
 NodeId SceneBuilder::paint(NodeId child, Context context, const Origin& origin) {

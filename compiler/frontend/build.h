@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -27,8 +28,7 @@ class SceneBuilder {
   // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
   // material is added to `materials` when an object needs it. All must outlive the builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-               const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
-               Diagnostics& diagnostics);
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, Diagnostics& diagnostics);
 
   // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);
@@ -42,6 +42,7 @@ class SceneBuilder {
   struct Context {
     std::uint32_t object;
     std::optional<std::uint32_t> material;
+    bool is_new = false;  // the material is the node's own, and another than around it
   };
   struct Built {
     NodeId id;
@@ -51,7 +52,9 @@ class SceneBuilder {
 
   Key key(std::uint32_t name, Context context) const;
   void build_named(std::uint32_t name, Context context);
-  Built build(const CheckedNode& node, Context context);
+  Built build(const CheckedNode& root, Context context);
+  Built make(const CheckedNode& node, std::span<const Built> over);
+  NodeId transform(NodeId child, std::span<const double> params, const Origin& origin);
   NodeId paint(NodeId child, Context context, const Origin& origin);
   std::string unique_name(const CheckedNode& node);
 

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 
+#include "compiler/frontend/fold_nodes.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
@@ -35,26 +38,29 @@ class SortChecker {
   }
 
  private:
-  // As deep as the file nests.
-  Sort sort_of(CheckedNode& node) {
-    const Sort sort = node.use ? sorts_[*node.use] : sort_of_type(node);
-    if (sort == Sort::Outline && node.transform) flatten(node);
-    return sort;
+  Sort sort_of(CheckedNode& root) {
+    const auto nothing = [](CheckedNode&, std::nullptr_t) { return nullptr; };
+    return fold_nodes<Sort>(root, nullptr, nothing,
+                            [this](CheckedNode& node, std::nullptr_t, std::span<const Sort> children) {
+                              const Sort sort = node.use ? sorts_[*node.use] : sort_over(node, children);
+                              if (sort == Sort::Outline && node.transform) flatten(node);
+                              return sort;
+                            });
   }
 
-  Sort sort_of_type(CheckedNode& node) {
+  Sort sort_over(const CheckedNode& node, std::span<const Sort> children) {
     const NodeSpec& row = spec(node.kind);
     std::optional<Sort> wanted = row.operand;
-    for (CheckedNode& child : node.children) {
-      const Sort sort = sort_of(child);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const Sort sort = children[i];
       if (sort == Sort::Number) continue;
       if (!wanted) wanted = sort;  // the first of several decides
       if (sort == *wanted) continue;
       if (!row.operand) {
-        report(child, sort,
+        report(node.children[i], sort,
                fmt::format("the nodes of a `{}` are all solids or all outlines, as the first is", row.name));
       } else {
-        report(child, sort, sort == Sort::Outline ? help_for_outline() : known_outlines());
+        report(node.children[i], sort, sort == Sort::Outline ? help_for_outline() : known_outlines());
       }
     }
     return row.operand ? row.sort : wanted.value_or(row.sort);
@@ -69,8 +75,7 @@ class SortChecker {
 
   static std::string help_for_outline() {
     return "draw it out with {\"type\": \"extrude\", \"half_depth\": 0.1, \"of\": {...}}, or turn it about the y "
-           "axis "
-           "with {\"type\": \"revolve\", \"of\": {...}}";
+           "axis with {\"type\": \"revolve\", \"of\": {...}}";
   }
 
   void flatten(CheckedNode& node) {
