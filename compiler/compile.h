@@ -1,5 +1,5 @@
 // The compiler's one function: scene text, in any format of read_scene.h, to CompiledScene. compile.cpp reads as the
-// list of passes. Tested by: tests/compiler/compile_test.cpp
+// list of passes. Tested by: tests/compiler/passes_test.cpp
 #pragma once
 
 #include <functional>

@@ -48,16 +48,14 @@ class Bisection {
       constexpr double kCloseEnough = 1.02;
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
-    FormulaBound result{kInfinity, -kInfinity, settled_, seen_, 0};
+    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
     for (; !cells_.empty(); cells_.pop()) {
       const vm::SlopeBound& b = cells_.top().bound;
-      least_ = std::min(least_, b.value.lo);
-      most_ = std::max(most_, b.value.hi);
+      result.least = std::min(result.least, b.value.lo);
+      result.most = std::max(result.most, b.value.hi);
       result.lipschitz = std::max(result.lipschitz, b.lipschitz);
       result.float_error = std::max(result.float_error, b.float_error);
     }
-    result.least = least_;
-    result.most = most_;
     return result;
   }
 
@@ -96,7 +94,7 @@ class Bisection {
   const std::array<bool, 3> used_;
   vm::Workspace workspace_;
   std::priority_queue<Cell> cells_;
-  double seen_ = 0, settled_ = 0, least_ = kInfinity, most_ = -kInfinity;
+  double seen_ = 0;
 };
 
 vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
@@ -141,6 +139,31 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
 // What stands for the constant of a formula that has none.
 double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.seen); }
 
+struct DisplacedBound {
+  Box box;
+  FormulaBound formula;  // over the box
+};
+
+// Where the displaced solid can be: the child's box grown by g, with g at least as much as the formula lowers the
+// distance within it. What is needed is followed along its slope to where it meets what is given; of a formula that
+// asks for more and more the solid can be anywhere.
+DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowledge& child) {
+  constexpr int kTries = 8;
+  double grown = 0, last_grown = 0, last_needed = 0;
+  for (int i = 0; i < kTries && child.reach_max > 0 && std::isfinite(grown); ++i) {
+    const Box box = child.box.grown(grown);
+    const FormulaBound bound = bound_formula(graph, formula, box);
+    const double needed = std::max(0.0, -bound.least) / child.reach_max;
+    if (needed <= grown) return {box, bound};
+    const double slope = i == 0 ? 0 : (needed - last_needed) / (grown - last_grown);
+    last_grown = std::exchange(grown, slope < 0.99 ? (needed - slope * grown) / (1 - slope) : 2 * needed);
+    last_needed = needed;
+    constexpr double kAbove = 1.0001;  // the bounds are rounded outwards
+    grown *= kAbove;
+  }
+  return {Box::everything(), bound_formula(graph, formula, Box::everything())};
+}
+
 }  // namespace
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
@@ -161,19 +184,11 @@ NodeId build_expression(NodeMaker& maker, Params params, std::span<const NodeId>
 
 NodeId build_displacement(NodeMaker& maker, Params, std::span<const NodeId> children, const Origin& origin) {
   const Knowledge child = maker.known(children[0]);
-  // Where the displaced solid can be: the child's box, grown by as much as the formula lowers the distance there.
-  Box box = child.box;
-  FormulaBound bound{};
-  for (int i = 0; i < 4; ++i) {
-    bound = bound_formula(maker.graph(), children[1], box);
-    const double outwards = std::max(0.0, -bound.least);
-    const Box needed = child.reach_max > 0 ? child.box.grown(outwards / child.reach_max) : Box::everything();
-    if (intersect(needed, box).lo == needed.lo && intersect(needed, box).hi == needed.hi) break;
-    box = unite(needed, box);
-  }
+  const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
+  const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
   const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
-  return bounded(maker, sum, box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
+  return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
                  child.magnitude + magnitude_of(bound.float_error), proved && child.certified, origin);
 }
 

@@ -12,8 +12,8 @@ namespace fathom::compiler {
 // How far a distance can be trusted. Exact implies bound; a bound never exceeds the true distance.
 enum class Exactness { Exact, Bound, Estimate };
 
-// All of it holds for the node's value divided by `lipschitz`, the distance: a twisted node's value may change faster
-// than the way walked, and is brought back where it is combined with others (passes/level.cpp) or marched.
+// A node's value f divided by `lipschitz` is its distance: a twisted node's value may change faster than the way
+// walked, and is brought back where it is combined with others (passes/level.cpp) or marched.
 struct Knowledge {
   Box box;               // the distance is positive outside it
   double lipschitz = 1;  // |f(p) - f(q)| <= lipschitz |p - q|, where certified

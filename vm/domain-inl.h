@@ -113,14 +113,15 @@ HWY_INLINE Vec3<T> sector(const Vec3<T>& p, const Constant<T>* k) {
   return turn_about_y(p, floor(atan2(p.z, p.x) * k[0] + k[1]) * k[2]);
 }
 // The way to the sectors' copies that are not evaluated. k: as sector, where shift rounds to the nearest copy's
-// middle at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; lowest and highest
-// y of a copy. A half-plane at an angle of a from p is rho sin a away, and rho beyond a right angle.
+// middle at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; k[5]: how far they
+// keep from the axis; lowest and highest y of a copy. A half-plane at an angle of a from p is rho sin a away, and rho
+// beyond a right angle.
 template <class T>
 HWY_INLINE T sector_limit(const Vec3<T>& p, const Constant<T>* k) {
-  const T angle = atan2(p.z, p.x);
+  const T angle = atan2(p.z, p.x), rho = length(p.x, p.z);
   const T aside = abs(angle - k[3] - floor(angle * k[0] + k[1]) * k[2]) + k[4];
-  const T across = length(p.x, p.z) * sin(min(constant<T>(1.5707963267948966), aside));
-  return length(across, beyond(p.y, k[5], k[6]));
+  const T across = rho * sin(min(constant<T>(1.5707963267948966), aside));
+  return length(max(across, k[5] - rho), beyond(p.y, k[6], k[7]));
 }
 
 // Onto the cylinder of radius k about the y axis, if outside.

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
@@ -16,6 +19,19 @@ constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
 bool gives_material(const CheckedNode& node) {
   return node.material || std::any_of(node.children.begin(), node.children.end(), gives_material);
+}
+
+// The machine's immediates are floats.
+bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
+  bool all = true;
+  for (const Formula::Node& node : formula.nodes) {
+    if (node.function != "const" || std::abs(node.value) <= std::numeric_limits<float>::max()) continue;
+    all = false;
+    const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
+    diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",
+                      {"numbers are evaluated in float, which ends at 3.4e38: scale the formula down"});
+  }
+  return all;
 }
 
 }  // namespace
@@ -95,7 +111,11 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& root, Context context
 SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const Built> over) {
   std::vector<NodeId> children;
   for (const Built& child : over) children.push_back(child.id);
-  if (node.formula) children.push_back(make_formula(maker_, *node.formula, node.name));
+  if (node.formula && !holds_in_float(*node.formula, diagnostics_)) {
+    children.push_back(scene_.graph.add(Kind::Constant, std::array<double, 1>{1.0}, {}));  // to go on with
+  } else if (node.formula) {
+    children.push_back(make_formula(maker_, *node.formula, node.name));
+  }
   if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
     const NodeSpec& row = spec(node.kind);
     diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
@@ -27,6 +28,13 @@ double evaluate(Kind kind, std::span<const double> operands) {
   return vm::evaluate_distance(std::get<vm::VerifiedProgram>(verified), glm::dvec3(0), workspace);
 }
 
+bool fits_float(double value) { return std::abs(value) <= std::numeric_limits<float>::max(); }
+
+bool is_power_of_two(double value) {
+  int exponent;
+  return std::abs(std::frexp(value, &exponent)) == 0.5;
+}
+
 class Rules {
  public:
   Rules(Graph& graph, const Origin& origin) : graph_(graph), origin_(origin) {}
@@ -40,7 +48,7 @@ class Rules {
     if (!operands.empty() && constants.size() == operands.size()) {
       const double value = evaluate(kind, constants);
       // What is not finite cannot stand in a program; it is left to happen where it is used.
-      if (std::isfinite(value) && std::isfinite(static_cast<float>(value))) return constant_node(value);
+      if (fits_float(value)) return constant_node(value);
     }
     const std::optional<NodeId> simpler =
         operands.size() == 1 ? unary(kind, operands[0]) : binary(kind, operands[0], operands[1]);
@@ -104,9 +112,8 @@ class Rules {
         return std::nullopt;
       case Kind::Divide:
         if (is(b, 1)) return a;
-        // Exact: only the exponent changes.
-        if (const auto divisor = constant(b); divisor && std::abs(std::frexp(*divisor, &exponent_)) == 0.5)
-          return node(Kind::Multiply, {a, constant_node(1 / *divisor)});
+        if (const auto divisor = constant(b); divisor && is_power_of_two(*divisor) && fits_float(1 / *divisor))
+          return node(Kind::Multiply, {a, constant_node(1 / *divisor)});  // exact: only the exponent changes
         return std::nullopt;
       case Kind::Minimum:
       case Kind::Maximum:
@@ -123,7 +130,6 @@ class Rules {
 
   Graph& graph_;
   const Origin& origin_;
-  int exponent_ = 0;
 };
 
 }  // namespace

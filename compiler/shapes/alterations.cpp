@@ -82,6 +82,9 @@ Knowledge know_transform(Params params, std::span<const Knowledge> children) {
   return k;
 }
 
+// Whether there is a block between the pieces pulled apart, where the way to its faces adds depth.
+bool has_core(Params half_size) { return half_size[0] > 0 && half_size[1] > 0 && half_size[2] > 0; }
+
 // The surface cut at the planes through the origin and pulled apart by the half size along each axis.
 Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
@@ -94,6 +97,7 @@ Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
     k.box.hi[i] += by;
     if (!child.symmetric[static_cast<std::size_t>(i)]) k = only_bound(k);
   }
+  if (has_core(params)) k.lipschitz = std::max(1.0, k.lipschitz);
   k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
@@ -143,7 +147,7 @@ Code transform_code(Params params) {
 // distance to the block's faces adds depth.
 Code elongate_code(Params params) {
   Code code{.points = {{{Opcode::Elongate, {params[0], params[1], params[2]}}}}};
-  if (params[0] > 0 && params[1] > 0 && params[2] > 0) {
+  if (has_core(params)) {
     code.after = {{Opcode::Core, {params[0], params[1], params[2]}}, {Opcode::Deepen}};
   }
   return code;

@@ -192,10 +192,12 @@ std::vector<double> derive_bend(Params p, std::span<const Knowledge> children) {
   const double inner = kInner * a.innermost, reach = child.reach > 0 ? child.reach : 0.25;
   const Box exact = bent_box(a, child.box);
   const Box box = exact.grown(kAside * std::max(exact.hi.x - exact.lo.x, exact.hi.y - exact.lo.y));
+  // The box's own distance and the way to what is left out change by 1.
+  const double lipschitz = std::max(1.0, child.lipschitz * std::max(1.0, a.radius / inner));
   return {a.radius,
           a.side,
           inner,
-          child.lipschitz * std::max(1.0, a.radius / inner),
+          lipschitz,
           reach * (a.innermost - inner),
           reach * (std::numbers::pi * a.radius - a.farthest),
           std::clamp(box.lo.z, -kNoLimit, kNoLimit),

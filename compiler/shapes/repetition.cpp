@@ -36,11 +36,10 @@ struct RepeatedAxis {
   double first() const { return endless() ? -kEndless : -std::floor(count / 2); }
   double last() const { return endless() ? kEndless - 1 : first() + count - 1; }
   double position(double number) const { return (number + half()) * period; }
-  // Copies evaluated at each point.
-  int copies() const {
+  // Copies evaluated at each point: a whole number, beyond any `int` for a period next to nothing.
+  double copies() const {
     if (!repeated()) return 1;
-    if (sides == kAll) return static_cast<int>(count);
-    return std::max(1, 2 * static_cast<int>(sides));
+    return sides == kAll ? count : std::max(1.0, 2 * sides);
   }
 };
 
@@ -65,13 +64,15 @@ Repeated repeated(Params p) {
 std::vector<double> derive_repetition(Params p, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   std::vector<double> sides(3, 0), apart(3, 0);
+  const bool jitters = p[6] > 0 || p[7] > 0 || p[8] > 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double period = p[i], count = p[3 + i], jitter = p[6 + i];
     if (period == 0) continue;
     const auto axis = static_cast<int>(i);
     const double lo = child.box.lo[axis] - jitter, hi = child.box.hi[axis] + jitter;
     const double extent = std::max({hi, -lo, 0.0});
-    const bool mirrored = child.symmetric[i] && jitter == 0 && 2 * extent <= period;
+    // The neighbour is the mirror image, then, and further; not when it is moved along any axis.
+    const bool mirrored = child.symmetric[i] && !jitters && 2 * extent <= period;
     if (mirrored) continue;
     // At least a quarter of a period to what is left out, so that steps are not too short.
     sides[i] = std::ceil((extent + std::max({0.0, lo, -hi})) / period + 0.25);
@@ -112,7 +113,7 @@ Complaint check_repetition_child(Params p, std::span<const Knowledge> children) 
   const std::vector<double> derived = derive_repetition(p, children);
   all.insert(all.end(), derived.begin(), derived.end());
   const Repeated r = repeated(all);
-  const double copies = 1.0 * r.axes[0].copies() * r.axes[1].copies() * r.axes[2].copies();
+  const double copies = r.axes[0].copies() * r.axes[1].copies() * r.axes[2].copies();
   if (copies <= kMostCopies) return std::nullopt;
   return fmt::format(
       "the node reaches across so many cells that {} copies count at every point; at most {} are "
@@ -135,6 +136,7 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
   k.inside = std::max(k.inside, Exactness::Bound);
   if (!r.limited()) return k;
   k = only_bound(k);
+  k.lipschitz = std::max(k.lipschitz, r.reach);
   k.reach = std::min(k.reach, r.reach);
   k.reach_max = std::min(k.reach_max, k.reach);
   return k;
@@ -205,7 +207,7 @@ Code repetition_code(Params p) {
 
 // Polar repetition. Parameter: count. Derived: copies evaluated to either side (kAll: every one), the angle of the
 // child's middle about the y axis, the angle that copies left out keep from the half-plane through the nearest's
-// middle (radians), the child's reach, its lowest and highest y, and its distance from the axis.
+// middle (radians), the child's reach, its lowest and highest y, and its farthest and nearest distance from the axis.
 
 struct Wedge {
   double middle, half;  // radians
@@ -237,7 +239,9 @@ std::vector<double> derive_polar(Params p, std::span<const Knowledge> children) 
           child.reach > 0 ? child.reach : 0.25,
           std::clamp(child.box.lo.y - margin, -kNoLimit, kNoLimit),
           std::clamp(child.box.hi.y + margin, -kNoLimit, kNoLimit),
-          radius};
+          radius,
+          distance_from_axis(std::max({0.0, child.box.lo.x, -child.box.hi.x}),
+                             std::max({0.0, child.box.lo.z, -child.box.hi.z}))};
 }
 
 Complaint check_polar(Params p) {
@@ -266,6 +270,7 @@ Knowledge know_polar(Params p, std::span<const Knowledge> children) {
   k.box = tube(p[7], children[0].box.lo.y - kAside * p[7], children[0].box.hi.y + kAside * p[7]);
   k.magnitude += radius;      // the angle's sine and cosine are rounded
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result
+  k.lipschitz = std::max(1.0, k.lipschitz);
   return only_bound(k);
 }
 
@@ -283,7 +288,7 @@ Code polar_code(Params p) {
   for (double i = 1 - sides; i <= sides; ++i) {
     code.points.push_back({{Opcode::Sector, {1 / angle, i - middle / angle, angle}}});
   }
-  code.after = {{Opcode::SectorLimit, {1 / angle, 0.5 - middle / angle, angle, middle, apart, p[5], p[6]}}};
+  code.after = {{Opcode::SectorLimit, {1 / angle, 0.5 - middle / angle, angle, middle, apart, p[8], p[5], p[6]}}};
   if (reach != 1) code.after.push_back({Opcode::Scale, {reach}});
   // From afar the neighbours' wedges seem close: the box says how far all of it is.
   const double radius = p[7];

@@ -119,7 +119,7 @@ double repetition_limit(Params k, dvec3 p) {
   return limit * k[15];
 }
 
-// Parameters: count; derived: sides, middle, apart, reach, y range. All copies are asked.
+// Parameters: count; derived: sides, middle, apart, reach, y range, farthest and nearest. All copies are asked.
 std::vector<dvec3> around(Params k, dvec3 p) {
   std::vector<dvec3> points;
   for (int i = 0; i < static_cast<int>(k[0]); ++i) {
@@ -131,7 +131,8 @@ double polar_value(Params k, dvec3 p, double child) {
   if (k[1] < 0) return child;
   const double sector = 2 * std::numbers::pi / k[0];
   const double aside = std::abs(std::remainder(std::atan2(p.z, p.x) - k[2], sector)) + k[3];
-  const double across = std::hypot(p.x, p.z) * (aside < std::numbers::pi / 2 ? std::sin(aside) : 1);
+  const double rho = std::hypot(p.x, p.z);
+  const double across = std::max(k[8] - rho, rho * (aside < std::numbers::pi / 2 ? std::sin(aside) : 1));
   const double limit = k[4] * std::hypot(across, outside(p.y, k[5], k[6]));
   return std::max(std::min(child, limit), box_distance(p, {-k[7], k[5], -k[7]}, {k[7], k[6], k[7]}));
 }

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "compiler/formula_field.h"
 #include "compiler/make_node.h"
 #include "tests/support/random_outlines.h"
 
@@ -91,6 +92,10 @@ class Maker {
   }
 
   NodeId primitive() {
+    if (options_.formulas && random_.chance(0.1)) {
+      const dvec3 half(random_.length(0.3, 2), random_.length(0.3, 2), random_.length(0.3, 2));
+      return compiler::make_bounded(maker_, random_formula(maker_, random_), {-half, half}, {});
+    }
     if (options_.outlines && random_.chance(0.2)) return of_outline();
     const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, options_.mandelbulbs);
     Kind kind;
@@ -125,14 +130,22 @@ class Maker {
   }
 
   NodeId operation(int depth) {
-    const int choice = random_.below(8);
-    if (choice >= 5) return combinator(depth);
+    const int choice = random_.below(9);
+    if (choice >= 6) return combinator(depth);
     const NodeId child = make(depth - 1);
     if (choice == 0) return add(Kind::Round, {random_.length(0.01, 0.3)}, {child});
     if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {child});
     if (choice == 2 && options_.paints) return add(Kind::Paint, {1.0 + random_.below(6)}, {child});
-    if (choice == 3 && options_.bends) return random_domain_node(maker_, random_, child);
+    if (choice == 3 && options_.formulas) return displaced(child);
+    if (choice == 4 && options_.bends) return random_domain_node(maker_, random_, child);
     return transform(child);
+  }
+
+  // Moved in and out by a formula, if that is nowhere too steep to be proved.
+  NodeId displaced(NodeId child) {
+    const std::vector<NodeId> operands = {child, random_formula(maker_, random_)};
+    const NodeId id = add(Kind::Displacement, {}, operands);
+    return maker_.known(id).certified ? id : child;
   }
 
   NodeId transform(NodeId child) {
@@ -292,6 +305,31 @@ std::vector<double> random_params(Kind kind, Random& random) {
   }
 }
 
+NodeId random_formula(compiler::NodeMaker& maker, Random& random) {
+  const auto number = [&](double value) { return maker.make(Kind::Constant, std::vector<double>{value}, {}); };
+  const auto of = [&](Kind kind, std::vector<NodeId> operands) { return maker.make(kind, {}, operands); };
+  const auto coordinate = [&] { return of(static_cast<Kind>(static_cast<int>(Kind::X) + random.below(3)), {}); };
+  const auto times = [&](NodeId a, double by) { return of(Kind::Multiply, {a, number(by)}); };
+  const auto wave = [&] { return of(Kind::Sin, {times(coordinate(), random.length(0.5, 8))}); };
+  NodeId formula = 0;
+  switch (random.below(4)) {
+    case 0:
+      formula = of(Kind::Add, {wave(), of(Kind::Multiply, {wave(), wave()})});
+      break;
+    case 1:
+      formula = of(Kind::Minus, {of(Kind::Abs, {coordinate()}), number(random.length(0.1, 1))});
+      break;
+    case 2:
+      formula = of(Kind::Maximum, {coordinate(), of(Kind::Minus, {wave(), coordinate()})});
+      break;
+    default:
+      formula = of(Kind::Minus, {of(Kind::Add, {of(Kind::Square, {coordinate()}), of(Kind::Square, {coordinate()})}),
+                                 number(random.length(0.1, 1))});
+      break;
+  }
+  return times(formula, random.length(0.003, 2));
+}
+
 NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId child) {
   const auto size = [&] { return random.length(0.05, 1.5); };
   const auto maybe = [&](double x) { return random.chance(0.5) ? x : 0.0; };
@@ -310,10 +348,10 @@ NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId chi
     case 2:
     case 3: {
       kind = Kind::Repetition;
-      const double jitter = random.chance(0.3) ? random.length(0.01, 0.3) : 0;
+      const double jitter = random.chance(0.3) ? random.length(0.01, 0.3) : 0;  // along some of the axes
       params = {random.length(0.5, 5), maybe(random.length(0.5, 5)), maybe(random.length(0.5, 5))};
       for (int i = 0; i < 3; ++i) params.push_back(random.below(6));
-      params.insert(params.end(), {jitter, maybe(jitter), jitter});
+      params.insert(params.end(), {maybe(jitter), maybe(jitter), maybe(jitter)});
       break;
     }
     case 4:

@@ -44,9 +44,13 @@ struct GraphOptions {
   bool paints = true;    // surface numbers 1 .. 6
   bool squash = true;    // three different scales
   bool outlines = true;  // drawn out and turned
+  bool formulas = true;  // formulas as solids and as displacements
   bool bends = true;     // what folds, repeats or bends space, and joins at an edge
 };
 compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
+
+// A formula in x, y and z, of slopes from a thousandth to about twenty near the origin.
+compiler::NodeId random_formula(compiler::NodeMaker& maker, Random& random);
 
 // One of what folds, repeats or bends space, over `child`; `child` itself where that is not possible.
 compiler::NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, compiler::NodeId child);

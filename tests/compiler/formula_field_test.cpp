@@ -1,0 +1,110 @@
+// Formulas as fields: the bounds that are proved for them, and the boxes of what they displace.
+#include "compiler/formula_field.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "compiler/compile.h"
+#include "compiler/frontend/read_scene.h"
+#include "tests/support/judge.h"
+#include "tests/support/random_scene.h"
+
+namespace fathom::test {
+namespace {
+
+using compiler::Box;
+using compiler::Kind;
+using compiler::Knowledge;
+using compiler::Scene;
+using glm::dvec3;
+
+// The scene of one object as it is read, before any pass.
+Scene scene_of(const std::string& object) {
+  compiler::Diagnostics diagnostics;
+  const compiler::Source source("test.json", R"({"version": 1, "objects": [)" + object + "]}");
+  compiler::CompileOptions options;
+  options.stop_after = "graph";
+  Scene graph;
+  options.on_pass = [&](std::string_view, const Scene& scene) { graph = scene; };
+  const auto compiled = compiler::compile(source, diagnostics, options);
+  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
+  REQUIRE(compiled);
+  return graph;
+}
+
+Knowledge known(const Scene& scene) { return compiler::analyse(scene.graph)[scene.root]; }
+
+Knowledge of_formula(const std::string& formula) {
+  return known(scene_of(R"({"type": "expression", "half_size": [2, 2, 2], "formula": ")" + formula + R"("})"));
+}
+
+Scene displaced_ball(const std::string& formula) {
+  return scene_of(R"({"type": "displacement", "formula": ")" + formula +
+                  R"(", "of": {"type": "sphere", "radius": 1}})");
+}
+
+}  // namespace
+
+TEST_CASE("the constants of formulas are close to the slopes that occur", "[formula_field]") {
+  const std::pair<const char*, double> cases[] = {
+      {"x", 1},
+      {"2*x - y + z/2", std::sqrt(5.25)},
+      {"sqrt(x^2 + y^2 + z^2) - 1", 1},
+      {"x^2 + y^2 - 1", 4 * std::sqrt(2.0)},
+      {"sin(3*x)", 3},
+      {"x*y*z", std::sqrt(48.0)},
+      {"max(abs(x), abs(y)) - 1", 1},
+      {"sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)", 1.73},
+  };
+  for (const auto& [formula, slope] : cases) {
+    INFO(formula);
+    const Knowledge k = of_formula(formula);
+    CHECK(k.certified);
+    CHECK(k.lipschitz >= slope * (1 - 1e-12));
+    CHECK(k.lipschitz <= slope * 1.2);
+  }
+}
+
+TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
+  for (const char* formula : {"floor(3*x) - y", "1/x", "sqrt(x)", "tan(x)", "x + sign(y)"}) {
+    INFO(formula);
+    const Knowledge k = of_formula(formula);
+    CHECK(!k.certified);
+    CHECK(k.outside == compiler::Exactness::Estimate);
+    CHECK(std::isfinite(k.lipschitz));
+  }
+}
+
+// Once, the box was grown four times and then taken as it was, over which the formula's bound did not hold.
+TEST_CASE("a displaced node's box holds it", "[formula_field]") {
+  for (const char* formula :
+       {"0.5*x", "0.9*y", "0.3*sin(5*x)", "-0.2", "0.1*x*y", "0.05*x^2 - 0.5", "0.4*x + 0.4*y", "-0.4*abs(x)"}) {
+    INFO(formula);
+    const Scene scene = displaced_ball(formula);
+    const Knowledge k = known(scene);
+    INFO(compiler::describe(k));
+    CHECK(k.certified);
+    CHECK(k.box.finite());
+    Random random(3);
+    for (int i = 0; i < 20000; ++i) {
+      const dvec3 p = random.in_box(12);
+      // The ball and its formula without any box.
+      const compiler::NodeId sum = scene.graph.children(scene.root)[0];
+      const double free = judge_distance(scene.graph, sum, p), boxed = judge_distance(scene.graph, scene.root, p);
+      if (!k.box.contains(p)) REQUIRE(free > 0);
+      REQUIRE((boxed < 0) == (free < 0));
+    }
+  }
+}
+
+TEST_CASE("a ball that grows faster than the way walked has no end, and a constant all the same", "[formula_field]") {
+  const Knowledge k = known(displaced_ball("-2*x"));
+  CHECK(k.certified);
+  CHECK(!k.box.finite());
+  CHECK(k.lipschitz == Approx(3));
+  CHECK(!known(displaced_ball("x*y")).certified);
+}
+
+}  // namespace fathom::test
