@@ -6,13 +6,10 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <random>
-#include <sstream>
 
+#include "bench/clouds.h"
 #include "bench/hand_written.h"
 #include "bench/stopwatch.h"
-#include "compiler/compile.h"
 
 namespace {
 
@@ -21,39 +18,13 @@ using namespace fathom;
 constexpr std::size_t kPoints = 4096;
 constexpr int kRepeats = 20;
 
-struct Cloud {
-  std::vector<float> x, y, z;
-  vm::Points points() const { return {x.data(), y.data(), z.data()}; }
-};
-
-Cloud make_cloud() {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<float> across(-5, 5), up(0, 2);
-  Cloud cloud;
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    cloud.x.push_back(across(random));
-    cloud.y.push_back(up(random));
-    cloud.z.push_back(across(random));
-  }
-  return cloud;
-}
-
-void measure(const char* name, const std::string& file, bench::Field by_hand, const Cloud& cloud, int rounds) {
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  compiler::Diagnostics diagnostics;
-  const compiler::Source source(file, text.str());
-  const auto scene = compiler::compile(source, diagnostics);
-  if (!scene) {
-    fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
-    std::exit(1);
-  }
+void measure(const char* name, const std::string& path, bench::Field by_hand, const bench::Cloud& cloud, int rounds) {
+  const compiler::CompiledScene scene = bench::compile_file(path);
   vm::Workspace workspace;
   std::vector<float> interpreted(kPoints), hand(kPoints);
   const auto seconds = bench::time_interleaved({[&] {
                                                   for (int i = 0; i < kRepeats; ++i) {
-                                                    vm::evaluate_distance(scene->distance, cloud.points(), kPoints,
+                                                    vm::evaluate_distance(scene.distance, cloud.points(), kPoints,
                                                                           interpreted.data(), workspace);
                                                   }
                                                 },
@@ -69,7 +40,7 @@ void measure(const char* name, const std::string& file, bench::Field by_hand, co
                       ratio = bench::ratio(seconds[0], seconds[1]);
   fmt::print(
       "{:<12} {:4} ops  machine {:6.2f}  by hand {:6.2f}  ratio {:.2f} ({:.2f}..{:.2f})  largest difference {:.1e}\n",
-      name, scene->distance.instructions(), vm_time.median * per_point, hand_time.median * per_point, ratio.median,
+      name, scene.distance.instructions(), vm_time.median * per_point, hand_time.median * per_point, ratio.median,
       ratio.least, ratio.most, largest);
 }
 
@@ -78,10 +49,9 @@ void measure(const char* name, const std::string& file, bench::Field by_hand, co
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 51;
   bench::pin_thread();
-  const Cloud cloud = make_cloud();
-  const std::string scenes = std::string(FATHOM_SOURCE_DIR) + "/scenes/bench/";
+  const bench::Cloud cloud = bench::make_cloud(kPoints);
   fmt::print("{} lanes' instruction set, {} points, {} rounds; ns per point (median), ratio median (least..most)\n",
              vm::isa_name(), kPoints, rounds);
-  measure("primitives", scenes + "a-primitives.json", bench::primitives_by_hand, cloud, rounds);
-  measure("csg", scenes + "b-csg.json", bench::csg_by_hand, cloud, rounds);
+  measure("primitives", "scenes/bench/a-primitives.json", bench::primitives_by_hand, cloud, rounds);
+  measure("csg", "scenes/bench/b-csg.json", bench::csg_by_hand, cloud, rounds);
 }

@@ -9,6 +9,7 @@
 #include "compiler/bounds.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
+#include "compiler/fuse.h"
 #include "compiler/lints.h"
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
@@ -33,7 +34,10 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   return scene;
 }
 
-std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, Diagnostics& diagnostics) {
+constexpr std::string_view kFuse = "fuse";  // the last pass, over programs
+
+std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, bool fused,
+                                            Diagnostics& diagnostics) {
   std::optional<vm::Program> program = lower(scene.graph, scene.root, source, kMaxInstructions);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
@@ -41,7 +45,7 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
                       {"a node used under different transforms is evaluated once for each; use it less often"});
     return std::nullopt;
   }
-  auto verified = vm::verify(std::move(*program));
+  auto verified = vm::verify(fused ? fuse(*program) : std::move(*program));
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
                       fmt::format("the scene's program exceeds a limit of the machine: {}", error->reason));
@@ -89,11 +93,12 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (!elaborated) return std::nullopt;
 
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
-  std::optional<vm::VerifiedProgram> distance = assemble(field, source, diagnostics);
+  const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
+  std::optional<vm::VerifiedProgram> distance = assemble(field, source, fused, diagnostics);
   if (!distance) return std::nullopt;
   std::optional<vm::VerifiedProgram> surface = distance;
   if (elaborated->surfaces.size() > 1) {
-    surface = assemble(optimise(elaborated->scene, true, options, nullptr), source, diagnostics);
+    surface = assemble(optimise(elaborated->scene, true, options, nullptr), source, fused, diagnostics);
     if (!surface) return std::nullopt;
   }
 
@@ -119,7 +124,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
 
 std::optional<GraphSize> measure(const Scene& scene, const Source& source) {
   Diagnostics ignored;
-  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, ignored);
+  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, false, ignored);
   if (!program) return std::nullopt;
   return GraphSize{count_nodes(scene), program->instructions(), program->cost()};
 }
@@ -127,6 +132,7 @@ std::optional<GraphSize> measure(const Scene& scene, const Source& source) {
 std::vector<std::string_view> pass_names() {
   std::vector<std::string_view> names;
   for (const Pass& pass : passes()) names.push_back(pass.name);
+  names.push_back(kFuse);
   return names;
 }
 

@@ -32,7 +32,7 @@ struct CompileOptions {
 // nullopt exactly when `diagnostics` has errors afterwards.
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options = {});
 
-// What a graph comes to as it stands.
+// What a graph comes to as it stands, before instructions are fused.
 struct GraphSize {
   std::size_t nodes;         // that the root reaches
   std::size_t instructions;  // of its program
@@ -42,7 +42,7 @@ struct GraphSize {
 // nullopt when the graph's program goes beyond a limit of the machine.
 std::optional<GraphSize> measure(const Scene& scene, const Source& source);
 
-// Names of the passes, in order.
+// Names of the passes, in order: those over the graph (compiler/passes/passes.h), then compiler/fuse.h.
 std::vector<std::string_view> pass_names();
 
 }  // namespace fathom::compiler

@@ -25,7 +25,7 @@ struct Use {
 // What is known of a value before code is made for it.
 struct Plan {
   std::uint32_t uses = 0;
-  std::uint32_t height = 1;  // value slots its evaluation needs
+  std::uint32_t height = 1;  // value slots its evaluation needs, fused
   std::optional<std::uint32_t> local;
 };
 
@@ -65,10 +65,16 @@ class Lowering {
         const Use operand = visit.operands[visit.next++];
         enter(operand);
       } else {
-        plans_[visit.use].height = height(code(visit.use.node), visit.operands);
+        const Code code = this->code(visit.use.node);
+        plans_[visit.use].height = is_free(visit.use.node, code) ? 0 : height(code, visit.operands);
         path.pop_back();
       }
     }
+  }
+
+  // A coordinate or a constant is as near as a local that holds it, and can be an operand (compiler/fuse.h).
+  bool is_free(NodeId node, const Code& code) const {
+    return graph_.children(node).empty() && code.after.size() == 1 && vm::info(code.after[0].opcode).cost == 0;
   }
 
   Code code(NodeId node) const { return spec(graph_.kind(node)).code(graph_.params(node)); }
@@ -161,7 +167,7 @@ class Lowering {
     } else {
       steps = alter(use, code);
     }
-    if (plan.uses > 1) steps.push_back({use, Step::Share});
+    if (plan.uses > 1 && !is_free(use.node, code)) steps.push_back({use, Step::Share});
     tasks_.insert(tasks_.end(), std::make_move_iterator(steps.rbegin()), std::make_move_iterator(steps.rend()));
   }
 

@@ -29,6 +29,12 @@ void PassDiff::add(std::string_view pass, const Scene& scene) {
   last_size_ = size;
 }
 
+void PassDiff::add_fused(const vm::VerifiedProgram& program) {
+  if (!last_size_ || program.instructions() == last_size_->instructions) return;
+  const GraphSize size{last_size_->nodes, program.instructions(), program.cost()};
+  text_ += heading("fuse", last_size_, size);
+}
+
 std::string PassDiff::text() const { return text_.empty() ? "; no pass changed anything\n" : text_; }
 
 }  // namespace fathom::compiler

@@ -25,6 +25,9 @@ class PassDiff {
   // To be called after each pass, and before the first: CompileOptions::on_pass.
   void add(std::string_view pass, const Scene& scene);
 
+  // To be called last: what fusing made of the last graph's program.
+  void add_fused(const vm::VerifiedProgram& program);
+
   // One part for each pass that changed something.
   std::string text() const;
 

@@ -7,17 +7,47 @@
 namespace fathom::vm {
 namespace {
 
+float float_at(const Program& program, std::size_t word) { return std::bit_cast<float>(program.words[word]); }
+
+// e.g. " _ x"; nothing when all operands come from the stack. `constant` is where the next constant lies.
+std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t constant) {
+  if ((row.form != Form::Unary && row.form != Form::Binary) || operand_of(word) == 0) return "";
+  const Sources sources = sources_of(word);
+  const auto name = [&](Source source) -> std::string {
+    if (source == Source::Constant) return fmt::format(" {}", float_at(program, constant++));
+    if (source == Source::Local) return fmt::format(" %{}", sources.local);
+    return std::string(" ") + "_xyz"[static_cast<std::size_t>(source)];
+  };
+  std::string text = name(sources.a);
+  if (row.form == Form::Binary) text += name(sources.b);
+  return text;
+}
+
+// e.g. " at 0 1 0 min".
+std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t moved) {
+  if (row.form != Form::Shape) return "";
+  std::string text;
+  if (operand_of(word) & kMoved) {
+    text = fmt::format(" at {} {} {}", float_at(program, moved), float_at(program, moved + 1),
+                       float_at(program, moved + 2));
+  }
+  return operand_of(word) & kJoined ? text + " min" : text;
+}
+
 std::string operation(const Program& program, std::size_t at, const OpcodeInfo& row) {
+  const std::uint32_t word = program.words[at];
   std::string text(row.mnemonic);
-  if (row.has_operand) text += fmt::format(" {}", operand_of(program.words[at]));
-  const std::size_t count = instruction_length(program.words[at]) - 1;
+  if (row.has_operand) text += fmt::format(" {}", operand_of(word));
+  text += operands(program, row, word, at + 1);
+  const auto leading = static_cast<std::size_t>(leading_immediates(word));
+  const std::size_t first = at + 1 + leading, count = instruction_length(word) - 1 - leading;
   for (std::size_t n = 0; n < count; ++n) {
     const int i = static_cast<int>(n) % row.immediates;
     if (row.form == Form::Outline && i == 0) text += ' ';  // sets the groups apart
-    const std::uint32_t bits = program.words[at + 1 + n];
-    text += is_integer_immediate(row, i) ? fmt::format(" {}", bits) : fmt::format(" {}", std::bit_cast<float>(bits));
+    text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
+                                         : fmt::format(" {}", float_at(program, first + n));
   }
-  return text;
+  return text + shape_modes(program, row, word, at + 1);
 }
 
 std::string place(const Program& program, const DebugEntry& entry) {
@@ -39,17 +69,18 @@ std::string disassemble(const VerifiedProgram& verified) {
                                  program.source_name.empty() ? "program" : program.source_name,
                                  verified.instructions(), program.words.size(), verified.max_values(),
                                  verified.max_points(), program.locals, verified.cost());
-  text += "; off  words  values  points  cost  op                               ; source\n";
+  text += "; off  words  values  points  cost  op                                       ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
     const OpcodeInfo& row = *find_opcode(program.words[at] & 0xff);
     const std::size_t length = instruction_length(program.words[at]);
-    const std::string value_stack = height(values, row.effect.values_change);
-    const std::string point_stack = height(points, row.effect.points_change);
-    values += row.effect.values_change;
-    points += row.effect.points_change;
+    const StackEffect effect = effect_of(program.words[at]);
+    const std::string value_stack = height(values, effect.values_change);
+    const std::string point_stack = height(points, effect.points_change);
+    values += effect.values_change;
+    points += effect.points_change;
     const std::string source = i < program.debug.size() ? place(program, program.debug[i]) : "";
-    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<32} ; {}\n", at, length, value_stack, point_stack,
+    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<40} ; {}\n", at, length, value_stack, point_stack,
                         instruction_cost(program.words[at]), operation(program, at, row), source);
     at += length;
   }

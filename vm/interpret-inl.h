@@ -13,6 +13,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "vm/evaluate.h"
 #include "vm/semantics-inl.h"
@@ -139,16 +140,18 @@ class Machine {
   using P = typename Traits::Point;
   using C = Constant<T>;
   static constexpr std::size_t kBlock = kSlot<T>;
+  static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
 
   // `used` is how many of a slot's numbers matter.
   Machine(const VerifiedProgram& verified, Workspace& workspace, std::size_t used)
       : program_(verified.program()), used_(used) {
     const std::size_t point_bytes = verified.max_points() * kBlock * sizeof(Vec3<P>);
-    const std::size_t value_slots = verified.max_values() + program_.locals;
+    const std::size_t value_slots = verified.max_values() + program_.locals + kSpares;
     auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_slots * kBlock * sizeof(T)));
     points_ = reinterpret_cast<Vec3<P>*>(memory);
     values_ = reinterpret_cast<T*>(memory + point_bytes);
     locals_ = values_ + verified.max_values() * kBlock;
+    spares_ = locals_ + program_.locals * kBlock;
   }
 
   Vec3<P>* first_point() { return points_; }
@@ -234,11 +237,17 @@ class Machine {
   }
   template <class Op, int Count>
   HWY_INLINE void apply_shape() {
+    const std::uint32_t modes = operand_of(program_.words[at_ - 1]);
+    const bool moved = modes & kMoved, joined = modes & kJoined;
+    const auto by = moved ? take<3>() : Immediates<3>{};
     const auto immediates = take<Count>();
     const Vec3<P>* from = point_;
-    T* to = top_ += kBlock;
-    for_used([&](std::size_t i)
-                 HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], immediates.k, immediates.words)); });
+    T* to = joined ? top_ : top_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR {
+      const Vec3<P> p = moved ? TranslateOp::apply(from[i], by.k) : from[i];
+      const T value = Traits::lift(Op::apply(p, immediates.k, immediates.words));
+      to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
+    });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_outline() {
@@ -250,22 +259,62 @@ class Machine {
   }
   template <class Op, int Count>
   HWY_INLINE void apply_unary() {
+    const Sources sources = sources_of(program_.words[at_ - 1]);
+    const Operand a = operand(sources.a, sources.local, spares_);
     const auto immediates = take<Count>();
-    T* a = top_;
-    for_used([&](std::size_t i) HWY_ATTR { Traits::number(a[i]) = Op::apply(Traits::number(a[i]), immediates.k); });
+    T* to = top_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR {
+      T value = a[i];
+      Traits::number(value) = Op::apply(Traits::number(value), immediates.k);
+      to[i] = value;
+    });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_binary() {
+    const Sources sources = sources_of(program_.words[at_ - 1]);
+    // The constant of a is the first, the value of b the top one.
+    const bool stack = sources.b == Source::Stack;
+    Operand b = stack ? operand(sources.b, 0, nullptr) : Operand{};
+    const Operand a = operand(sources.a, sources.local, spares_);
+    if (!stack) b = operand(sources.b, sources.local, spares_ + kBlock);
     const auto immediates = take<Count>();
-    const T* b = top_;
-    T* a = top_ -= kBlock;
+    T* to = top_ += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
       if constexpr (Op::kChoice == Choice::None) {
-        Traits::number(a[i]) = Op::apply(Traits::number(a[i]), Traits::number(b[i]), immediates.k);
+        T value = a[i];
+        Traits::number(value) = Op::apply(Traits::number(value), Traits::number(b[i]), immediates.k);
+        to[i] = value;
       } else {
-        a[i] = Op::apply(a[i], b[i], immediates.k);
+        to[i] = Op::apply(a[i], b[i], immediates.k);
       }
     });
+  }
+
+  // The numbers of an operand, wherever they lie.
+  struct Operand {
+    const T* first;
+    std::size_t step;
+    HWY_INLINE const T& operator[](std::size_t i) const { return first[i * step]; }
+  };
+  // Takes the operand from its source; `spare` is a slot for what is not in one.
+  HWY_INLINE Operand operand(Source source, std::uint32_t local, T* spare) {
+    if (source == Source::Stack) {
+      top_ -= kBlock;
+      return {top_ + kBlock, 1};
+    }
+    if (source == Source::Local) return {locals_ + local * kBlock, 1};
+    if (source == Source::Constant) {
+      *spare = Traits::lift(as_value(point_->x, take<1>().k[0]));
+      return {spare, 0};
+    }
+    const auto axis = static_cast<std::size_t>(source) - static_cast<std::size_t>(Source::X);
+    if constexpr (std::is_same_v<T, P>) {
+      return {&point_->x + axis, 3};
+    } else {
+      const auto& coordinate = axis == 0 ? &Vec3<P>::x : axis == 1 ? &Vec3<P>::y : &Vec3<P>::z;
+      for_used([&](std::size_t i) HWY_ATTR { spare[i] = Traits::lift(point_[i].*coordinate); });
+      return {spare, 1};
+    }
   }
   HWY_INLINE void copy(T* to, const T* from) {
     for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });
@@ -286,6 +335,7 @@ class Machine {
   Vec3<P>* points_;
   T* values_;
   T* locals_;
+  T* spares_;
   Vec3<P>* point_ = nullptr;  // top of the point stack
   T* top_ = nullptr;          // top of the value stack
   std::size_t at_ = 0;        // next word

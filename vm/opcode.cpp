@@ -5,7 +5,7 @@
 namespace fathom::vm {
 namespace {
 
-constexpr StackEffect effect_of(Opcode opcode, Form form) {
+constexpr StackEffect plain_effect(Opcode opcode, Form form) {
   switch (form) {
     case Form::Point:
       return {0, 0, 1, +1};
@@ -38,7 +38,7 @@ constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
    count_names(immediates),                                                                      \
    Choice::choice,                                                                               \
    cost,                                                                                         \
-   effect_of(Opcode::Name, Form::form),                                                          \
+   plain_effect(Opcode::Name, Form::form),                                                       \
    Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag || \
        Form::form == Form::Outline},
 #include "vm/opcodes.def"
@@ -69,12 +69,35 @@ std::uint32_t minimum_groups(Opcode opcode) {
   return opcode == Opcode::Polygon ? 3 : 1;  // two corners enclose nothing
 }
 
+int leading_immediates(std::uint32_t word) {
+  const Form form = kTable[word & 0xff].form;
+  if (form == Form::Shape) return operand_of(word) & kMoved ? 3 : 0;
+  if (form != Form::Unary && form != Form::Binary) return 0;
+  const Sources sources = sources_of(word);
+  return (sources.a == Source::Constant) + (sources.b == Source::Constant);
+}
+
+StackEffect effect_of(std::uint32_t word) {
+  const OpcodeInfo& row = kTable[word & 0xff];
+  if (row.form == Form::Shape && (operand_of(word) & kJoined)) return {1, 0, 1, 0};
+  if (row.form != Form::Unary && row.form != Form::Binary) return row.effect;
+  const Sources sources = sources_of(word);
+  const bool a = sources.a == Source::Stack, b = row.form == Form::Binary && sources.b == Source::Stack;
+  return {a + b, 1 - a - b, 0, 0};
+}
+
 std::size_t instruction_length(std::uint32_t word) {
-  return 1 + std::size_t{group_count(word)} * static_cast<std::size_t>(kTable[word & 0xff].immediates);
+  const std::size_t own = std::size_t{group_count(word)} * static_cast<std::size_t>(kTable[word & 0xff].immediates);
+  return 1 + static_cast<std::size_t>(leading_immediates(word)) + own;
 }
 
 std::uint64_t instruction_cost(std::uint32_t word) {
-  return std::uint64_t{group_count(word)} * static_cast<std::uint64_t>(kTable[word & 0xff].cost);
+  const OpcodeInfo& row = kTable[word & 0xff];
+  const std::uint32_t modes = row.form == Form::Shape ? operand_of(word) : 0;
+  const int moved = modes & kMoved ? info(Opcode::Translate).cost : 0;
+  const int joined = modes & kJoined ? info(Opcode::Min).cost : 0;
+  return std::uint64_t{group_count(word)} * static_cast<std::uint64_t>(row.cost) +
+         static_cast<std::uint64_t>(moved + joined);
 }
 
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }

@@ -40,6 +40,19 @@ constexpr int count_names(std::string_view names) {
   return count;
 }
 
+// What the operand of an instruction says beside its row, so that what is often done together is one instruction
+// (compiler/fuse.h). A Shape can be moved: three immediates x, y, z come before its own, and it stands there. It can
+// be joined: the result is the least of it and the top value, which it replaces.
+inline constexpr std::uint32_t kMoved = 1, kJoined = 2;
+// A Unary's or Binary's operand can come from elsewhere than the stack: a coordinate of the top point, an immediate
+// before the row's own, or a local.
+enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };
+struct Sources {
+  Source a = Source::Stack, b = Source::Stack;  // a Unary has a alone
+  std::uint32_t local = 0;                      // the same of both
+};
+inline constexpr std::uint32_t kMaxLocalSource = (1u << 18) - 1;
+
 struct OpcodeInfo {
   Opcode opcode;
   std::string_view mnemonic;
@@ -47,9 +60,9 @@ struct OpcodeInfo {
   std::string_view immediate_names;  // blank separated, ":i" marks an integer
   int immediates;                    // words after the opcode word; of an Outline, of one group
   Choice choice;
-  int cost;  // multiply-adds per point; of an Outline, of one group
-  StackEffect effect;
-  bool has_operand;  // the opcode word's high 24 bits mean something
+  int cost;            // multiply-adds per point; of an Outline, of one group
+  StackEffect effect;  // of the plain instruction
+  bool has_operand;    // the opcode word's high 24 bits are a number
 };
 
 const OpcodeInfo& info(Opcode opcode);
@@ -58,6 +71,9 @@ const OpcodeInfo& info(Opcode opcode);
 std::uint32_t group_count(std::uint32_t word);
 // The least count an Outline row allows; 1 of any other row.
 std::uint32_t minimum_groups(Opcode opcode);
+// Immediates before the row's own: where a Shape is moved to, a Source::Constant of a and of b.
+int leading_immediates(std::uint32_t word);
+StackEffect effect_of(std::uint32_t word);
 // Words of an instruction, the opcode word included, and its cost. The low byte must name an opcode.
 std::size_t instruction_length(std::uint32_t word);
 std::uint64_t instruction_cost(std::uint32_t word);
@@ -77,5 +93,13 @@ inline constexpr std::uint32_t opcode_word(Opcode opcode, std::uint32_t operand 
 }
 inline constexpr std::uint32_t operand_of(std::uint32_t word) { return word >> 8; }
 inline constexpr std::uint32_t kMaxOperand = (1u << 24) - 1;
+
+inline constexpr std::uint32_t operand_of(const Sources& sources) {
+  return static_cast<std::uint32_t>(sources.a) | static_cast<std::uint32_t>(sources.b) << 3 | sources.local << 6;
+}
+inline constexpr Sources sources_of(std::uint32_t word) {
+  const std::uint32_t operand = operand_of(word);
+  return {static_cast<Source>(operand & 7), static_cast<Source>(operand >> 3 & 7), operand >> 6};
+}
 
 }  // namespace fathom::vm

@@ -21,9 +21,10 @@ void Program::append(Opcode opcode, std::uint32_t operand, const std::vector<dou
   entry.offset = static_cast<std::uint32_t>(words.size());
   words.push_back(word);
   wide.push_back(0.0);
+  const auto leading = static_cast<std::size_t>(leading_immediates(word));
   for (std::size_t i = 0; i < immediates.size(); ++i) {
     const double value = immediates[i] + 0.0;  // -0 becomes 0
-    const bool integer = is_integer_immediate(row, static_cast<int>(i % group));
+    const bool integer = i >= leading && is_integer_immediate(row, static_cast<int>((i - leading) % group));
     words.push_back(integer ? static_cast<std::uint32_t>(value)
                             : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     wide.push_back(integer ? 0.0 : value);

@@ -7,6 +7,14 @@
 //     sphere 0.5          ; p p'   -> value |p'| - 0.5
 //     drop                ; p p'   -> p
 //
+// What an operand adds to a row (vm/opcode.h) makes one instruction of these three, and one of two with a min that
+// would follow:
+//
+//     sphere 0.5 at 0 1 0
+//     sphere 0.5 at 0 1 0 min
+//
+// and lets functions take operands from elsewhere than the stack, `_`: add _ x, multiply 2 _, min _ %3 (a local).
+//
 // An Outline row's instruction has as many groups of immediates as its operand says: polygon 3  0 0  1 0  0 1.
 //
 // Immediates are f32 in the words; `wide` holds the same constants unrounded for evaluation in double, so that a
@@ -36,7 +44,8 @@ struct Program {
   std::string source_name;   // of the debug entries' lines
   std::vector<DebugEntry> debug;
 
-  // Appends an instruction; of an Outline, `immediates` holds the groups in order and makes the operand. Floats are
+  // Appends an instruction; of an Outline, `immediates` holds the groups in order and makes the operand. Leading
+  // immediates come first. Floats are
   // rounded from `immediates`, integers must be representable.
   void append(Opcode opcode, std::uint32_t operand, const std::vector<double>& immediates, DebugEntry entry);
 };

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 namespace fathom::vm {
 namespace {
@@ -19,40 +20,61 @@ struct State {
 std::optional<std::string> check_immediates(const Program& program, std::size_t at, const OpcodeInfo& row,
                                             const Limits& limits) {
   const std::size_t count = instruction_length(program.words[at]) - 1;
+  const auto leading = static_cast<std::size_t>(leading_immediates(program.words[at]));
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t word = at + 1 + n;
-    const int i = static_cast<int>(n) % row.immediates;
+    const int i = n < leading ? -1 : static_cast<int>(n - leading) % row.immediates;
+    const std::string_view name = n >= leading              ? immediate_name(row, i)
+                                  : row.form == Form::Shape ? std::string_view("xyz").substr(n, 1)
+                                                            : "constant";
     const std::uint32_t bits = program.words[word];
-    if (is_integer_immediate(row, i)) {
+    if (n >= leading && is_integer_immediate(row, i)) {
       if (bits == 0 || bits > limits.loop_count) {
-        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, immediate_name(row, i), bits,
-                           limits.loop_count);
+        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, name, bits, limits.loop_count);
       }
     } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
-      return fmt::format("{}: {} is not finite", row.mnemonic, immediate_name(row, i));
+      return fmt::format("{}: {} is not finite", row.mnemonic, name);
     } else if (static_cast<float>(program.wide[word]) != std::bit_cast<float>(bits)) {
-      return fmt::format("{}: {} is {} in the code but {} in the wide table", row.mnemonic, immediate_name(row, i),
+      return fmt::format("{}: {} is {} in the code but {} in the wide table", row.mnemonic, name,
                          std::bit_cast<float>(bits), program.wide[word]);
     }
   }
   return std::nullopt;
 }
 
-std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
-  const std::uint32_t operand = operand_of(word);
-  if (!row.has_operand && operand != 0)
-    return fmt::format("{} has no operand, but {} is given", row.mnemonic, operand);
-  if (row.opcode != Opcode::Tee && row.opcode != Opcode::Load) return std::nullopt;
-  if (operand >= state.written.size()) {
-    return fmt::format("{} {}: the program declares {} locals", row.mnemonic, operand, state.written.size());
+std::optional<std::string> check_local(const OpcodeInfo& row, std::uint32_t local, State& state) {
+  if (local >= state.written.size()) {
+    return fmt::format("{} {}: the program declares {} locals", row.mnemonic, local, state.written.size());
   }
-  if (row.opcode == Opcode::Tee) state.written[operand] = true;
-  if (!state.written[operand]) return fmt::format("load {}: the local is read before it is written", operand);
+  if (row.opcode == Opcode::Tee) state.written[local] = true;
+  if (!state.written[local]) {
+    return fmt::format("{} {}: the local is read before it is written", row.mnemonic, local);
+  }
   return std::nullopt;
 }
 
-std::optional<std::string> check_stacks(const OpcodeInfo& row, const Limits& limits, State& state) {
-  const StackEffect& effect = row.effect;
+std::optional<std::string> check_sources(const OpcodeInfo& row, std::uint32_t word, State& state) {
+  const Sources sources = sources_of(word);
+  const bool known = sources.a <= Source::Local && sources.b <= Source::Local;
+  const bool local = sources.a == Source::Local || sources.b == Source::Local;
+  if (!known || (row.form == Form::Unary && sources.b != Source::Stack) || (!local && sources.local != 0)) {
+    return fmt::format("{} has no operand {}", row.mnemonic, operand_of(word));
+  }
+  return local ? check_local(row, sources.local, state) : std::nullopt;
+}
+
+std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
+  const std::uint32_t operand = operand_of(word);
+  if (row.form == Form::Unary || row.form == Form::Binary) return check_sources(row, word, state);
+  const std::uint32_t most = row.has_operand ? kMaxOperand : row.form == Form::Shape ? kMoved | kJoined : 0;
+  if (operand > most) return fmt::format("{} has no operand {}", row.mnemonic, operand);
+  if (row.opcode == Opcode::Tee || row.opcode == Opcode::Load) return check_local(row, operand, state);
+  return std::nullopt;
+}
+
+std::optional<std::string> check_stacks(const OpcodeInfo& row, std::uint32_t word, const Limits& limits,
+                                        State& state) {
+  const StackEffect effect = effect_of(word);
   if (state.values < effect.values_needed) {
     return fmt::format("{} needs {} values, the stack holds {}", row.mnemonic, effect.values_needed, state.values);
   }
@@ -94,7 +116,7 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
     }
     if (size - at < instruction_length(word)) return fail(fmt::format("{} is cut off", row->mnemonic));
     if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
-    if (auto reason = check_stacks(*row, limits, state)) return fail(std::move(*reason));
+    if (auto reason = check_stacks(*row, word, limits, state)) return fail(std::move(*reason));
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
     at += instruction_length(word);
     ++result.instructions_;

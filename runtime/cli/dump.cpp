@@ -39,7 +39,8 @@ struct DumpRequest {
 // What the flags do not say follows from those that are there.
 void fill_in(DumpRequest& request) {
   const bool bytecode = request.stats || request.program >= 0;
-  const bool graph = request.after || request.diff || request.format == kDot || request.format == kMermaid;
+  const bool graph = (request.after && *request.after != compiler::pass_names().back()) || request.diff ||
+                     request.format == kDot || request.format == kMermaid;
   if (request.stage < 0) request.stage = graph && !bytecode ? kGraph : kBytecode;
 }
 
@@ -134,6 +135,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (request.stage == kSyntax) streams.out << syntax;  // of a scene with errors in it, too
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
+  if (request.diff && !request.after) diff.add_fused(scene.distance);
   if (request.stage == kGraph) streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
   if (request.stage == kBytecode) streams.out << print_bytecode(scene, request);
   return kDone;

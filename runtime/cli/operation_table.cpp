@@ -59,12 +59,12 @@ double percent(std::size_t cost, const vm::VerifiedProgram& program) {
 }  // namespace
 
 std::string operation_table(const vm::VerifiedProgram& program) {
-  std::string table = "operation             count  cost each      cost   share\n";
+  std::string table = "operation             count      cost   share\n";
   for (const OperationCount& row : count_operations(program.program())) {
-    table += fmt::format("{:20}{:>7}{:>11}{:>10}{:>7.1f}%\n", row.operation->mnemonic, row.count, row.operation->cost,
-                         row.cost, percent(row.cost, program));
+    table += fmt::format("{:20}{:>7}{:>10}{:>7.1f}%\n", row.operation->mnemonic, row.count, row.cost,
+                         percent(row.cost, program));
   }
-  table += fmt::format("{:20}{:>7}{:>11}{:>10}\n", "total", program.instructions(), "", program.cost());
+  table += fmt::format("{:20}{:>7}{:>10}\n", "total", program.instructions(), program.cost());
   return table;
 }
 

@@ -10,18 +10,45 @@ using Json = nlohmann::ordered_json;
 // A file's name may be no UTF-8; JSON must be.
 std::string print(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+Json immediate_json(const vm::Program& program, const vm::OpcodeInfo& row, std::size_t word, int index) {
+  return vm::is_integer_immediate(row, index) ? Json(program.words[word]) : Json(program.wide[word]);
+}
+
+// By name; of an outline a list of the groups.
 Json immediates_json(const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
-  Json immediates = Json::object();
-  for (int i = 0; i < row.immediates; ++i) {
-    const std::size_t word = at + 1 + static_cast<std::size_t>(i);
-    Json& value = immediates[std::string(vm::immediate_name(row, i))];
-    if (vm::is_integer_immediate(row, i)) {
-      value = program.words[word];
-    } else {
-      value = program.wide[word];
+  const std::uint32_t word = program.words[at];
+  Json groups = Json::array();
+  std::size_t next = at + 1 + static_cast<std::size_t>(vm::leading_immediates(word));
+  for (std::uint32_t group = 0; group < vm::group_count(word); ++group) {
+    Json& immediates = groups.emplace_back(Json::object());
+    for (int i = 0; i < row.immediates; ++i) {
+      immediates[std::string(vm::immediate_name(row, i))] = immediate_json(program, row, next++, i);
     }
   }
-  return immediates;
+  return row.form == vm::Form::Outline ? groups : groups[0];
+}
+
+// What the operand says beside the row: "at" and "min" of a shape, "operands" of a function.
+void add_modes(Json& line, const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
+  const std::uint32_t word = program.words[at];
+  const std::uint32_t operand = vm::operand_of(word);
+  if (row.has_operand) line["operand"] = operand;
+  if (row.has_operand || operand == 0) return;
+  const double* leading = program.wide.data() + at + 1;
+  if (row.form == vm::Form::Shape) {
+    if (operand & vm::kMoved) line["at"] = {leading[0], leading[1], leading[2]};
+    if (operand & vm::kJoined) line["min"] = true;
+    return;
+  }
+  const vm::Sources sources = vm::sources_of(word);
+  const auto source = [&](vm::Source from) -> Json {
+    if (from == vm::Source::Constant) return *leading++;
+    if (from == vm::Source::Local) return {{"local", sources.local}};
+    constexpr const char* kNames[] = {"stack", "x", "y", "z"};
+    return kNames[static_cast<int>(from)];
+  };
+  line["operands"] = Json::array({source(sources.a)});
+  if (row.form == vm::Form::Binary) line["operands"].push_back(source(sources.b));
 }
 
 Json source_json(const vm::DebugEntry& entry) {
@@ -49,19 +76,20 @@ std::string program_json(const vm::VerifiedProgram& verified, std::string_view w
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
     const vm::OpcodeInfo& row = *vm::find_opcode(program.words[at] & 0xff);
     Json line = {{"offset", at}, {"op", row.mnemonic}};
-    if (row.has_operand) line["operand"] = vm::operand_of(program.words[at]);
+    add_modes(line, program, at, row);
     line["immediates"] = immediates_json(program, at, row);
-    line["values"] = {values, values + row.effect.values_change};
-    line["points"] = {points, points + row.effect.points_change};
-    line["cost"] = row.cost;
+    const vm::StackEffect effect = vm::effect_of(program.words[at]);
+    line["values"] = {values, values + effect.values_change};
+    line["points"] = {points, points + effect.points_change};
+    line["cost"] = vm::instruction_cost(program.words[at]);
     if (i < program.debug.size()) {
       line["source"] = source_json(program.debug[i]);
       line["symbol"] = program.debug[i].symbol;
     }
     out += (i == 0 ? "\n" : ",\n") + print(line);
-    values += row.effect.values_change;
-    points += row.effect.points_change;
-    at += 1 + static_cast<std::size_t>(row.immediates);
+    values += effect.values_change;
+    points += effect.points_change;
+    at += vm::instruction_length(program.words[at]);
   }
   return out + "\n]}\n";
 }

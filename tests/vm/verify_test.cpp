@@ -120,9 +120,35 @@ TEST_CASE("locals are declared and written before they are read", "[verify]") {
 
 TEST_CASE("only some instructions have an operand", "[verify]") {
   Program program = program_of({kSphere});
-  program.words[0] |= 5u << 8;
-  refused(program, 0, "sphere has no operand, but 5 is given");
+  program.words[0] |= 4u << 8;
+  refused(program, 0, "sphere has no operand 4");
   CHECK(passes(program_of({kSphere, {Opcode::Tag, {}, vm::kMaxOperand}})));
+}
+
+TEST_CASE("operands of shapes and functions are ones they have", "[verify]") {
+  const auto modes = [](std::uint32_t operand) { return Instruction{Opcode::Sphere, {1, 2, 3, 0.5}, operand}; };
+  CHECK(passes(program_of({modes(vm::kMoved)})));
+  CHECK(passes(program_of({kSphere, modes(vm::kMoved | vm::kJoined)})));
+  refused(program_of({modes(vm::kMoved | vm::kJoined)}), 0, "sphere needs 1 values, the stack holds 0");
+  Program moved = program_of({modes(vm::kMoved)});
+  moved.words[3] = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+  refused(moved, 0, "sphere: z is not finite");
+
+  using vm::Source;
+  const auto of = [](Opcode opcode, vm::Sources sources, std::vector<double> immediates = {}) {
+    return Instruction{opcode, std::move(immediates), vm::operand_of(sources)};
+  };
+  CHECK(passes(program_of({of(Opcode::Add, {Source::X, Source::Constant}, {2})})));
+  CHECK(passes(program_of({kSphere, of(Opcode::Add, {Source::Stack, Source::Z})})));
+  CHECK(passes(program_of({of(Opcode::Sin, {Source::Y})})));
+  refused(program_of({of(Opcode::Add, {Source::Stack, Source::Z})}), 0, "add needs 1 values");
+  refused(program_of({of(Opcode::Sin, {Source::X, Source::Y})}), 0, "sin has no operand");
+  refused(program_of({of(Opcode::Sin, {static_cast<Source>(6)})}), 0, "sin has no operand");
+  refused(program_of({of(Opcode::Sin, {Source::X, Source::Stack, 1})}), 0, "sin has no operand");
+  const Instruction tee{Opcode::Tee, {}, 0}, local = of(Opcode::Add, {Source::Stack, Source::Local, 0});
+  CHECK(passes(program_of({kSphere, tee, local}, 1)));
+  refused(program_of({kSphere, local, tee}, 1), 2, "add 0: the local is read before it is written");
+  refused(program_of({kSphere, local}), 2, "the program declares 0 locals");
 }
 
 TEST_CASE("immediates are finite, in float and in double", "[verify]") {
@@ -191,9 +217,11 @@ TEST_CASE("random words are refused or run: nothing in between", "[verify]") {
     for (int i = 0; i < 6; ++i) {
       state = state * 6364136223846793005u + 1442695040888963407u;
       const auto opcode = static_cast<std::uint32_t>(state >> 33) % (vm::kOpcodeCount + 1);
-      const std::uint32_t operand = static_cast<std::uint32_t>(state >> 60) == 0 ? 1u : 0u;
-      program.words.push_back(opcode | operand << 8);
+      const std::uint32_t operand = static_cast<std::uint32_t>(state >> 60) < 4 ? (state >> 50) % 64 : 0u;
+      const std::uint32_t word = opcode | operand << 8;
+      program.words.push_back(word);
       const vm::OpcodeInfo* row = vm::find_opcode(opcode);
+      for (int k = 0; row && k < vm::leading_immediates(word); ++k) program.words.push_back(0);
       for (int k = 0; row && k < row->immediates; ++k) {
         program.words.push_back(vm::is_integer_immediate(*row, k) ? 3 : 0);
       }

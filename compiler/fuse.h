@@ -1,0 +1,13 @@
+// Fuses instructions that come together into one (vm/opcode.h, kMoved, kJoined, Source): a shape with the translate
+// and the drop around it and the min after it; a function with operands that are a coordinate, a constant or a local.
+// The values are the same, bit for bit, with fewer steps of the machine. Tested by: tests/compiler/fuse_test.cpp
+#pragma once
+
+#include "vm/program.h"
+
+namespace fathom::compiler {
+
+// `program` keeps the verifier's rules, as that of lower() does.
+vm::Program fuse(const vm::Program& program);
+
+}  // namespace fathom::compiler
