@@ -380,11 +380,8 @@ NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId chi
   // A program grows by the copies; these are enough to test with.
   const compiler::NodeSpec& row = compiler::spec(kind);
   if (kind == Kind::Repetition) {
-    std::vector<double> all = params;
-    const std::vector<compiler::Knowledge> known = {maker.known(child)};
-    const std::vector<double> derived = row.derive(params, known);
-    all.insert(all.end(), derived.begin(), derived.end());
-    if (row.code(all).points.size() > 16) return child;
+    const compiler::Knowledge known[] = {maker.known(child)};
+    if (row.code(row.with_derived(params, known)).points.size() > 16) return child;
   }
   return maker.make(kind, params, only);
 }
