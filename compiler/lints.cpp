@@ -25,6 +25,22 @@ constexpr double kSteep = 20;
 
 bool is_blend(Kind kind) { return kind >= Kind::SmoothUnion && kind <= Kind::StairsSubtraction; }
 
+// Alterations that move, turn or repeat what they hold, or only name it: nothing stays nothing, thin stays thin.
+bool rearranges(Kind kind) {
+  switch (kind) {
+    case Kind::Paint:
+    case Kind::Scaled:
+    case Kind::Transform:
+    case Kind::Mirror:
+    case Kind::Repetition:
+    case Kind::PolarRepetition:
+    case Kind::Twist:
+      return true;
+    default:
+      return false;
+  }
+}
+
 // Extents along the axes on which the box ends; an outline has none along z.
 double least_extent(const Box& box) {
   double least = kInfinity;
@@ -87,17 +103,8 @@ class Linter {
         case Kind::Subtraction:
           vanishes_[id] = gone(children[0]) || check_cuts(id, children);
           break;
-        case Kind::Paint:
-        case Kind::Scaled:
-        case Kind::Transform:
-        case Kind::Mirror:
-        case Kind::Repetition:
-        case Kind::PolarRepetition:
-        case Kind::Twist:
-        case Kind::Taper:
-          vanishes_[id] = gone(children[0]);
-          break;
         default:
+          vanishes_[id] = (rearranges(kind(id)) || kind(id) == Kind::Taper) && gone(children[0]);
           break;
       }
     }
@@ -259,17 +266,10 @@ class Linter {
       case Kind::Intersection:
       case Kind::Subtraction:
       case Kind::Xor:
-      case Kind::Paint:
-      case Kind::Scaled:
-      case Kind::Transform:
-      case Kind::Mirror:
-      case Kind::Repetition:
-      case Kind::PolarRepetition:
-      case Kind::Twist:
       case Kind::Bend:
         return true;
       default:
-        return false;
+        return rearranges(kind);
     }
   }
 

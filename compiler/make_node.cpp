@@ -7,10 +7,7 @@ NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> childre
   if (row.build) return row.build(*this, params, children, origin);
   if (row.expand) return row.expand(graph_, params, origin);
   if (!row.derive) return graph_.add(kind, params, children, origin);
-  std::vector<double> all(params.begin(), params.end());
-  const std::vector<double> derived = row.derive(params, known_of(children));
-  all.insert(all.end(), derived.begin(), derived.end());
-  return graph_.add(kind, all, children, origin);
+  return graph_.add(kind, row.with_derived(params, known_of(children)), children, origin);
 }
 
 Complaint NodeMaker::complaint(Kind kind, Params params, std::span<const NodeId> children) {

@@ -3,7 +3,7 @@
 // T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is
 // that of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after
 // Inigo Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign failed; derivations
-// beside. Tested by: tests/compiler/shapes_test.cpp, tests/vm/evaluate_test.cpp
+// beside. Tested by: tests/compiler/shapes_test.cpp, tests/vm/operators_test.cpp
 #if defined(FATHOM_VM_SEMANTICS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SEMANTICS_INL
 #undef FATHOM_VM_SEMANTICS_INL

@@ -8,7 +8,7 @@
 // Names are x, y and z where there is a point, the constants pi, e and tau, the scene's parameters, and definitions:
 // a formula may be a list of lines, each but the last `name = expression`. Parameters become constants, operations on
 // constants are done at once, and whole powers become squares and products. Angles are in radians.
-// Tested by: tests/compiler/formula_test.cpp, tests/golden/diagnostics (E04xx)
+// Tested by: tests/compiler/formula_test.cpp, formula_errors_test.cpp, tests/golden/diagnostics (E04xx)
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // One line of a formula: the parser behind read_formula().
-// Tested by: tests/compiler/formula_test.cpp, tests/golden/diagnostics (E04xx)
+// Tested by: tests/compiler/formula_test.cpp, formula_errors_test.cpp, tests/golden/diagnostics (E04xx)
 #pragma once
 
 #include <functional>

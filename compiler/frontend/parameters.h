@@ -1,5 +1,5 @@
 // The property `params` of a scene: its parameters, with the values that the caller gives them in place of theirs.
-// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E0407, E0408, E05xx, W0404)
+// Tested by: tests/compiler/scene_numbers_test.cpp, tests/golden/diagnostics (E0407, E0408, E05xx, W0404)
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // What the names of a scene's parameters stand for.
-// Tested by: tests/compiler/elaborate_test.cpp
+// Tested by: tests/compiler/scene_numbers_test.cpp
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
 // Formulas that stand where a scene file has numbers, and what they come to.
-// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E0101, E0104, E0301)
+// Tested by: tests/compiler/scene_numbers_test.cpp, tests/golden/diagnostics (E0101, E0104, E0301)
 #pragma once
 
 #include <optional>

@@ -119,6 +119,9 @@ struct NodeSpec {
   NodeId (*expand)(Graph& graph, Params params, const Origin& origin) = nullptr;
 
   std::optional<Between> between = std::nullopt;
+
+  // All numbers of a node over these children, as they stand in the graph: the parameters, then what is derived.
+  std::vector<double> with_derived(Params given, std::span<const Knowledge> children) const;
 };
 
 const std::vector<NodeSpec>& node_table();

@@ -46,7 +46,7 @@ std::vector<double> ellipse_immediates(Params p);
 Code ring_code(Params p);
 Code pie_code(Params p);
 
-Box circle_bound(Params p);
+Box square_bound(Params p);      // as far as the first parameter to every side
 Box half_sizes_bound(Params p);  // of the first two parameters
 Box segment_bound(Params p);
 Box polygon_bound(Params p);
@@ -65,8 +65,6 @@ Box lens_bound(Params p);
 Box moon_bound(Params p);
 Box egg_bound(Params p);
 Box heart_bound(Params p);
-Box cross_bound(Params p);
-Box rounded_x_bound(Params p);
 
 double segment_magnitude(Params p);
 double polygon_magnitude(Params p);

@@ -109,10 +109,7 @@ Complaint check_repetition_child(Params p, std::span<const Knowledge> children) 
     return fmt::format("the node has no end along {}, where it is repeated; cut it with an intersection first",
                        "xyz"[i]);
   }
-  std::vector<double> all(p.begin(), p.end());
-  const std::vector<double> derived = derive_repetition(p, children);
-  all.insert(all.end(), derived.begin(), derived.end());
-  const Repeated r = repeated(all);
+  const Repeated r = repeated(spec(Kind::Repetition).with_derived(p, children));
   const double copies = r.axes[0].copies() * r.axes[1].copies() * r.axes[2].copies();
   if (copies <= kMostCopies) return std::nullopt;
   return fmt::format(

@@ -5,23 +5,15 @@
 #include <cmath>
 
 #include "compiler/affine.h"
-#include "compiler/compile.h"
 #include "runtime/field.h"
+#include "tests/support/compiled.h"
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
 namespace {
 
 using namespace fathom;
-
-compiler::CompiledScene scene_of(const std::string& objects) {
-  compiler::Diagnostics diagnostics;
-  const compiler::Source source("test.json", R"({"version": 1, "objects": [)" + objects + "]}");
-  auto scene = compiler::compile(source, diagnostics);
-  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
-  REQUIRE(scene);
-  return *std::move(scene);
-}
+using fathom::tests::compiled_objects;
 
 // Largest |float - double| over d_f at random points near the surface within `size` of the origin.
 double largest_error(const compiler::CompiledScene& scene, double size) {
@@ -53,30 +45,33 @@ TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
   for (const char* r : {"1", "100", "10000", "1000000"}) {
     const std::string s(r);
     CAPTURE(s);
-    CHECK(largest_error(scene_of(R"({"type": "sphere", "radius": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"),
-                        3) <= 1);
-    CHECK(largest_error(scene_of(R"({"type": "union", "translate": [-)" + s + R"(, 0, 0], "of": [
+    CHECK(largest_error(
+              compiled_objects(R"({"type": "sphere", "radius": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"),
+              3) <= 1);
+    CHECK(largest_error(compiled_objects(R"({"type": "union", "translate": [-)" + s + R"(, 0, 0], "of": [
         {"type": "box", "half_size": [3, 1, 3], "translate": [)" +
-                                 s + R"(, -1, 0]}, {"type": "sphere", "radius": 1}]})"),
+                                         s + R"(, -1, 0]}, {"type": "sphere", "radius": 1}]})"),
                         2) <= 1);
-    CHECK(largest_error(scene_of(R"({"type": "round", "radius": )" + s + R"(, "of": {"type": "sphere", "radius": 1,
-        "translate": [0, -)" + s +
-                                 R"(, 0]}})"),
+    CHECK(largest_error(compiled_objects(R"({"type": "round", "radius": )" + s +
+                                         R"(, "of": {"type": "sphere", "radius": 1,
+        "translate": [0, -)" + s + R"(, 0]}})"),
                         2) <= 1);
-    CHECK(largest_error(scene_of(R"({"type": "smooth_union", "k": )" + s + R"(, "of": [
+    CHECK(largest_error(compiled_objects(R"({"type": "smooth_union", "k": )" + s + R"(, "of": [
         {"type": "plane", "normal": [0, 1, 0]}, {"type": "plane", "normal": [0.1, 1, 0]}]})"),
                         2) <= 1);
-    CHECK(largest_error(
-              scene_of(R"({"type": "sphere", "radius": 1, "scale": )" + s + R"(, "translate": [0, -)" + s + ", 0]}"),
-              2) <= 1);
+    CHECK(largest_error(compiled_objects(R"({"type": "sphere", "radius": 1, "scale": )" + s +
+                                         R"(, "translate": [0, -)" + s + ", 0]}"),
+                        2) <= 1);
   }
 }
 
 // Once, a lamp far away would have made every distance look uncertain.
 TEST_CASE("what is far away costs nothing here", "[bounds]") {
-  CHECK(scene_of(R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
+  CHECK(compiled_objects(
+            R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
             .magnitude <= 2);
-  CHECK(scene_of(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").magnitude <= 0.1);
+  CHECK(compiled_objects(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").magnitude <=
+        0.1);
 }
 
 // Once, the least stretch was computed from squares and lost its digits beside a large one.

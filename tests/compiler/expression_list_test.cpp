@@ -3,8 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "compiler/compile.h"
-#include "compiler/frontend/write_json.h"
+#include "tests/support/compiled.h"
 #include "tests/support/golden.h"
 #include "tests/support/plain_list.h"
 #include "vm/evaluate.h"
@@ -13,23 +12,11 @@ namespace {
 
 using namespace fathom;
 using namespace fathom::compiler;
+using fathom::tests::compiled;
 using fathom::tests::plain_list;
 
 std::string model(const std::string& name) {
   return tests::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data" / name);
-}
-
-CompiledScene compile_text(const std::string& text, std::string* written = nullptr) {
-  const Source source("model", text);
-  Diagnostics diagnostics;
-  CompileOptions options;
-  options.on_syntax = [&](const ReadScene& scene) {
-    if (written) *written = write_json(scene.file);
-  };
-  auto scene = compile(source, diagnostics, options);
-  CAPTURE(diagnostics.print(source, ErrorFormat::Short));
-  REQUIRE(scene);
-  return std::move(*scene);
 }
 
 std::vector<glm::dvec3> random_points(std::size_t count, double depth) {
@@ -43,8 +30,8 @@ std::vector<glm::dvec3> random_points(std::size_t count, double depth) {
   return points;
 }
 
-// The largest difference between the compiled scene and the list itself, which is evaluated a thousand points at a time
-// to keep its lines' values in memory.
+// The largest difference between the compiled scene and the list itself, which is evaluated a thousand points at a
+// time to keep its lines' values in memory.
 double farthest(const CompiledScene& scene, const std::string& text, const std::vector<glm::dvec3>& points) {
   constexpr std::size_t kBlock = 1000;
   vm::Workspace workspace;
@@ -65,8 +52,8 @@ double farthest(const CompiledScene& scene, const std::string& text, const std::
 }  // namespace
 
 TEST_CASE("every operation of an expression list means what the format says", "[import]") {
-  const char* const unary[] = {"neg", "abs", "square", "floor", "ceil", "round", "sin", "cos", "tan",
-                               "asin", "acos", "atan", "exp", "not", "sqrt", "ln"};
+  const char* const unary[] = {"neg", "abs",  "square", "floor", "ceil", "round", "sin",  "cos",
+                               "tan", "asin", "acos",   "atan",  "exp",  "not",   "sqrt", "ln"};
   const char* const binary[] = {"add", "sub", "mul", "div", "min", "max", "atan2", "compare", "mod", "and", "or"};
   // Far above the box's depth, which would cut what lies deeper.
   const std::string above = "high const 1000\nresult add r high\n";
@@ -74,7 +61,7 @@ TEST_CASE("every operation of an expression list means what the format says", "[
   for (const double x : {-0.5, 0.0, 0.25, 0.5, 1.0}) points.push_back({x, 0.5, 0});
   const auto check = [&](const std::string& text) {
     CAPTURE(text);
-    CHECK(farthest(compile_text(text), text, points) < 1e-9);
+    CHECK(farthest(compiled(text), text, points) < 1e-9);
   };
   for (const std::string op : unary) {
     const bool positive = op == "sqrt" || op == "ln";
@@ -92,8 +79,9 @@ TEST_CASE("every operation of an expression list means what the format says", "[
 
 TEST_CASE("names that formulas cannot have, blanks, comments and line ends", "[import]") {
   const std::string text =
-      "# names of formulas\r\n\n x \tvar-y  \r\nline2 const 2\ne var-x\n10 mul e line2\na-b add x 10\n#\npi square a-b";
-  const CompiledScene scene = compile_text(text);
+      "# names of formulas\r\n\n x \tvar-y  \r\nline2 const 2\ne var-x\n10 mul e line2\na-b add x 10\n#\npi square "
+      "a-b";
+  const CompiledScene scene = compiled(text);
   CHECK(farthest(scene, text, random_points(100, 0)) < 1e-12);
 }
 
@@ -111,7 +99,7 @@ TEST_CASE("what is an expression list", "[import]") {
 
 TEST_CASE("prospero: small, proved, and the same as line by line", "[import]") {
   const std::string text = model("prospero.vm");
-  const CompiledScene scene = compile_text(text);
+  const CompiledScene scene = compiled(text);
   CHECK(scene.node_count <= 7591);
   CHECK(scene.certified);
   CHECK(scene.lipschitz < 20);
@@ -120,7 +108,7 @@ TEST_CASE("prospero: small, proved, and the same as line by line", "[import]") {
 
 TEST_CASE("prospero at a hundred thousand points", "[import][heavy]") {
   const std::string text = model("prospero.vm");
-  CHECK(farthest(compile_text(text), text, random_points(100'000, 0)) < 1e-13);
+  CHECK(farthest(compiled(text), text, random_points(100'000, 0)) < 1e-13);
 }
 
 TEST_CASE("the box of a drawing never shows at z = 0", "[import]") {
@@ -128,20 +116,21 @@ TEST_CASE("the box of a drawing never shows at z = 0", "[import]") {
     const std::string text = model(name);
     std::vector<glm::dvec3> points;
     for (int i = 0; i <= 40; ++i) {
-      for (const double edge : {-1.0, 1.0}) points.insert(points.end(), {{edge, i / 20.0 - 1, 0}, {i / 20.0 - 1, edge, 0}});
+      for (const double edge : {-1.0, 1.0})
+        points.insert(points.end(), {{edge, i / 20.0 - 1, 0}, {i / 20.0 - 1, edge, 0}});
     }
-    CHECK(farthest(compile_text(text), text, points) < 1e-13);
+    CHECK(farthest(compiled(text), text, points) < 1e-13);
   }
   // As deep as a formula of its slope can be at 1 from its zero.
   const std::string slope = "x var-x\none const 1\nr sub x one\n";
-  CHECK(farthest(compile_text(slope), slope, {{0, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}}) < 1e-9);
+  CHECK(farthest(compiled(slope), slope, {{0, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}}) < 1e-9);
 }
 
 TEST_CASE("an expression list written as a scene is the same scene", "[import]") {
   for (const char* name : {"prospero.vm", "hi.vm"}) {
     std::string written, again;
-    const CompiledScene direct = compile_text(model(name), &written);
-    const CompiledScene imported = compile_text(written, &again);
+    const CompiledScene direct = compiled(model(name), written);
+    const CompiledScene imported = compiled(written, again);
     CHECK(written == again);
     CHECK(imported.summary == direct.summary);
     vm::Workspace workspace;

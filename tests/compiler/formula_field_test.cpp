@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "compiler/compile.h"
 #include "compiler/frontend/read_scene.h"
+#include "tests/support/compiled.h"
 #include "tests/support/judge.h"
 #include "tests/support/random_scene.h"
 
@@ -22,15 +22,11 @@ using glm::dvec3;
 
 // The scene of one object as it is read, before any pass.
 Scene scene_of(const std::string& object) {
-  compiler::Diagnostics diagnostics;
-  const compiler::Source source("test.json", R"({"version": 1, "objects": [)" + object + "]}");
   compiler::CompileOptions options;
   options.stop_after = "graph";
   Scene graph;
   options.on_pass = [&](std::string_view, const Scene& scene) { graph = scene; };
-  const auto compiled = compiler::compile(source, diagnostics, options);
-  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
-  REQUIRE(compiled);
+  tests::compiled_objects(object, options);
   return graph;
 }
 

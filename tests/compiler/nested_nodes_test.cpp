@@ -10,8 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "compiler/compile.h"
-#include "compiler/frontend/write_json.h"
+#include "tests/support/compiled.h"
 #include "tests/support/golden.h"
 #include "vm/evaluate.h"
 
@@ -19,24 +18,12 @@ namespace {
 
 using namespace fathom;
 using namespace fathom::compiler;
-using nlohmann::json;
+using fathom::tests::compiled;
 using glm::dvec3;
+using nlohmann::json;
 
 std::string molecule() {
   return tests::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data/molecule.json");
-}
-
-CompiledScene compile_text(const std::string& text, std::string* written = nullptr) {
-  const Source source("model", text);
-  Diagnostics diagnostics;
-  CompileOptions options;
-  options.on_syntax = [&](const ReadScene& scene) {
-    if (written) *written = write_json(scene.file);
-  };
-  auto scene = compile(source, diagnostics, options);
-  CAPTURE(diagnostics.print(source, ErrorFormat::Short));
-  REQUIRE(scene);
-  return std::move(*scene);
 }
 
 // The format's meaning, after the program it comes from: points go through matrices from the leaf to the root.
@@ -68,7 +55,8 @@ double plain(const json& node, dvec3 p, std::vector<std::array<double, 12>>& pat
     if (type == "box") {
       const double r = node.at("round_x");
       dvec3 q;
-      for (int i = 0; i < 3; ++i) q[i] = std::abs(p[i]) - double(node.at("sides")[static_cast<std::size_t>(i)]) / 2 + r;
+      for (int i = 0; i < 3; ++i)
+        q[i] = std::abs(p[i]) - double(node.at("sides")[static_cast<std::size_t>(i)]) / 2 + r;
       d = glm::length(glm::max(q, dvec3(0))) + std::min(std::max({q.x, q.y, q.z}), 0.0) - r;
     }
   } else {
@@ -84,7 +72,7 @@ double plain(const json& node, dvec3 p, std::vector<std::array<double, 12>>& pat
 }
 
 double farthest(const std::string& text, int count) {
-  const CompiledScene scene = compile_text(text);
+  const CompiledScene scene = compiled(text);
   const json model = json::parse(text);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> side(-1.5, 1.5);
@@ -105,7 +93,8 @@ const char* const kMirror = "[1, 0, 0, 0.3, 0, 0, 1, 0.1, 0, 1, 0, 0]";
 
 std::string primitive(const std::string& shape, const std::string& matrix, const std::string& color = "[1, 0, 0]") {
   return R"({"aabb_min": [-1, -1, -1], "aabb_max": [1, 1, 1], "nodeType": "primitive", "primitiveType": )" + shape +
-         R"(, "matrix": )" + matrix + R"(, "color": )" + color + (shape.find("round_x") == std::string::npos ? R"(, "round_x": 0, "round_y": 0})" : "}");
+         R"(, "matrix": )" + matrix + R"(, "color": )" + color +
+         (shape.find("round_x") == std::string::npos ? R"(, "round_x": 0, "round_y": 0})" : "}");
 }
 
 std::string join(const std::string& mode, double k, const std::string& matrix, const std::string& left,
@@ -119,7 +108,8 @@ const char* const kSphere = R"("sphere", "radius": 0.5)";
 const char* const kCylinder = R"("cylinder", "radius": 0.3, "height": 0.9)";
 const char* const kCone = R"("cone", "radius": 0.4, "height": 0.8)";
 const char* const kBox = R"("box", "sides": [0.6, 0.8, 1], "bevel": [0, 0, 0, 0])";
-const char* const kRoundBox = R"("box", "sides": [0.6, 0.8, 1], "bevel": [0.1, 0.1, 0.1, 0.1], "round_x": 0.1, "round_y": 0.1)";
+const char* const kRoundBox =
+    R"("box", "sides": [0.6, 0.8, 1], "bevel": [0.1, 0.1, 0.1, 0.1], "round_x": 0.1, "round_y": 0.1)";
 
 }  // namespace
 
@@ -145,8 +135,8 @@ TEST_CASE("operators of nested nodes, matrices within matrices", "[import]") {
 }
 
 TEST_CASE("colours are materials", "[import]") {
-  const CompiledScene scene = compile_text(join("union", 0.1, kTurn, primitive(kSphere, kTurn),
-                                                primitive(kSphere, kMirror, "[0, 0.5, 1]")));
+  const CompiledScene scene =
+      compiled(join("union", 0.1, kTurn, primitive(kSphere, kTurn), primitive(kSphere, kMirror, "[0, 0.5, 1]")));
   REQUIRE(scene.materials.size() == 2);
   CHECK(scene.materials[0].color == dvec3(1, 0, 0));
   CHECK(scene.materials[1].color == dvec3(0, 0.5, 1));
@@ -155,7 +145,7 @@ TEST_CASE("colours are materials", "[import]") {
 
 TEST_CASE("the molecule is what its file says", "[import]") {
   CHECK(farthest(molecule(), 200) < 1e-6);  // chains of 1000 blends: the reference adds in another form
-  const CompiledScene scene = compile_text(molecule());
+  const CompiledScene scene = compiled(molecule());
   CHECK(scene.surfaces.size() == 1);
   CHECK(scene.lipschitz < 1.001);
 }
@@ -172,8 +162,8 @@ TEST_CASE("nested nodes written as a scene are the same scene", "[import]") {
   CHECK(farthest(deep, 20) < 1e-6);
   for (const std::string& text : {molecule(), deep}) {
     std::string written, again;
-    const CompiledScene direct = compile_text(text, &written);
-    const CompiledScene imported = compile_text(written, &again);
+    const CompiledScene direct = compiled(text, written);
+    const CompiledScene imported = compiled(written, again);
     CHECK(written == again);
     CHECK(imported.summary == direct.summary);
     std::mt19937_64 random(5);

@@ -1,5 +1,5 @@
 // What a shape is: the judge against brute force, then the machine against the judge, then what every distance field
-// owes the renderer: a Lipschitz constant, a bounding box, gradients.
+// owes the renderer: a Lipschitz constant, a bounding box. Gradients: normals_test.cpp.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,13 +10,11 @@
 #include <string>
 
 #include "compiler/bounds.h"
-#include "compiler/shapes/node_table.h"
+#include "tests/compiler/primitives.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/brute_force_outlines.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
-#include "vm/evaluate.h"
 
 namespace fathom::test {
 namespace {
@@ -26,49 +24,6 @@ using compiler::NodeSpec;
 using glm::dvec3;
 
 constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
-
-std::string place(dvec3 p) {
-  const auto print = [](double x) { return Catch::StringMaker<double>::convert(x); };
-  return print(p.x) + " " + print(p.y) + " " + print(p.z);
-}
-
-struct Sample {
-  std::vector<double> params;
-  compiler::Scene scene;
-  std::string name;
-};
-
-Sample sample(Kind kind, Random& random) {
-  Sample s;
-  s.params = random_params(kind, random);
-  s.scene = single(kind, s.params);
-  s.name = compiler::spec(kind).name;
-  for (double k : s.params) s.name += " " + Catch::StringMaker<double>::convert(k);
-  return s;
-}
-
-// Points in, around and far from a shape of size 1; some on an axis, a coordinate plane or a diagonal.
-dvec3 random_point(Random& random) {
-  const double half[] = {0.5, 1, 2, 2, 16};
-  dvec3 p = random.in_box(half[random.below(5)]);
-  if (random.chance(0.1)) p[random.below(3)] = 0;
-  if (random.chance(0.05)) p = dvec3(0, p.y, 0);
-  if (random.chance(0.03)) p.z = p.x;
-  return p;
-}
-
-double scale_of(dvec3 p) { return std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
-
-vm::SurfaceValue evaluate_float(const vm::VerifiedProgram& program, dvec3 p, vm::Workspace& workspace) {
-  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-  float distance, gx, gy, gz;
-  std::uint32_t surface;
-  vm::evaluate_surface(program, {&x, &y, &z}, 1, {&distance, &gx, &gy, &gz, &surface}, workspace);
-  return {distance, {gx, gy, gz}, surface};
-}
-
-// Whether the estimate of a fractal is being judged, for which "distance" means less.
-bool estimated(Kind kind) { return compiler::spec(kind).facts.outside == compiler::Exactness::Estimate; }
 
 // Largest errors of a kind: the machine's double and float evaluators against the judge.
 struct Errors {
@@ -103,32 +58,6 @@ Errors measure(Kind kind, int shapes, int points) {
   return worst;
 }
 
-// Moves p onto the surface along the gradient; false when it will not settle.
-bool to_surface(const vm::VerifiedProgram& program, dvec3& p, vm::Workspace& workspace) {
-  for (int i = 0; i < 60; ++i) {
-    const vm::SurfaceValue v = vm::evaluate_surface(program, p, workspace);
-    if (std::abs(v.distance) < 1e-12) return true;
-    p -= v.distance * v.gradient;
-  }
-  return false;
-}
-
-dvec3 central_difference(const vm::VerifiedProgram& program, dvec3 p, double h, vm::Workspace& workspace) {
-  dvec3 slope;
-  for (int axis = 0; axis < 3; ++axis) {
-    dvec3 before = p, after = p;
-    before[axis] -= h;
-    after[axis] += h;
-    const double rise =
-        vm::evaluate_distance(program, after, workspace) - vm::evaluate_distance(program, before, workspace);
-    slope[axis] = rise / (after[axis] - before[axis]);
-  }
-  return slope;
-}
-
-// Fields whose gradient is shorter than 1 on the surface.
-bool periodic(Kind kind) { return kind == Kind::Gyroid || kind == Kind::SchwarzP || kind == Kind::SchwarzD; }
-
 bool unbounded(Kind kind) {
   return kind == Kind::Plane || kind == Kind::InfiniteCylinder || kind == Kind::InfiniteCone || periodic(kind);
 }
@@ -142,14 +71,6 @@ bool inside_is_bound(Kind kind, const std::vector<double>& k) {
          k[0] * std::sin(k[2] * std::numbers::pi / 180) < k[1];
 }
 
-// A point of the surface on the axis with a whole cone of normals: there the gradient is known by its direction only.
-bool has_tip(Kind kind, const std::vector<double>& k) {
-  if (kind == Kind::InfiniteCone) return true;
-  return (kind == Kind::Cone && (k[0] == 0 || k[1] == 0)) || (kind == Kind::Torus && k[1] >= k[0]);
-}
-
-bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 bool is_outline(const NodeSpec& row) { return row.sort == compiler::Sort::Outline; }
 
 // True distances to a solid, or to an outline, whatever z is.
@@ -158,15 +79,6 @@ std::function<double(dvec3)> brute_force(const NodeSpec& row, const std::vector<
     return [truth = BruteForceOutline(row.kind, params)](dvec3 p) { return truth.distance(glm::dvec2(p)); };
   }
   return [truth = BruteForce(row.kind, params)](dvec3 p) { return truth.distance(p); };
-}
-
-// Solids and outlines.
-template <typename Check>
-void for_each_primitive(const Check& check) {
-  for (const NodeSpec& row : compiler::node_table()) {
-    const bool own_code = row.category == compiler::Category::Primitive && row.code;
-    if (own_code) check(row);
-  }
 }
 
 }  // namespace
@@ -313,136 +225,6 @@ TEST_CASE("a primitive's box is tight", "[shapes]") {
       }
     }
   });
-}
-
-TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
-  vm::Workspace workspace;
-  for_each_primitive([&](const NodeSpec& row) {
-    if (estimated(row.kind)) return;
-    int settled = 0;
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
-      Random random(seed);
-      const Sample s = sample(row.kind, random);
-      const vm::VerifiedProgram program = plain_lowering(s.scene);
-      for (int i = 0; i < 50; ++i) {
-        dvec3 p = random_point(random);
-        if (!to_surface(program, p, workspace)) continue;
-        ++settled;
-        INFO(s.name << ", seed " << seed << ", at " << place(p));
-        if (has_tip(row.kind, s.params) && std::hypot(p.x, p.z) < 1e-6) {
-          const double length = glm::length(vm::evaluate_surface(program, p, workspace).gradient);
-          CHECK(length <= 1 + 1e-9);
-          if (row.kind != Kind::Torus || s.params[0] != s.params[1])
-            CHECK(length > 1e-3);  // a ring without a hole touches itself in the middle
-          continue;
-        }
-        if (periodic(row.kind)) {  // sampled: 0.41 and more
-          const double length = glm::length(vm::evaluate_surface(program, p, workspace).gradient);
-          CHECK(length > 0.4);
-          CHECK(length <= 1 + 1e-9);
-          continue;
-        }
-        CHECK(std::abs(glm::length(vm::evaluate_surface(program, p, workspace).gradient) - 1) <= 1e-9);
-        CHECK(std::abs(glm::length(evaluate_float(program, p, workspace).gradient) - 1) <= 1e-6);
-      }
-    }
-    INFO(row.name);
-    CHECK(settled > 2500);
-  });
-}
-
-// At any distance from the origin, up to 1e3: a float's own spacing there must not tilt the normal.
-TEST_CASE("float normals of smooth shapes are within 1e-6 radians", "[shapes][normals]") {
-  vm::Workspace workspace;
-  for (Kind kind : {Kind::Sphere, Kind::Torus, Kind::Plane, Kind::RoundCone}) {
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-      Random random(seed);
-      const Sample s = sample(kind, random);
-      compiler::Scene scene = s.scene;
-      // A ring's normal turns over the tube's small radius, where a float has the spacing of the large one.
-      const double slender = kind == Kind::Torus ? std::max(1.0, s.params[0] / s.params[1] / 4) : 1;
-      const double reach[] = {0, 1, 1000};
-      const dvec3 away = random.in_box(reach[seed % 3]);
-      const auto move = transform_params(dvec3(1), dvec3(0, 1, 0), 0, away);
-      scene.root = scene.graph.add(Kind::Transform, move, std::vector{scene.root});
-      const vm::VerifiedProgram program = plain_lowering(scene);
-      for (int i = 0; i < 50; ++i) {
-        dvec3 p = away + random.in_box(2);
-        if (!to_surface(program, p, workspace)) continue;
-        for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<double>(static_cast<float>(p[axis]));
-        const dvec3 exact = vm::evaluate_surface(program, p, workspace).gradient;
-        if (glm::length(exact) < 0.99 || glm::length(p - away) < 1e-3) continue;  // a torus' cusp or pinched centre
-        const dvec3 narrow = evaluate_float(program, p, workspace).gradient;
-        INFO(s.name << ", seed " << seed << ", at " << place(p));
-        CHECK(glm::length(glm::cross(glm::normalize(narrow), glm::normalize(exact))) <= 1e-6 * slender);
-        CHECK(glm::dot(narrow, exact) > 0);
-      }
-    }
-  }
-}
-
-TEST_CASE("gradients never are NaN: centres, axes, edges, corners", "[shapes][normals]") {
-  vm::Workspace workspace;
-  for_each_primitive([&](const NodeSpec& row) {
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
-      Random random(seed);
-      const Sample s = sample(row.kind, random);
-      const vm::VerifiedProgram program = plain_lowering(s.scene);
-      const compiler::Box box = row.bound(s.params);
-      for (int i = 0; i < 125; ++i) {  // corners, edge and face centres of the box, and points beyond them
-        dvec3 p;
-        const int steps[] = {i % 5, i / 5 % 5, i / 25};
-        for (int axis = 0; axis < 3; ++axis) {
-          const double at[] = {0, box.lo[axis], box.hi[axis], 2 * box.hi[axis], 0.5 * box.lo[axis]};
-          p[axis] = std::clamp(at[steps[axis]], -9.0, 9.0);
-        }
-        INFO(s.name << ", seed " << seed << ", at " << place(p));
-        for (const vm::SurfaceValue& v :
-             {vm::evaluate_surface(program, p, workspace), evaluate_float(program, p, workspace)}) {
-          CHECK(finite(v.gradient));
-          CHECK(std::isfinite(v.distance));
-          if (!estimated(row.kind)) CHECK(glm::length(v.gradient) <= 1 + 1e-6);
-        }
-      }
-    }
-  });
-}
-
-TEST_CASE("gradients are what differences say, away from creases", "[shapes][normals]") {
-  vm::Workspace workspace;
-  const auto check = [&](const compiler::Scene& scene, Random& random, int points) {
-    const vm::VerifiedProgram program = plain_lowering(scene);
-    int smooth = 0;
-    for (int i = 0; i < points; ++i) {
-      const dvec3 p = random.in_box(2);
-      const dvec3 fine = central_difference(program, p, 1e-5, workspace);
-      const dvec3 coarse = central_difference(program, p, 4e-5, workspace);
-      if (glm::length(fine - coarse) > 1e-7) continue;  // a crease or a strong curvature nearby
-      ++smooth;
-      INFO("at " << place(p));
-      const dvec3 exact = vm::evaluate_surface(program, p, workspace).gradient;
-      CHECK(glm::length(exact - fine) <= 1e-7);
-      CHECK(glm::length(evaluate_float(program, p, workspace).gradient - exact) <= 1e-3);
-    }
-    return smooth;
-  };
-  for_each_primitive([&](const NodeSpec& row) {
-    int smooth = 0;
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-      Random random(seed);
-      const Sample s = sample(row.kind, random);
-      INFO(s.name << ", seed " << seed);
-      smooth += check(s.scene, random, 50);
-    }
-    INFO(row.name);
-    if (!estimated(row.kind)) CHECK(smooth > 1000);
-  });
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    Random random(seed);
-    const compiler::Scene scene = random_scene(random);
-    INFO("random graph, seed " << seed);
-    check(scene, random, 20);
-  }
 }
 
 }  // namespace fathom::test

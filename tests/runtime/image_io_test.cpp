@@ -1,9 +1,9 @@
 #include "runtime/image_io.h"
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
+
+#include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime {
 namespace {
@@ -13,25 +13,6 @@ Picture gradient(int width, int height) {
   for (int i = 0; i < width * height * 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(i));
   return picture;
 }
-
-// A folder of its own, gone with the object.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "fathom_image_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  std::size_t entries() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator{}));
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -48,12 +29,12 @@ TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
 }
 
 TEST_CASE("image_io: each file has its format's header, and the size", "[runtime]") {
-  const Folder folder;
+  const tests::TemporaryFolder folder;
   const Picture picture = gradient(7, 5);
   CHECK(write_image(picture, folder.file("a.png")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.jpg")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.bmp")) == std::nullopt);
-  CHECK(folder.entries() == 3);
+  CHECK(folder.files() == 3);
   const std::string png = read(folder.file("a.png")), jpg = read(folder.file("a.jpg")),
                     bmp = read(folder.file("a.bmp"));
   CHECK(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
@@ -65,19 +46,19 @@ TEST_CASE("image_io: each file has its format's header, and the size", "[runtime
 }
 
 TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtime]") {
-  const Folder folder;
+  const tests::TemporaryFolder folder;
   CHECK(write_image(gradient(2, 2), folder.file("none/a.png")).has_value());
   CHECK(write_image(gradient(2, 2), folder.file("a.gif")).has_value());
   std::filesystem::create_directory(folder.file("b.png"));
   CHECK(write_image(gradient(2, 2), folder.file("b.png")).has_value());
-  CHECK(folder.entries() == 1);
+  CHECK(folder.files() == 1);
 }
 
 TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
-  const Folder folder;
+  const tests::TemporaryFolder folder;
   REQUIRE(write_image(gradient(2, 2), folder.file("a.bmp")) == std::nullopt);
   REQUIRE(write_image(gradient(4, 4), folder.file("a.bmp")) == std::nullopt);
-  CHECK(folder.entries() == 1);
+  CHECK(folder.files() == 1);
   CHECK(read(folder.file("a.bmp"))[18] == 4);
 }
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
 #include "runtime/march.h"
+#include "tests/support/compiled.h"
 #include "tests/support/random_scene.h"
 
 namespace fathom::test {
@@ -161,12 +161,8 @@ struct Tally {
 };
 
 Tally tally(const Case& c, int count) {
-  compiler::Diagnostics diagnostics;
-  const compiler::Source source(c.name, R"({"version": 1, "objects": [)" + c.node + "]}");
-  const auto scene = compiler::compile(source, diagnostics);
-  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
-  REQUIRE(scene);
-  CHECK(scene->certified);
+  const compiler::CompiledScene scene = tests::compiled_objects(c.node);
+  CHECK(scene.certified);
   Random random(11);
   std::vector<Line> lines;
   std::vector<runtime::Ray> rays;
@@ -174,7 +170,7 @@ Tally tally(const Case& c, int count) {
     lines.push_back(random_line(c, random));
     rays.push_back({lines.back().origin, lines.back().direction});
   }
-  const runtime::MarchResult marched = runtime::march(runtime::make_field(*scene), rays);
+  const runtime::MarchResult marched = runtime::march(runtime::make_field(scene), rays);
   Tally result{.rays = count};
   result.evaluations = static_cast<double>(marched.counters.evaluations) / count;
   for (std::size_t i = 0; i < lines.size(); ++i) {

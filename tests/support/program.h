@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -11,6 +10,8 @@
 #include <sstream>
 #include <string>
 #include <utility>
+
+#include "tests/support/temporary_folder.h"
 
 namespace fathom::tests {
 
@@ -37,36 +38,28 @@ inline const char* const kTwo = R"({
   ]
 })";
 
-// An empty folder to run the program in, removed with everything in it.
-class Folder {
+// A folder to run the program in.
+class Folder : public TemporaryFolder {
  public:
   Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "fathom-cli-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
     write("ball.json", kBall);
     write("two.json", kTwo);
   }
-  ~Folder() { std::filesystem::remove_all(path_); }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path() / name) << text; }
   std::string read(const std::string& name) const {
     std::stringstream text;
-    text << std::ifstream(path_ / name).rdbuf();
+    text << std::ifstream(path() / name).rdbuf();
     return text.str();
   }
-  bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
-  }
+  bool has(const std::string& name) const { return std::filesystem::exists(path() / name); }
 
   // `arguments` as for a shell; standard input is `in`.
   Result run(const std::string& arguments, const std::string& in = "") const {
-    const std::filesystem::path io = path_.string() + ".io";  // beside the folder, which stays the user's
+    const std::filesystem::path io = path().string() + ".io";  // beside the folder, which stays the user's
     std::filesystem::create_directories(io);
     std::ofstream(io / "in") << in;
-    const std::string command = "cd '" + path_.string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
+    const std::string command = "cd '" + path().string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
                                 (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
                                 (io / "err").string() + "'";
     const int status = std::system(command.c_str());
@@ -75,9 +68,6 @@ class Folder {
     std::filesystem::remove_all(io);
     return result;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 // Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.

@@ -1,10 +1,9 @@
-#include "tests/support/random_outlines.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "compiler/shapes/node_table.h"
+#include "tests/support/random_shapes.h"
 #include "vm/check.h"
 
 namespace fathom::test {
@@ -12,7 +11,6 @@ namespace {
 
 using compiler::Kind;
 
-double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
 double size(Random& random) { return random.length(0.05, 1.5); }
 
 // Degrees; among them quarter turns, and a half turn when it is allowed.

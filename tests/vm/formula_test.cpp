@@ -3,10 +3,11 @@
 #include "tests/vm/formula.h"
 
 #include <algorithm>
-#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "tests/vm/float_bits.h"
 
 namespace fathom::test {
 namespace {
@@ -32,14 +33,10 @@ void random_box(Random& random, dvec3& lo, dvec3& hi) {
   }
 }
 
-std::uint32_t bits_of(float f) {
-  return std::bit_cast<std::uint32_t>(std::isnan(f) ? std::numeric_limits<float>::quiet_NaN() : f);
-}
-
 }  // namespace
 
 TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa]") {
-  const std::string before(vm::isa_name());
+  const IsaGuard guard;
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const auto steps = random_formula(seed);
@@ -71,7 +68,6 @@ TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa
       CHECK(std::equal(bits.begin(), bits.begin() + kCount, bits.begin() + kCount));
     }
   }
-  vm::force_isa(before);
 }
 
 TEST_CASE("ranges of formulas contain their values", "[formula][range]") {

@@ -1,0 +1,36 @@
+// What the compiler makes of a text. The test fails when it refuses.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <utility>
+
+#include "compiler/compile.h"
+#include "compiler/frontend/write_json.h"
+
+namespace fathom::tests {
+
+// Of any format.
+inline compiler::CompiledScene compiled(const std::string& text, const compiler::CompileOptions& options = {}) {
+  const compiler::Source source("test.json", text);
+  compiler::Diagnostics diagnostics;
+  auto scene = compiler::compile(source, diagnostics, options);
+  INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
+  REQUIRE(scene);
+  return *std::move(scene);
+}
+
+// `written` becomes the scene file that says the same.
+inline compiler::CompiledScene compiled(const std::string& text, std::string& written) {
+  compiler::CompileOptions options;
+  options.on_syntax = [&](const compiler::ReadScene& scene) { written = compiler::write_json(scene.file); };
+  return compiled(text, options);
+}
+
+// Of a scene that is nothing but its objects.
+inline compiler::CompiledScene compiled_objects(const std::string& objects,
+                                                const compiler::CompileOptions& options = {}) {
+  return compiled(R"({"version": 1, "objects": [)" + objects + "]}", options);
+}
+
+}  // namespace fathom::tests
