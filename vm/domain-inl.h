@@ -43,7 +43,9 @@ template <class T>
 HWY_INLINE T cell_number(const T& a, const Constant<T>* k) {
   return max(k[2], min(k[3], floor(a * k[0] + k[1])));
 }
-// k: as cell_number, then half (0 or 1/2) and period: copy j stands at (j + half) * period.
+// k: as cell_number, then offset and period: cell j's copy stands at (j + offset) * period. All copies evaluated at a
+// point number the cells alike and differ in the offset: numbered each in its own way, one could be left out where
+// rounding moves a cell's side.
 template <class T>
 HWY_INLINE T in_cell(const T& a, const T& number, const Constant<T>* k) {
   return a - (number + k[4]) * k[5];
@@ -71,12 +73,14 @@ HWY_INLINE Interval permute(Interval n) {
   return {result, result};
 }
 
-// As cell, with copy (i, j, l) moved by up to k[18], k[19], k[20] along the axes, differently for each.
+// As cell, with copy (i, j, l) moved by up to k[18], k[19], k[20] along the axes, differently for each; k[21..23]:
+// how far the copy's numbers are from the cell's.
 template <class T>
 HWY_INLINE Vec3<T> cell_jitter(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> inverse = constant<T>(1.0 / 144), one = constant<T>(1.0);
   const T i = cell_number(p.x, k), j = cell_number(p.y, k + 6), l = cell_number(p.z, k + 12);
-  const T x = permute(permute(permute(i) + j) + l), y = permute(x + one), z = permute(y + one);
+  const T x = permute(permute(permute(i + k[21]) + j + k[22]) + l + k[23]), y = permute(x + one),
+          z = permute(y + one);
   return {in_cell(p.x, i, k) - (x * inverse - one) * k[18], in_cell(p.y, j, k + 6) - (y * inverse - one) * k[19],
           in_cell(p.z, l, k + 12) - (z * inverse - one) * k[20]};
 }
@@ -107,10 +111,11 @@ HWY_INLINE Vec3<T> turn_about_y(const Vec3<T>& p, const T& angle) {
   return {p.x * c + p.z * s, p.y, p.z * c - p.x * s};
 }
 
-// k: sectors per radian, shift, radians per sector. Sector j is turned back onto sector 0.
+// k: sectors per radian, shift, radians per sector, which copy. Copy n of sector j is sector j + n turned back onto
+// sector 0; as with cells, all copies number the sectors alike.
 template <class T>
 HWY_INLINE Vec3<T> sector(const Vec3<T>& p, const Constant<T>* k) {
-  return turn_about_y(p, floor(atan2(p.z, p.x) * k[0] + k[1]) * k[2]);
+  return turn_about_y(p, (floor(atan2(p.z, p.x) * k[0] + k[1]) + k[3]) * k[2]);
 }
 // The way to the sectors' copies that are not evaluated. k: as sector, where shift rounds to the nearest copy's
 // middle at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; k[5]: how far they

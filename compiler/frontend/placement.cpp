@@ -5,13 +5,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "compiler/direction.h"
 #include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 glm::dmat3 rotation_about(glm::dvec3 axis, double degrees) {
-  // Divided by the largest part first, so that no square overflows or vanishes.
-  axis /= std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
-  const glm::dvec3 u = axis / glm::length(axis);
+  const glm::dvec3 u = direction(axis);
   const auto [s, c] = sine_cosine(degrees);
   // Rodrigues' formula: R v = c v + s (u x v) + (1 - c) u (u . v); column j is R e_j.
   glm::dmat3 r;
@@ -42,7 +41,7 @@ std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rota
 }
 
 std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share) {
-  const glm::dvec3 along = glm::normalize(to - from);
+  const glm::dvec3 along = direction(to - from);
   // Any direction across will do; the axis it leans on least keeps it well conditioned.
   glm::dvec3 other(0);
   other[std::abs(along.x) <= std::abs(along.z) ? 0 : 2] = 1;

@@ -14,14 +14,6 @@ namespace {
 using vm::Opcode;
 constexpr double kSqrt3 = 1.7320508075688772;
 
-// The largest coordinate in the box; infinite when it has no end.
-double largest_coordinate(const Box& box) {
-  if (box.empty()) return 0;
-  double largest = 0;
-  for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(box.lo[i]), std::abs(box.hi[i])});
-  return largest;
-}
-
 Knowledge know_round(Params params, std::span<const Knowledge> children) {
   Knowledge k = offset(children[0], params[0]);
   k.inside = std::max(k.inside, Exactness::Bound);
@@ -64,7 +56,8 @@ Knowledge know_transform(Params params, std::span<const Knowledge> children) {
   // In the child's space a point lies as far off as the translation adds, but near the surface within the child's
   // box.
   const glm::dvec3 t = glm::abs(to_child.translation);
-  k.magnitude = factor * (std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box)) + child.magnitude);
+  const double cancelled = std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box));
+  k.magnitude = factor * (cancelled * std::max(1.0, child.lipschitz) + child.magnitude);
   // A product that is 1 but for rounding is 1: the factor is the smallest scale, the most stretch its inverse.
   const double slope = factor * s.most;
   k.lipschitz = child.lipschitz * (std::abs(slope - 1) < 1e-12 ? 1 : slope);
@@ -89,16 +82,14 @@ bool has_core(Params half_size) { return half_size[0] > 0 && half_size[1] > 0 &&
 Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   Knowledge k = child;
+  // Exact only where what is nearest to a point of the plane lies in the plane, which is not known of a child.
+  k = only_bound(k);
   for (int i = 0; i < 3; ++i) {
-    const double by = params[static_cast<std::size_t>(i)];
-    if (by == 0) continue;
     // Of a child beside the plane one side moves the other way; but distances are measured from this larger box.
-    k.box.lo[i] -= by;
-    k.box.hi[i] += by;
-    if (!child.symmetric[static_cast<std::size_t>(i)]) k = only_bound(k);
+    k.box.lo[i] -= params[static_cast<std::size_t>(i)];
+    k.box.hi[i] += params[static_cast<std::size_t>(i)];
   }
   if (has_core(params)) k.lipschitz = std::max(1.0, k.lipschitz);
-  k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
 
@@ -115,6 +106,7 @@ Knowledge know_revolve(Params params, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   Knowledge k = child;
   const double radius = std::max(0.0, child.box.hi.x + params[0]);
+  k.magnitude += std::min(std::abs(params[0]), largest_coordinate(child.box));
   k.box.lo.x = k.box.lo.z = -radius;
   k.box.hi.x = k.box.hi.z = radius;
   k.symmetric = {true, child.symmetric[1], true};

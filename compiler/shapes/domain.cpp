@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "compiler/affine.h"
+#include "compiler/direction.h"
 #include "compiler/make_node.h"
 #include "compiler/shapes/about_axis.h"
 #include "compiler/shapes/rows.h"
@@ -40,10 +41,13 @@ double largest_stretch(double a, double b, double c) {
   return std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * determinant * determinant))) / 2);
 }
 
+glm::dvec3 normal_of(Params p) { return direction({p[0], p[1], p[2]}); }
+
 Knowledge know_mirror(Params p, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   Knowledge k = mapped(child);
-  const glm::dvec3 n = glm::normalize(glm::dvec3(p[0], p[1], p[2]));
+  k.magnitude += std::min(2 * std::abs(p[3]), largest_coordinate(child.box));
+  const glm::dvec3 n = normal_of(p);
   for (int i = 0; i < 3; ++i) {
     if (std::abs(n[i]) != 1) continue;
     const double plane = p[3] * n[i];
@@ -71,7 +75,7 @@ Knowledge know_mirror(Params p, std::span<const Knowledge> children) {
 }
 
 std::vector<double> mirror_immediates(Params p) {
-  const glm::dvec3 n = glm::normalize(glm::dvec3(p[0], p[1], p[2]));
+  const glm::dvec3 n = normal_of(p);
   return {n.x, n.y, n.z, p[3]};
 }
 Code mirror_code(Params p) { return {.points = {{{Opcode::Mirror, mirror_immediates(p)}}}}; }
@@ -141,7 +145,9 @@ Complaint check_taper_child(Params, std::span<const Knowledge> children) {
 
 Knowledge know_taper(Params p, std::span<const Knowledge> children) {
   const Scales s = scales(p);
-  return in_tube(children[0], p[3], p[4], children[0].reach * std::min(1.0, 1 / s.most));
+  Knowledge k = in_tube(children[0], p[3], p[4], children[0].reach * std::min(1.0, 1 / s.most));
+  if (s.least < 1) k.magnitude += largest_coordinate(children[0].box) * std::max(1.0, children[0].lipschitz);
+  return k;
 }
 
 Code taper_code(Params p) {

@@ -233,11 +233,10 @@ Box heart_bound(Params p) {
 double segment_magnitude(Params p) {
   return std::min(std::max(std::abs(p[0]), std::abs(p[1])), glm::length(vec2_at(p, 2) - vec2_at(p, 0)) + p[4]);
 }
-// Each edge is evaluated from its first corner.
+// Each edge is evaluated from its first corner, which near the surface is no further than the whole's size.
 double polygon_magnitude(Params p) {
   const Box box = polygon_bound(p);
-  const dvec2 size(box.hi - box.lo), far(glm::max(glm::abs(box.hi), glm::abs(box.lo)));
-  return std::min(std::max(far.x, far.y), glm::length(size));
+  return glm::length(box.hi - box.lo);
 }
 // The cut's circle is evaluated from its own centre.
 double moon_magnitude(Params p) { return p[2]; }

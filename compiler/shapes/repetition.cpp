@@ -139,16 +139,25 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
   return k;
 }
 
-// The six numbers of in_cell in vm/domain-inl.h for the copy `index` of those evaluated.
-std::vector<double> cell_immediates(const RepeatedAxis& a, int index) {
+// The six numbers of in_cell in vm/domain-inl.h for the copy nearest to a point.
+std::vector<double> nearest_cell(const RepeatedAxis& a) {
   if (!a.repeated()) return {0, 0, 0, 0, 0, 0};
-  const double inverse = 1 / a.period;
-  if (a.sides == kAll) {
-    const double number = a.first() + index;
-    return {0, 0, number, number, a.half(), a.period};
-  }
-  if (a.sides == 0) return {inverse, 0.5 - a.half(), a.first(), a.last(), a.half(), a.period};
-  return {inverse, index + 1 - a.sides - a.half(), a.first(), a.last(), a.half(), a.period};
+  return {1 / a.period, 0.5 - a.half(), a.first(), a.last(), a.half(), a.period};
+}
+
+// How far the number of the copy `index` of those evaluated is from the cell's.
+double copy_number(const RepeatedAxis& a, int index) {
+  if (!a.repeated() || a.sides == 0) return 0;
+  return a.sides == kAll ? a.first() + index : index + 1 - a.sides;
+}
+
+// The six numbers of in_cell for the copy `index`. Beyond the last copies the cell is the last that has `sides`
+// copies to either side of it, so that the same number of copies, all of them there, are evaluated everywhere.
+std::vector<double> cell_immediates(const RepeatedAxis& a, int index) {
+  if (!a.repeated() || a.sides == 0) return nearest_cell(a);
+  const double offset = copy_number(a, index) + a.half();
+  if (a.sides == kAll) return {0, 0, 0, 0, offset, a.period};
+  return {1 / a.period, -a.half(), a.first() + a.sides - 1, a.last() - a.sides, offset, a.period};
 }
 
 std::vector<Instruction> cell_chain(const Repeated& r, const std::array<int, 3>& index) {
@@ -167,15 +176,14 @@ std::vector<Instruction> cell_chain(const Repeated& r, const std::array<int, 3>&
   }
   if (!r.jitters()) return {{Opcode::Cell, immediates}};
   for (const RepeatedAxis& a : r.axes) immediates.push_back(a.jitter);
+  for (std::size_t i = 0; i < 3; ++i) immediates.push_back(copy_number(r.axes[i], index[i]));
   return {{Opcode::CellJitter, immediates}};
 }
 
 std::vector<double> limit_immediates(const Repeated& r) {
   std::vector<double> immediates;
   for (const RepeatedAxis& a : r.axes) {
-    RepeatedAxis nearest = a;
-    nearest.sides = 0;
-    const std::vector<double> six = cell_immediates(nearest, 0);
+    const std::vector<double> six = nearest_cell(a);
     immediates.insert(immediates.end(), six.begin(), six.end());
     const bool copies = a.repeated() && !a.endless();
     immediates.push_back(a.repeated() && a.sides > 0 ? a.apart : kNoLimit);
@@ -283,7 +291,7 @@ Code polar_code(Params p) {
     return code;
   }
   for (double i = 1 - sides; i <= sides; ++i) {
-    code.points.push_back({{Opcode::Sector, {1 / angle, i - middle / angle, angle}}});
+    code.points.push_back({{Opcode::Sector, {1 / angle, -middle / angle, angle, i}}});
   }
   code.after = {{Opcode::SectorLimit, {1 / angle, 0.5 - middle / angle, angle, middle, apart, p[8], p[5], p[6]}}};
   if (reach != 1) code.after.push_back({Opcode::Scale, {reach}});
@@ -304,7 +312,8 @@ std::vector<NodeSpec> repetition_rows() {
        .name = "repetition",
        .category = kAlteration,
        .params = {{"period", ParamType::Vec3, Rule::Any, kRequired, "from copy to copy along each axis; 0: one only"},
-                  {"count", ParamType::Counts, Rule::Any, 0.0, "copies along each axis, centred; 0: without end"},
+                  {"count", ParamType::Counts, Rule::Any, 0.0,
+                   "copies along each axis, centred; 0: without end (2^23 copies to either side)"},
                   {"jitter", ParamType::Vec3, Rule::Any, 0.0, "how far each copy may be moved at random"}},
        .doc = "a node again and again",
        .check = check_repetition,

@@ -1,6 +1,7 @@
 #include "compiler/shapes/rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace fathom::compiler {
@@ -31,6 +32,13 @@ ParamSpec corner(std::string_view name) {
 }
 ParamSpec thickness() { return length("thickness", "to either side of the surface"); }
 ParamSpec blend_width() { return length_or_zero("k", "width of the blend; the surface moves by at most k/4"); }
+
+double largest_coordinate(const Box& box) {
+  if (box.empty()) return 0;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(box.lo[i]), std::abs(box.hi[i])});
+  return largest;
+}
 
 Knowledge only_bound(Knowledge k) {
   k.outside = std::max(k.outside, Exactness::Bound);

@@ -39,6 +39,14 @@ Code code_of(Params params) {
   return one(Op, Immediates(params));
 }
 
+// The largest coordinate in the box, infinite when it has no end; 0 when it is empty.
+double largest_coordinate(const Box& box);
+// The magnitude of a shape whose parts are evaluated from points as far off as its box reaches.
+template <Box (*Bound)(Params)>
+double box_magnitude(Params params) {
+  return largest_coordinate(Bound(params));
+}
+
 inline constexpr std::array<bool, 3> kAllAxes = {true, true, true};
 
 // Lipschitz constants, certificates, reach and symmetry of several children together: the worst of each. Boxes and

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "compiler/direction.h"
 #include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
@@ -209,10 +210,7 @@ std::vector<double> julia_immediates(Params p) {
 }
 
 std::vector<double> plane_immediates(Params p) {
-  // Scaling first keeps normals of any length, 1e-200 or 1e200, from under- or overflowing.
-  const dvec3 given = vec3_at(p, 0);
-  const double largest = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
-  const dvec3 n = glm::normalize(given / largest);
+  const dvec3 n = direction(vec3_at(p, 0));
   return {n.x, n.y, n.z, p[3]};
 }
 
@@ -288,11 +286,13 @@ Box sheet_bound(Params p) {
   return box.grown(p.back());
 }
 
-// They are evaluated from their first corner: at most that far off, or their own size.
+// They are evaluated from their corners, which near the surface are no further than their size.
 double sheet_magnitude(Params p) {
   const Box box = sheet_bound(p);
-  return std::min(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}), glm::length(box.hi - box.lo));
+  return glm::length(box.hi - box.lo);
 }
+// Near the inner side of a fat ring, the circle is much further off than the origin.
+double torus_magnitude(Params p) { return std::min(p[0], p[1]); }
 
 // The estimate is at least about a quarter of the distance from the set.
 Box mandelbulb_bound(Params p) { return Box::centred(dvec3(escape_radius(p[0]) + 4 * p[3])); }

@@ -60,6 +60,7 @@ Box everywhere(Params);
 Box menger_sponge_bound(Params p);
 Box julia_bound(Params p);
 
+double torus_magnitude(Params p);
 double sheet_magnitude(Params p);  // of the numbers a triangle or quad is evaluated with, scene units
 
 }  // namespace fathom::compiler

@@ -2,6 +2,7 @@
 // (passes_test.cpp) and by rays (tests/runtime/warps_test.cpp).
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <string>
 
 #include "compiler/bounds.h"
@@ -99,6 +100,79 @@ TEST_CASE("the axis of a polar repetition is as far from the copies as they are"
   const vm::VerifiedProgram program = plain_lowering(scene);
   CHECK(vm::evaluate_distance(program, {0, 0, 0}, workspace) == Approx(1.8));
   CHECK(vm::evaluate_distance(program, {1e-3, 0, 0}, workspace) == Approx(1.799));
+}
+
+// Once, each copy rounded a cell's side in its own way, and just below it one was left out: a slit through the solid.
+TEST_CASE("no copy is lost at the side of a cell", "[domain]") {
+  const auto check = [](Kind kind, const std::vector<double>& params, dvec3 ball, double radius, dvec3 side,
+                        dvec3 step) {
+    Scene scene;
+    NodeMaker maker(scene.graph);
+    scene.root = over(maker, kind, params,
+                      over(maker, Kind::Transform, transform_params(dvec3(1), {0, 1, 0}, 0, ball),
+                           maker.make(Kind::Sphere, std::vector<double>{radius}, {})));
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    vm::Workspace workspace;
+    const double there = judge_distance(scene.graph, scene.root, side);
+    for (int i = -1000; i <= 1000; ++i) {
+      const dvec3 p = side + step * static_cast<double>(i);
+      INFO(p.x << ' ' << p.y << ' ' << p.z);
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - there) < 1e-6);
+      const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+      float value;
+      vm::evaluate_distance(program, {&x, &y, &z}, 1, &value, workspace);
+      CHECK(std::abs(static_cast<double>(value) - there) < 3e-6);
+    }
+  };
+  for (const double cell : {0.0, 1.0, 2.0, 8.0, -3.0}) {
+    check(Kind::Repetition, {1, 0, 0, 0, 0, 0, 0, 0, 0}, {0.01, 0, 0}, 0.3, {cell, 0, 0}, {0x1p-54, 0, 0});
+    check(Kind::Repetition, {1, 0, 0, 20, 0, 0, 0, 0, 0}, {0.01, 0, 0}, 0.3, {cell + 0.5, 0, 0}, {0x1p-54, 0, 0});
+    check(Kind::Repetition, {1, 0, 0, 0, 0, 0, 0, 0.1, 0}, {0.01, 0, 0}, 0.3, {cell, 0, 0}, {0x1p-54, 0, 0});
+  }
+  for (const int copy : {0, 1, 7, 10, 13}) {
+    const double angle = copy * std::numbers::pi / 10;
+    const dvec3 middle(2 * std::cos(angle), 0, 2 * std::sin(angle));
+    check(Kind::PolarRepetition, {20}, {2, 0, 0}, 0.1, middle, dvec3(-middle.z, 0, middle.x) * 0x1p-53);
+  }
+}
+
+// Once, beyond the last copies the same one was evaluated again and again in place of its neighbours.
+TEST_CASE("beyond the last copies their neighbours still count", "[domain]") {
+  Scene scene;
+  NodeMaker maker(scene.graph);
+  const auto ball = [&](dvec3 at) {
+    return over(maker, Kind::Transform, transform_params(dvec3(1), {0, 1, 0}, 0, at),
+                maker.make(Kind::Sphere, {{0.1}}, {}));
+  };
+  const NodeId both[] = {ball({1.6, 0, 0}), ball({0.1, 5, 0})};
+  scene.root = over(maker, Kind::Repetition, {1, 0, 0, 5, 1, 1, 0, 0, 0}, maker.make(Kind::Union, {}, both));
+  check_slopes(scene, 8);
+  vm::Workspace workspace;
+  CHECK(vm::evaluate_distance(plain_lowering(scene), {3.0001, 0, 0}, workspace) == Approx(0.3001));
+}
+
+// Once, a normal whose squares vanish was no unit vector.
+TEST_CASE("mirrors of any length of normal are the same mirror", "[domain]") {
+  vm::Workspace workspace;
+  for (const double length : {1.0, 1e-161, 1e-300, 1e200}) {
+    Scene scene;
+    NodeMaker maker(scene.graph);
+    scene.root = over(maker, Kind::Mirror, {length, 0, 0, 0},
+                      over(maker, Kind::Transform, transform_params(dvec3(1), {0, 1, 0}, 0, {2, 0, 0}),
+                           maker.make(Kind::Sphere, {{1.0}}, {})));
+    CHECK(vm::evaluate_distance(plain_lowering(scene), {-2, 0, 0}, workspace) == -1);
+    CHECK(maker.known(scene.root).box.lo.x == -3);
+  }
+}
+
+// Once, a child that is its own mirror image was taken to stay exact when it is pulled apart; in the middle its
+// nearest point can lie off the plane.
+TEST_CASE("a node pulled apart is a bound", "[domain]") {
+  Scene scene;
+  NodeMaker maker(scene.graph);
+  scene.root = over(maker, Kind::Elongate, {1, 0, 0}, maker.make(Kind::BoxFrame, {{0.5, 1.0, 1.0, 0.1}}, {}));
+  CHECK(maker.known(scene.root).outside == compiler::Exactness::Bound);
+  CHECK(judge_distance(scene.graph, scene.root, {0, 0, 0}) < 0.9);  // of 1.1
 }
 
 // Once, the copies of a tiny period were counted in an int.
