@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "compiler/bounds.h"
@@ -14,6 +16,7 @@
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
+#include "compiler/shapes/node_table.h"
 #include "vm/opcode.h"
 
 namespace fathom::compiler {
@@ -36,6 +39,36 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
 
 constexpr std::string_view kFuse = "fuse";  // the last pass, over programs
 
+bool leaves_float(const Instruction& instruction) {
+  return std::any_of(instruction.immediates.begin(), instruction.immediates.end(),
+                     [](double k) { return !(std::abs(k) <= std::numeric_limits<float>::max()); });
+}
+
+// The first node whose code has numbers beyond those of float.
+std::optional<NodeId> node_beyond_float(const Scene& scene) {
+  const std::vector<bool> reached = reachable(scene);
+  for (NodeId id = 0; id < scene.graph.size(); ++id) {
+    if (!reached[id]) continue;
+    const Code code = spec(scene.graph.kind(id)).code(scene.graph.params(id));
+    bool leaves = std::any_of(code.after.begin(), code.after.end(), leaves_float);
+    for (const auto& chain : code.points) leaves = leaves || std::any_of(chain.begin(), chain.end(), leaves_float);
+    if (leaves) return id;
+  }
+  return std::nullopt;
+}
+
+void report_limit(const Scene& scene, const vm::VerifyError& error, Diagnostics& diagnostics) {
+  if (const std::optional<NodeId> node = node_beyond_float(scene)) {
+    diagnostics.error("E0308", scene.graph.origin(*node).span,
+                      fmt::format("evaluating this takes numbers beyond those of float ({})", error.reason), "",
+                      {"float ends at 3.4e38: make the node's parameters less extreme"});
+    return;
+  }
+  diagnostics.error("E0305", scene.graph.origin(scene.root).span,
+                    fmt::format("the scene's program exceeds a limit of the machine: {}", error.reason), "",
+                    {"make the scene smaller, or cut it into several"});
+}
+
 std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, bool fused,
                                             Diagnostics& diagnostics) {
   std::optional<vm::Program> program = lower(scene.graph, scene.root, source, kMaxInstructions);
@@ -47,8 +80,7 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
   }
   auto verified = vm::verify(fused ? fuse(*program) : std::move(*program));
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
-    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                      fmt::format("the scene's program exceeds a limit of the machine: {}", error->reason));
+    report_limit(scene, *error, diagnostics);
     return std::nullopt;
   }
   return std::get<vm::VerifiedProgram>(std::move(verified));

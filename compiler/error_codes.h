@@ -45,6 +45,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0305", "the program would be too long for the machine"},
     {"E0306", "a solid where an outline is needed, or the other way round"},
     {"E0307", "an outline placed out of its plane"},
+    {"E0308", "numbers beyond those of float"},
     // E04xx: formulas and parameters
     {"E0401", "malformed formula"},
     {"E0402", "unknown name in a formula"},

@@ -74,6 +74,12 @@ void read_entry(const syntax::Property& property, const Definitions& definitions
   const double* given = find(definitions, property.name);
   entry.state = Scope::State::Unusable;
   if (!own || !good_name) return;
+  if (parameter.min > parameter.max) {
+    diagnostics.error("E0408", property.value->span,
+                      fmt::format("no number is at least {} and at most {}", parameter.min, parameter.max), "",
+                      {"exchange `min` and `max`"});
+    return;
+  }
   parameter.value = given ? *given : *own;
   const std::string rule = broken_rule(parameter);
   if (rule.empty()) {
