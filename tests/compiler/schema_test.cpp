@@ -37,6 +37,7 @@ const std::map<std::string, std::string> kBeyond = {
     {"E0305", "the size of the program"},
     {"E0306", "what a node below, or one used by name, is"},
     {"E0307", "what a node below, or one used by name, is"},
+    {"E0308", "what numbers a node comes to"},
     {"E04", "the grammar of formulas, and the names in them"},
     {"E05", "what the command line says"},
     {"E06", "files of another format"},
