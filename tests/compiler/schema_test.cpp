@@ -88,7 +88,7 @@ void compare(const json& scene) {
 
 }  // namespace
 
-TEST_CASE("schema: every scene that comes with the program is valid", "[schema]") {
+TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][schema]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
@@ -117,7 +117,7 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
 }
 
 // Every property of every record of two scenes, in turn: gone, misnamed, and with values of other types and sizes.
-TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[schema]") {
+TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[heavy][schema]") {
   json scene = parse(read_file(fs::path(FATHOM_SOURCE_DIR) / "scenes/primitives.json"));
   scene["camera"]["type"] = "perspective";
   scene["render"] = {{"spp", 1}, {"bounces", 0}, {"tile", 8}, {"seed", 3}, {"far", 100}};

@@ -56,12 +56,12 @@ std::string furnace(double albedo) {
       "objects": [{"type": "sphere", "radius": 1, "material": "lamp"}])";
 }
 
-TEST_CASE("render: white furnace, 1/(1 - albedo)", "[render]") {
+TEST_CASE("render: white furnace, 1/(1 - albedo)", "[heavy][render]") {
   expect_mean(render(scene_of(furnace(0.5)), options_of(64, 64, 64)), 2);
   expect_mean(render(scene_of(furnace(0.8)), options_of(64, 64, 128)), 5);
 }
 
-TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[render]") {
+TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy][render]") {
   const auto scene = scene_of(furnace(0.8));
   for (const int bounces : {0, 1, 3, 30}) {
     RenderOptions options = options_of(48, 48, 64);

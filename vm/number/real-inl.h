@@ -60,9 +60,10 @@ HWY_INLINE Real power_of_two(Real n) {
 }
 HWY_INLINE Scaled<Real> split_power_of_two(Real x) {
   const bool subnormal = x.v < 0x1p-1022;
-  const auto bits = std::bit_cast<std::int64_t>(subnormal ? x.v * 0x1p54 : x.v);
-  const std::int64_t exponent = (bits - 0x3fe6a09e667f3bcd) >> 52;
-  return {{std::bit_cast<double>(bits - exponent * (std::int64_t{1} << 52))},
+  // Unsigned: of a negative number, whose result nobody uses, the difference can wrap round.
+  const auto bits = std::bit_cast<std::uint64_t>(subnormal ? x.v * 0x1p54 : x.v);
+  const std::int64_t exponent = static_cast<std::int64_t>(bits - 0x3fe6a09e667f3bcd) >> 52;
+  return {{std::bit_cast<double>(bits - (static_cast<std::uint64_t>(exponent) << 52))},
           {static_cast<double>(subnormal ? exponent - 54 : exponent)}};
 }
 
