@@ -51,6 +51,16 @@ double least_extent(const Box& box) {
   return least;
 }
 
+double greatest_extent(const Box& box) {
+  const glm::dvec3 size = box.hi - box.lo;
+  return std::max({size.x, size.y, size.z});
+}
+
+bool adds(Kind blend) {
+  return blend == Kind::SmoothUnion || blend == Kind::ChamferUnion || blend == Kind::RoundUnion ||
+         blend == Kind::StairsUnion;
+}
+
 glm::dvec3 nearest_point(const Box& box, glm::dvec3 p) { return glm::min(glm::max(p, box.lo), box.hi); }
 
 class Linter {
@@ -200,18 +210,18 @@ class Linter {
   }
 
   // A blend of width k moves the surface by up to k/4, a cut edge by up to k/2: beyond half a part's thickness
-  // nothing of its shape is left.
+  // nothing of its shape is left. A union only adds, and only near the other part: a long thin one keeps its shape.
   void check_blend(NodeId id) {
     if (!is_blend(kind(id))) return;
     const double width = graph_.params(id)[0];
     const double moved = kind(id) <= Kind::SmoothSubtraction ? width / 4 : width / 2;
     for (const NodeId operand : graph_.children(id)) {
-      const double extent = least_extent(box(operand));
+      const double extent = adds(kind(id)) ? greatest_extent(box(operand)) : least_extent(box(operand));
       if (moved <= extent / 2) continue;
       const std::string_view name = spec(kind(id)).params[0].name;
       warn("W0505", id, fmt::format("the blend is too wide for the {}", word(operand)),
-           fmt::format("`{}` of {:.4g} moves the surface by up to {:.4g}, and that is {:.4g} thick", name, width,
-                       moved, extent),
+           fmt::format("`{}` of {:.4g} moves the surface by up to {:.4g}, and that is {:.4g} {}", name, width, moved,
+                       extent, adds(kind(id)) ? "long" : "thick"),
            fmt::format("with `{}` up to {:.4g} the part keeps its shape", name, width * extent / 2 / moved));
       return;
     }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
@@ -25,7 +24,7 @@ bool gives_material(const CheckedNode& node) {
 bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
   bool all = true;
   for (const Formula::Node& node : formula.nodes) {
-    if (node.function != "const" || std::abs(node.value) <= std::numeric_limits<float>::max()) continue;
+    if (node.function != "const" || std::isfinite(static_cast<float>(node.value))) continue;
     all = false;
     const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
     diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",

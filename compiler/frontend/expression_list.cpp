@@ -95,6 +95,12 @@ std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
+// A byte order mark says nothing here.
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 bool is_comment(const std::vector<std::string_view>& words) { return words.empty() || words[0].starts_with('#'); }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -105,7 +111,7 @@ class ListReader {
   ListReader(const Source& source, Diagnostics& diagnostics) : text_(source.text()), diagnostics_(diagnostics) {}
 
   std::optional<syntax::File> read() {
-    std::string_view rest = text_;
+    std::string_view rest = without_mark(text_);
     while (!rest.empty()) {
       std::vector<std::string_view> words = words_of(take_line(rest));
       if (is_comment(words)) continue;
@@ -174,9 +180,9 @@ class ListReader {
 
   std::string constant(std::string_view word) {
     double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc() && end == word.data() + word.size() &&
-        std::abs(value) <= std::numeric_limits<float>::max()) {
+    auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error == std::errc::result_out_of_range && word.find("e-") != word.npos) error = {};  // nothing but 0
+    if (error == std::errc() && end == word.data() + word.size() && std::isfinite(static_cast<float>(value))) {
       return fmt::format("{}", value);
     }
     diagnostics_.error("E0605", span(word), fmt::format("`{}` is not a number that a float can be", word), "",
@@ -248,6 +254,7 @@ class ListReader {
 
 bool is_expression_list(std::string_view text) {
   bool comment = false;
+  text = without_mark(text);
   while (!text.empty()) {
     const std::vector<std::string_view> words = words_of(take_line(text));
     if (is_comment(words)) {

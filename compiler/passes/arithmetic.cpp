@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <variant>
@@ -28,7 +27,7 @@ double evaluate(Kind kind, std::span<const double> operands) {
   return vm::evaluate_distance(std::get<vm::VerifiedProgram>(verified), glm::dvec3(0), workspace);
 }
 
-bool fits_float(double value) { return std::abs(value) <= std::numeric_limits<float>::max(); }
+bool fits_float(double value) { return std::isfinite(static_cast<float>(value)); }
 
 bool is_power_of_two(double value) {
   int exponent;

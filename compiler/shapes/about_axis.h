@@ -21,7 +21,7 @@ inline double radius_about_y(const Box& box) {
                             std::max(std::abs(box.lo.z), std::abs(box.hi.z)));
 }
 
-// A box whose distance is part of a result is larger than the solid by this part of its size, so that on the solid's
+// A box or tube whose distance is part of a result is larger than the solid by this part of its size, so that on the solid's
 // surface it is the solid's own distance that counts, and its material.
 inline constexpr double kAside = 1e-3;
 

@@ -84,8 +84,10 @@ Code mirror_code(Params p) { return {.points = {{{Opcode::Mirror, mirror_immedia
 // For points of the tube, |T(p) - T(q)|^2 <= (a + k R b)^2 + b^2 with a, b their distances across and along the axis
 // and R the tube's radius: the largest stretch of [[1, kR], [0, 1]].
 
+double tube_radius(const Box& box) { return radius_about_y(box) * (1 + kAside); }
+
 std::vector<double> derive_twist(Params p, std::span<const Knowledge> children) {
-  const double radius = radius_about_y(children[0].box);
+  const double radius = tube_radius(children[0].box);
   return {radius, children[0].lipschitz * largest_stretch(1, std::abs(p[0]) * kRadians * radius, 1)};
 }
 
@@ -134,7 +136,7 @@ Scales scales(Params p) { return {std::min(p[0], p[1]), std::max(p[0], p[1]), (p
 
 std::vector<double> derive_taper(Params p, std::span<const Knowledge> children) {
   const Scales s = scales(p);
-  const double radius = radius_about_y(children[0].box) * s.most;
+  const double radius = tube_radius(children[0].box) * s.most;
   const double shear = std::abs(s.slope) * radius / (s.least * s.least);
   return {radius, children[0].lipschitz * largest_stretch(1 / s.least, shear, 1)};
 }

@@ -121,15 +121,20 @@ Complaint check_repetition_child(Params p, std::span<const Knowledge> children) 
 Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
   const Repeated r = repeated(p);
   Knowledge k = mapped(children[0]);
+  double moved = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const RepeatedAxis& a = r.axes[i];
     const auto axis = static_cast<int>(i);
     const double inf = std::numeric_limits<double>::infinity();
     k.symmetric[i] = children[0].symmetric[i] && !r.jitters();
     if (!a.repeated() && a.jitter == 0) continue;
+    // A copy may stand as far from its cell's middle as the child reaches: that much cancels.
+    const double reach = std::max(std::abs(a.lo), std::abs(a.hi)) + a.jitter;
+    moved = std::max(moved, reach * std::max(1.0, children[0].lipschitz));
     k.box.lo[axis] = a.endless() && a.repeated() ? -inf : k.box.lo[axis] + a.position(a.first()) - a.jitter;
     k.box.hi[axis] = a.endless() && a.repeated() ? inf : k.box.hi[axis] + a.position(a.last()) + a.jitter;
   }
+  k.magnitude += moved;
   k.inside = std::max(k.inside, Exactness::Bound);
   if (!r.limited()) return k;
   k = only_bound(k);

@@ -97,6 +97,19 @@ TEST_CASE("what is an expression list", "[import]") {
   }
 }
 
+TEST_CASE("a byte order mark and the extremes of float are read", "[import]") {
+  CHECK(compiler::is_expression_list("\xEF\xBB\xBF_0 var-x\n"));
+  for (const char* number : {"340282350000000000000000000000000000000", "3.4028235e38", "1e-400", "-1e-45"}) {
+    compiler::Diagnostics diagnostics;
+    const std::string text = std::string("\xEF\xBB\xBF_0 const ") + number + "\n_1 var-x\n_2 mul _0 _1\n";
+    INFO(number);
+    CHECK(compiler::compile(compiler::Source("a.vm", text), diagnostics));
+    CHECK(diagnostics.errors() == 0);
+  }
+  compiler::Diagnostics diagnostics;
+  CHECK(!compiler::compile(compiler::Source("a.vm", "_0 const 3.41e38\n"), diagnostics));
+}
+
 TEST_CASE("prospero: small, proved, and the same as line by line", "[import]") {
   const std::string text = model("prospero.vm");
   const CompiledScene scene = compiled(text);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <string>
 
 #include "compiler/bounds.h"
@@ -118,6 +119,40 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
           {2 * far - 1.25, 0, 0, 2 * far - 3, 0, 0.25, 2 * far - 2, 1, 0, 0.125});
     check(Kind::Taper, {1 / far, 1 / far, 1}, Kind::Cylinder, {far, 0.125});
     check(Kind::Extrude, {1}, Kind::IsoscelesTriangle, {far, far});
+    if (far > 1e3) continue;  // the copies that count are too many
+    const double beside = 0.25 * far / 10;
+    check(Kind::Repetition, {1, 0, 0, 0, 0, 0, 0, 0, 0}, Kind::Triangle,
+          {beside, 0, 0, beside + 0.25, 0, 0, beside, 0.25, 0.125, 0.125});
+  }
+}
+
+// Once, a twist's or taper's tube touched the solid's own edges, and there its distance, many times as steep, joined
+// in.
+TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bounds]") {
+  for (const auto& [kind, params] : {std::pair(Kind::Taper, std::vector<double>{0.3, 1, 0.001}),
+                                     std::pair(Kind::Twist, std::vector<double>{2000})}) {
+    Scene scene;
+    NodeMaker maker(scene.graph);
+    const NodeId child[] = {maker.make(Kind::Box, {{1.0, 1.0, 1.0}}, {})};
+    scene.root = maker.make(kind, params, child);
+    auto verified = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1000));
+    const vm::VerifiedProgram& program = std::get<vm::VerifiedProgram>(verified);
+    const double magnitude = maker.known(scene.root).magnitude;
+    vm::Workspace workspace;
+    Random random(1);
+    for (int i = 0; i < 4000; ++i) {
+      const double y = random.uniform(-0.999, 0.999);
+      const double angle = kind == Kind::Twist ? params[0] * y * std::numbers::pi / 180 : 0;
+      const double scale = kind == Kind::Taper ? std::clamp(0.65 + 350 * y, 0.3, 1.0) : 1;
+      const double x = (std::cos(angle) - std::sin(angle)) * scale, z = (std::sin(angle) + std::cos(angle)) * scale;
+      const float px = static_cast<float>(x), py = static_cast<float>(y), pz = static_cast<float>(z);
+      const double wide = vm::evaluate_distance(program, dvec3(px, py, pz), workspace);
+      float narrow;
+      vm::evaluate_distance(program, {&px, &py, &pz}, 1, &narrow, workspace);
+      INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << wide << ' ' << narrow);
+      const double size = std::max({1.0, std::hypot(x, y, z), std::abs(wide)});
+      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + magnitude));
+    }
   }
 }
 
