@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compiler/affine.h"
+#include "compiler/blends.h"
 #include "compiler/containment.h"
 #include "compiler/passes/signs.h"
 #include "compiler/report.h"
@@ -22,8 +23,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Steps this many times shorter are reported.
 constexpr double kSteep = 20;
-
-bool is_blend(Kind kind) { return kind >= Kind::SmoothUnion && kind <= Kind::StairsSubtraction; }
 
 // Alterations that move, turn or repeat what they hold, or only name it: nothing stays nothing, thin stays thin.
 bool rearranges(Kind kind) {
@@ -54,11 +53,6 @@ double least_extent(const Box& box) {
 double greatest_extent(const Box& box) {
   const glm::dvec3 size = box.hi - box.lo;
   return std::max({size.x, size.y, size.z});
-}
-
-bool adds(Kind blend) {
-  return blend == Kind::SmoothUnion || blend == Kind::ChamferUnion || blend == Kind::RoundUnion ||
-         blend == Kind::StairsUnion;
 }
 
 glm::dvec3 nearest_point(const Box& box, glm::dvec3 p) { return glm::min(glm::max(p, box.lo), box.hi); }
@@ -103,7 +97,7 @@ class Linter {
       if (!field_.reached(id)) continue;
       const std::vector<NodeId> children = field_.children(id);
       const auto gone = [&](NodeId child) { return bool(vanishes_[child]); };
-      switch (kind(id)) {
+      switch (is_blend(kind(id)) ? hard(kind(id)) : kind(id)) {
         case Kind::Union:
           vanishes_[id] = std::all_of(children.begin(), children.end(), gone);
           break;
@@ -114,7 +108,8 @@ class Linter {
           vanishes_[id] = gone(children[0]) || check_cuts(id, children);
           break;
         default:
-          vanishes_[id] = (rearranges(kind(id)) || kind(id) == Kind::Taper) && gone(children[0]);
+          vanishes_[id] =
+              (rearranges(kind(id)) || kind(id) == Kind::Taper || kind(id) == Kind::Bend) && gone(children[0]);
           break;
       }
     }
@@ -137,7 +132,9 @@ class Linter {
              "make the cut smaller, or leave the node out; the first node is the one that is cut");
         return true;
       }
-      if (vanishes_[operands[0]] || !containment_.avoids(graph_, cut, box(operands[0]))) continue;
+      // A blend takes off more than the cut.
+      if (vanishes_[operands[0]] || is_blend(kind(id)) || !containment_.avoids(graph_, cut, box(operands[0])))
+        continue;
       warn("W0503", cut, fmt::format("the {} cuts nothing off", word(cut)), "it does not touch what it is taken from",
            "move it there, or leave it out; a cut has the place of the subtraction, not of the scene");
     }
@@ -170,10 +167,13 @@ class Linter {
     const Material& material = tables_.materials[tables_.surfaces[number].material];
     return material.type == Material::Type::Emissive && material.emission != glm::dvec3(0);
   }
-  // Whether the outermost paint is a lamp's.
+  // Whether all of it is lamps, by the outermost paint.
   bool lamp_in(NodeId id) const {
     while (kind(id) == Kind::Scaled || kind(id) == Kind::Transform) id = graph_.children(id)[0];
-    return kind(id) == Kind::Paint && emits(id);
+    if (kind(id) == Kind::Paint) return emits(id);
+    const std::span<const NodeId> arms = graph_.children(id);
+    return kind(id) == Kind::Union &&
+           std::all_of(arms.begin(), arms.end(), [this](NodeId arm) { return lamp_in(arm); });
   }
 
   void check_lamp(NodeId id) {
@@ -215,13 +215,14 @@ class Linter {
     if (!is_blend(kind(id))) return;
     const double width = graph_.params(id)[0];
     const double moved = kind(id) <= Kind::SmoothSubtraction ? width / 4 : width / 2;
+    const bool adds = hard(kind(id)) == Kind::Union;
     for (const NodeId operand : graph_.children(id)) {
-      const double extent = adds(kind(id)) ? greatest_extent(box(operand)) : least_extent(box(operand));
+      const double extent = adds ? greatest_extent(box(operand)) : least_extent(box(operand));
       if (moved <= extent / 2) continue;
       const std::string_view name = spec(kind(id)).params[0].name;
       warn("W0505", id, fmt::format("the blend is too wide for the {}", word(operand)),
            fmt::format("`{}` of {:.4g} moves the surface by up to {:.4g}, and that is {:.4g} {}", name, width, moved,
-                       extent, adds(kind(id)) ? "long" : "thick"),
+                       extent, adds ? "long" : "thick"),
            fmt::format("with `{}` up to {:.4g} the part keeps its shape", name, width * extent / 2 / moved));
       return;
     }

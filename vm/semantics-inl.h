@@ -11,6 +11,7 @@
 #define FATHOM_VM_SEMANTICS_INL
 #endif
 
+#include <algorithm>
 #include <cstdint>
 
 #include "vm/domain-inl.h"
@@ -79,9 +80,9 @@ HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_hei
 template <class T>
 HWY_INLINE T cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
-  const T qx = rho - k[1], qy = y + k[0];    // from the bottom rim
-  const T side = qx * k[3] + qy * k[4];      // distance to the side's line
-  const T along = qy * k[3] - qx * k[4];     // from the bottom rim up the side
+  const T qx = rho - k[1], qy = y + k[0];  // from the bottom rim
+  const T side = qx * k[3] + qy * k[4];    // distance to the side's line
+  const T along = qy * k[3] - qx * k[4];   // from the bottom rim up the side
   const T beyond = along - max(zero, min(k[5], along));
   const T cap = abs(y) - k[0];
   const T past_rim = max(zero, rho - select(y < zero, k[1], k[2]));
@@ -154,19 +155,22 @@ HWY_INLINE double polygon_sense(const Outline& corners) {
 // the corners and on the medial axis. For each edge, `across` is the signed offset from its line, positive to the
 // right, and `beyond` how far past its nearer end. Where the nearest point lies within an edge nothing comes between,
 // so the edge's side tells inside from outside and the distance is `across` itself: no square root, and on the
-// outline, where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Where the nearest point is a
-// corner, the sign is the parity of the edges to the right of p, an edge's lower end counting and its upper not.
+// outline, where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Elsewhere the sign is the
+// parity of the edges to the right of p, an edge's lower end counting and its upper not: off the outline, too, for
+// rounding may call the far edge of a thin spike the nearest, whose side is the other one.
 template <class T, class Outline>
 HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
   using C = Constant<T>;
   const C zero = constant<T>(0.0), one = constant<T>(1.0);
   C side = one;
+  double longest = 0;
   T nearest = as_value(p.x, constant<T>(std::numeric_limits<float>::max())), offset = nearest, past = nearest;
   for (std::size_t i = 0; i < corners.count(); ++i) {
     const std::size_t j = next_corner(corners, i);
     const double ex = corners(j, 0) - corners(i, 0), ey = corners(j, 1) - corners(i, 1);
     const double length = std::sqrt(ex * ex + ey * ey);
     if (!(length > 0)) continue;
+    longest = std::max(longest, length);
     const C ux = constant<T>(ex / length), uy = constant<T>(ey / length);
     const T wx = p.x - corners.constant(i, 0), wy = p.y - corners.constant(i, 1);
     const T along = wx * ux + wy * uy, across = wx * uy - wy * ux;
@@ -180,7 +184,9 @@ HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
     side = select(p.y < corners.constant(ey > 0 ? i : j, 1), side,
                   select(p.y < corners.constant(ey > 0 ? j : i, 1), flipped, side));
   }
-  return select(past > zero, sqrt(nearest) * side, offset * constant<T>(polygon_sense(corners)));
+  const C on_outline = constant<T>(0x1p-21 * longest);  // no more than what an edge's line is off by in float
+  const T inner = select(on_outline < abs(offset), abs(offset) * side, offset * constant<T>(polygon_sense(corners)));
+  return select(past > zero, sqrt(nearest) * side, inner);
 }
 // 1-Lipschitz: what it is at the box's middle, give or take half the diagonal. The slack outweighs the rounding at
 // the middle by far.
@@ -296,9 +302,9 @@ HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k
   return max(a, b) + h * h * inv4k;
 }
 
-// Where the surfaces are within `radius` of each other's edge, the plane at 45 degrees through their edge's neighbours;
-// halved, so that two parallel surfaces' gradients add up to no more than 1 (MERCURY's hg_sdf divides by sqrt 2, which
-// is exact for orthogonal surfaces and too much for others).
+// Where the surfaces are within `radius` of each other's edge, the plane at 45 degrees through their edge's
+// neighbours; halved, so that two parallel surfaces' gradients add up to no more than 1 (MERCURY's hg_sdf divides by
+// sqrt 2, which is exact for orthogonal surfaces and too much for others).
 template <class T>
 HWY_INLINE T chamfer_min(const T& a, const T& b, Constant<T> radius) {
   const T lesser = min(a, b);  // on the left of the sum, so that the chamfer belongs to the nearer surface
@@ -312,8 +318,8 @@ HWY_INLINE T round_min(const T& a, const T& b, Constant<T> radius) {
   return max(radius, min(a, b)) - length(max(zero, radius - a), max(zero, radius - b));
 }
 
-// The same with `steps` stairs of two faces each, every one of height `step` (after MERCURY's hg_sdf, stairs; a fold of
-// a - b, so no steeper than a and b).
+// The same with `steps` stairs of two faces each, every one of height `step` (after MERCURY's hg_sdf, stairs; a fold
+// of a - b, so no steeper than a and b).
 template <class T>
 HWY_INLINE T stairs_min(const T& a, const T& b, const Constant<T>* k) {  // k: radius, step, 1 / (2 step)
   const T lesser = min(a, b), greater = max(a, b);

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "compiler/affine.h"
+#include "compiler/blends.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 
@@ -25,30 +26,18 @@ NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId 
   return out.add(Kind::Round, std::array<double, 1>{radius}, std::array<NodeId, 1>{child}, origin);
 }
 
-// Without the blend.
-Kind hard(Kind smooth) {
-  switch (smooth) {
-    case Kind::SmoothUnion:
-    case Kind::ChamferUnion:
-    case Kind::RoundUnion:
-    case Kind::StairsUnion:
-      return Kind::Union;
-    case Kind::SmoothIntersection:
-    case Kind::ChamferIntersection:
-    case Kind::RoundIntersection:
-    case Kind::StairsIntersection:
-      return Kind::Intersection;
-    default:
-      return Kind::Subtraction;
-  }
-}
-
 }  // namespace
 
 Scene fold(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     const auto params = scene.graph.params(id);
-    switch (scene.graph.kind(id)) {
+    const Kind kind = scene.graph.kind(id);
+    if (is_blend(kind)) {
+      if (children.size() == 1) return children[0];
+      if (params[0] <= kLeastBlend) return out.add(hard(kind), {}, children, scene.graph.origin(id));
+      return keep(scene, out, id, children);
+    }
+    switch (kind) {
       case Kind::Round:
         return fold_round(scene, out, id, params[0], children[0]);
       case Kind::Transform:
@@ -70,22 +59,6 @@ Scene fold(const Scene& scene) {
       case Kind::Subtraction:
       case Kind::Xor:
         if (children.size() == 1) return children[0];
-        break;
-      case Kind::SmoothUnion:
-      case Kind::SmoothIntersection:
-      case Kind::SmoothSubtraction:
-      case Kind::ChamferUnion:
-      case Kind::ChamferIntersection:
-      case Kind::ChamferSubtraction:
-      case Kind::RoundUnion:
-      case Kind::RoundIntersection:
-      case Kind::RoundSubtraction:
-      case Kind::StairsUnion:
-      case Kind::StairsIntersection:
-      case Kind::StairsSubtraction:
-        if (children.size() == 1) return children[0];
-        if (params[0] <= kLeastBlend)
-          return out.add(hard(scene.graph.kind(id)), {}, children, scene.graph.origin(id));
         break;
       default:
         break;

@@ -149,6 +149,9 @@ Code extrude_code(Params params) { return {.after = {{Opcode::Slab, {params[0]}}
 Code revolve_code(Params params) { return {.points = {{{Opcode::Revolve, {params[0]}}}}}; }
 
 Complaint check_elongate(Params params) {
+  if (params[0] == 0 && params[1] == 0 && params[2] == 0) {
+    return "`half_size` is 0 along every axis, which changes nothing; leave the elongate out";
+  }
   if (params[0] >= 0 && params[1] >= 0 && params[2] >= 0) return std::nullopt;
   return "`half_size` holds a negative number; give how far to pull apart along each axis, 0 or more";
 }
@@ -181,7 +184,7 @@ std::vector<NodeSpec> alteration_rows() {
       {.kind = Kind::Elongate,
        .name = "elongate",
        .category = kAlteration,
-       .params = {{"half_size", ParamType::Vec3, Rule::NotZero, kRequired, "how far along each axis, 0 or more"}},
+       .params = {{"half_size", ParamType::Vec3, Rule::Any, kRequired, "how far along each axis, 0 or more"}},
        .doc = "a node cut in the middle and pulled apart",
        .check = check_elongate,
        .code = elongate_code,

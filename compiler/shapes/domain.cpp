@@ -148,7 +148,7 @@ Complaint check_taper_child(Params, std::span<const Knowledge> children) {
 Knowledge know_taper(Params p, std::span<const Knowledge> children) {
   const Scales s = scales(p);
   Knowledge k = in_tube(children[0], p[3], p[4], children[0].reach * std::min(1.0, 1 / s.most));
-  if (s.least < 1) k.magnitude += largest_coordinate(children[0].box) * std::max(1.0, children[0].lipschitz);
+  if (s.least < 1) k.magnitude += radius_about_y(children[0].box) * std::max(1.0, children[0].lipschitz);
   return k;
 }
 

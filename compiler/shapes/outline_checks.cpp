@@ -131,7 +131,8 @@ Complaint check_horseshoe(Params p) {
 Complaint check_lens(Params p) {
   if (p[1] < p[0]) return std::nullopt;
   return fmt::format(
-      "`half_width` {} is not smaller than `half_height` {}; turn the lens with rotate, or use `circle`", p[1], p[0]);
+      "`half_width` {} is not smaller than `half_height` {}; exchange them and turn it with rotate, or make it round",
+      p[1], p[0]);
 }
 
 Complaint check_moon(Params p) {

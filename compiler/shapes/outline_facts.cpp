@@ -236,7 +236,7 @@ double segment_magnitude(Params p) {
 // Each edge is evaluated from its first corner, which near the surface is no further than the whole's size.
 double polygon_magnitude(Params p) {
   const Box box = polygon_bound(p);
-  return glm::length(box.hi - box.lo);
+  return glm::length(dvec2(box.hi - box.lo));
 }
 // The cut's circle is evaluated from its own centre.
 double moon_magnitude(Params p) { return p[2]; }

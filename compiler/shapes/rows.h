@@ -41,10 +41,12 @@ Code code_of(Params params) {
 
 // The largest coordinate in the box, infinite when it has no end; 0 when it is empty.
 double largest_coordinate(const Box& box);
-// The magnitude of a shape whose parts are evaluated from points as far off as its box reaches.
+// The magnitude of an outline whose parts are evaluated from points as far off as its box reaches in the plane.
 template <Box (*Bound)(Params)>
-double box_magnitude(Params params) {
-  return largest_coordinate(Bound(params));
+double outline_magnitude(Params params) {
+  Box box = Bound(params);
+  box.lo.z = box.hi.z = 0;
+  return largest_coordinate(box);
 }
 
 inline constexpr std::array<bool, 3> kAllAxes = {true, true, true};

@@ -17,7 +17,8 @@ constexpr const char* kExamples =
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
-  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp; may be repeated",
+  arguments.option("-o,--output", "FILE",
+                   "Picture to write: png, jpg, jpeg or bmp; may be repeated (default: the scene's name with .png)",
                    append_to(read_output, request.outputs));
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));

@@ -57,6 +57,7 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
   const auto* program = std::get_if<vm::VerifiedProgram>(&result);
   if (program == nullptr) return 0;
   const double magnitude = compiler::analyse(scene.graph)[scene.root].magnitude;
+  CHECK(std::isfinite(magnitude));
   vm::Workspace workspace;
   double largest = 0;
   for (int i = 0; i < points; ++i) {
@@ -118,6 +119,7 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
     check(Kind::Mirror, {1, 0, 0, far}, Kind::Triangle,
           {2 * far - 1.25, 0, 0, 2 * far - 3, 0, 0.25, 2 * far - 2, 1, 0, 0.125});
     check(Kind::Taper, {1 / far, 1 / far, 1}, Kind::Cylinder, {far, 0.125});
+    check(Kind::Taper, {1 / far, 1 / far, 1}, Kind::InfiniteCylinder, {far});
     check(Kind::Extrude, {1}, Kind::IsoscelesTriangle, {far, far});
     if (far > 1e3) continue;  // the copies that count are too many
     const double beside = 0.25 * far / 10;
