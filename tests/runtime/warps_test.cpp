@@ -31,9 +31,10 @@ double box(dvec3 p, dvec3 half) {
 struct Case {
   const char* name;
   std::string node;
-  Field field;       // the value a naive program would step by
+  Field field;       // whose zeros are the solid's
   double lipschitz;  // of it, within `radius` of the origin
   double radius;     // holds the solid
+  Field naive;       // the value a naive program steps by
 };
 
 // Turned by -k y to be straight again.
@@ -52,19 +53,23 @@ long permuted(long n) {
   return m * (34 * m + 1) % 289;
 }
 
-// 5 x 5 x 5 balls, each moved by up to 0.15 along each axis.
+// One of 5 x 5 x 5 balls, each moved by up to 0.15 along each axis.
+double scattered_ball(dvec3 p, long i, long j, long l) {
+  const long x = permuted(permuted(permuted(i) + j) + l), y = permuted(x + 1), z = permuted(y + 1);
+  return glm::length(p - 0.6 * dvec3(i, j, l) - 0.15 * (dvec3(x, y, z) / 144.0 - dvec3(1))) - 0.2;
+}
 double scattered_balls(dvec3 p) {
   double nearest = 1e9;
   for (long i = -2; i <= 2; ++i) {
     for (long j = -2; j <= 2; ++j) {
-      for (long l = -2; l <= 2; ++l) {
-        const long x = permuted(permuted(permuted(i) + j) + l), y = permuted(x + 1), z = permuted(y + 1);
-        const dvec3 centre = 0.6 * dvec3(i, j, l) + 0.15 * (dvec3(x, y, z) / 144.0 - dvec3(1));
-        nearest = std::min(nearest, glm::length(p - centre) - 0.2);
-      }
+      for (long l = -2; l <= 2; ++l) nearest = std::min(nearest, scattered_ball(p, i, j, l));
     }
   }
   return nearest;
+}
+double ball_of_own_cell(dvec3 p) {
+  const auto cell = [](double a) { return std::clamp(std::lround(a / 0.6), -2L, 2L); };
+  return scattered_ball(p, cell(p.x), cell(p.y), cell(p.z));
 }
 
 double rough_ball(dvec3 p) {
@@ -76,17 +81,17 @@ const std::vector<Case>& cases() {
   const double kr = 5 * 1.13;
   static const std::vector<Case> all = {
       {"twist, k = 5", R"({"type": "twist", "turn": "5*180/pi", "of": {"type": "box", "half_size": [0.5, 1, 0.05]}})",
-       blade, (kr + std::sqrt(kr * kr + 4)) / 2, 1.13},
+       blade, (kr + std::sqrt(kr * kr + 4)) / 2, 1.13, blade},
       {"scale 3:1:0.4", R"({"type": "torus", "major_radius": 0.5, "minor_radius": 0.2, "scale": [3, 1, 0.4]})",
-       stretched_ring, 1 / 0.4, 2.2},
+       stretched_ring, 1 / 0.4, 2.2, stretched_ring},
       {"jittered repetition",
        R"({"type": "repetition", "period": [0.6, 0.6, 0.6], "count": [5, 5, 5], "jitter": [0.15, 0.15, 0.15],
            "of": {"type": "sphere", "radius": 0.2}})",
-       scattered_balls, 1, 2.8},
+       scattered_balls, 1, 2.8, ball_of_own_cell},
       {"displacement, a w = 1",
        R"J({"type": "displacement", "formula": "0.05*sin(20*x)*sin(20*y)*sin(20*z)",
            "of": {"type": "sphere", "radius": 1}})J",
-       rough_ball, 2, 1.06},
+       rough_ball, 2, 1.06, rough_ball},
   };
   return all;
 }
@@ -147,7 +152,7 @@ constexpr double kGross = 0.02;  // scene units: a hit this far off is another s
 Truth naive(const Case& c, const Line& line) {
   double t = 0;
   for (int i = 0; i < 1000 && t < 10 * c.radius; ++i) {
-    const double f = c.field(line.at(t));
+    const double f = c.naive(line.at(t));
     if (f < 1e-5) return {Outcome::Hit, t};
     t += f;
   }
