@@ -57,6 +57,25 @@ TEST_CASE("cli: dump prints JSON and drawings") {
   CHECK_THAT(folder.run("dump two.json --format mermaid").out, Contains("flowchart TD") && Contains("n4 -->|1| n1"));
 }
 
+// Once, an outline's groups after the first were left out, and all offsets behind them were wrong.
+TEST_CASE("cli: dump prints every group of an outline as JSON, and what is fused") {
+  const Folder folder;
+  folder.write("triangle.json", R"({"version": 1, "objects": [
+    {"type": "extrude", "half_depth": 1, "of": {"type": "polygon", "points": [[0, 0], [2, 0], [0, 1]]}},
+    {"type": "sphere", "radius": 1, "translate": [0, 5, 0]}]})");
+  const auto program = nlohmann::json::parse(folder.run("dump triangle.json --format json").out);
+  CHECK(program["code"].size() == 4);  // polygon, slab, meet, the moved sphere joined
+  const auto& polygon = program["code"][0];
+  CHECK(polygon["op"] == "polygon");
+  CHECK(polygon["operand"] == 3);
+  CHECK(polygon["immediates"] == nlohmann::json::parse(R"([{"x": 0, "y": 0}, {"x": 2, "y": 0}, {"x": 0, "y": 1}])"));
+  CHECK(program["code"][1]["offset"] == 7);
+  const auto& sphere = program["code"][3];
+  CHECK(sphere["at"] == nlohmann::json({0, 5, 0}));
+  CHECK(sphere["min"] == true);
+  CHECK(sphere["immediates"] == nlohmann::json({{"radius", 1}}));
+}
+
 TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
   const Folder folder;
   folder.write("fold.json", R"({"version": 1, "objects": [
