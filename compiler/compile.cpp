@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <utility>
 
 #include "compiler/bounds.h"
+#include "compiler/fits_float.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/fuse.h"
@@ -40,8 +39,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
 constexpr std::string_view kFuse = "fuse";  // the last pass, over programs
 
 bool leaves_float(const Instruction& instruction) {
-  return std::any_of(instruction.immediates.begin(), instruction.immediates.end(),
-                     [](double k) { return !(std::abs(k) <= std::numeric_limits<float>::max()); });
+  return !std::all_of(instruction.immediates.begin(), instruction.immediates.end(), fits_float);
 }
 
 // The first node whose code has numbers beyond those of float.

@@ -26,9 +26,10 @@ std::vector<Step> steps_of(const vm::Program& program) {
     const std::uint32_t word = program.words[at];
     const std::size_t end = at + vm::instruction_length(word);
     const vm::OpcodeInfo& row = *vm::find_opcode(word & 0xff);
+    const std::size_t own = at + 1 + static_cast<std::size_t>(vm::leading_immediates(word));
     Step step{row.opcode, vm::operand_of(word), {}, program.debug[steps.size()]};
     for (std::size_t i = at + 1; i < end; ++i) {
-      const bool integer = row.form == Form::Shape && vm::is_integer_immediate(row, static_cast<int>(i - at - 1));
+      const bool integer = i >= own && vm::is_integer_immediate(row, static_cast<int>(i - own));
       step.immediates.push_back(integer ? program.words[i] : program.wide[i]);
     }
     if (row.form == Form::Outline) step.operand = 0;  // append counts the groups
@@ -61,8 +62,9 @@ class Fusing {
 
   void add(Step step) {
     if (step.opcode == Opcode::Drop && move_shape()) return;
-    if (step.opcode == Opcode::Min && join_shape()) return;
-    if (step.form() == Form::Unary || step.form() == Form::Binary) take_operands(step);
+    const bool plain = step.operand == 0;
+    if (step.opcode == Opcode::Min && plain && join_shape()) return;
+    if ((step.form() == Form::Unary || step.form() == Form::Binary) && plain) take_operands(step);
     out_.push_back(std::move(step));
   }
 

@@ -7,7 +7,8 @@
 
 namespace fathom::compiler {
 
-// `program` keeps the verifier's rules, as that of lower() does.
+// `program` keeps the verifier's rules and has its debug entries, as that of lower() does. What is fused already
+// stays.
 vm::Program fuse(const vm::Program& program);
 
 }  // namespace fathom::compiler

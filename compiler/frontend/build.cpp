@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "compiler/fits_float.h"
 #include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
 #include "vm/check.h"
@@ -20,11 +21,10 @@ bool gives_material(const CheckedNode& node) {
   return node.material || std::any_of(node.children.begin(), node.children.end(), gives_material);
 }
 
-// The machine's immediates are floats.
 bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
   bool all = true;
   for (const Formula::Node& node : formula.nodes) {
-    if (node.function != "const" || std::isfinite(static_cast<float>(node.value))) continue;
+    if (node.function != "const" || fits_float(node.value)) continue;
     all = false;
     const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
     diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",

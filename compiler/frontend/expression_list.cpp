@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "compiler/fits_float.h"
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/json_error.h"
@@ -182,7 +181,7 @@ class ListReader {
     double value = 0;
     auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error == std::errc::result_out_of_range && word.find("e-") != word.npos) error = {};  // nothing but 0
-    if (error == std::errc() && end == word.data() + word.size() && std::isfinite(static_cast<float>(value))) {
+    if (error == std::errc() && end == word.data() + word.size() && fits_float(value)) {
       return fmt::format("{}", value);
     }
     diagnostics_.error("E0605", span(word), fmt::format("`{}` is not a number that a float can be", word), "",

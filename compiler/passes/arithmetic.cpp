@@ -4,6 +4,7 @@
 #include <span>
 #include <variant>
 
+#include "compiler/fits_float.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
@@ -26,8 +27,6 @@ double evaluate(Kind kind, std::span<const double> operands) {
   vm::Workspace workspace;
   return vm::evaluate_distance(std::get<vm::VerifiedProgram>(verified), glm::dvec3(0), workspace);
 }
-
-bool fits_float(double value) { return std::isfinite(static_cast<float>(value)); }
 
 bool is_power_of_two(double value) {
   int exponent;

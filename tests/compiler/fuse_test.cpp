@@ -154,6 +154,7 @@ TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
     INFO("seed " << seed);
     check_same(verified(*plain), verified(once), random);
     CHECK(once.words.size() <= plain->words.size());
+    CHECK(compiler::fuse(once).words == once.words);
     // Every instruction keeps the place it comes from.
     REQUIRE(once.debug.size() == verified(once).instructions());
   }
