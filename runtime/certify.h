@@ -1,35 +1,45 @@
-// Tier 3 of marching: the first root along a ray by certified bisection in double, for the few rays that float steps
-// cannot decide (grazing, nearly touching, or simply long).
+// Tier 3 of marching: the first root along a ray by certified search in double, for the few rays that float steps
+// cannot decide (grazing, nearly touching, or simply long), and the reference that everything else is compared with.
 //
-// A segment [a,b] on which g keeps its sign at both ends is free of surface
-//   - when |g(a)| + |g(b)| > L (b - a): the two unbounding balls cover it (Hart, "Sphere Tracing", 1996), or
-//   - when interval arithmetic over its box excludes zero (Mitchell, "Robust Ray Intersection with Interval
-//     Arithmetic", 1990).
-// Otherwise it is cut in two, near half first, until a change of sign is bracketed (hit) or the segment is too short
-// to matter (contact: treated as free, and reported). Tested by: tests/runtime/certify_test.cpp
+// A segment [a,b] with g(a), g(b) > 0 is free of surface when the value cannot come down to zero between them: when
+// (g(b) - g(a)) and the bounds on g's slope leave no room. With the field's constant L as that bound on either side
+// this is |g(a)| + |g(b)| > L (b - a), two balls that cover the segment (Hart, "Sphere Tracing", 1996). Where it
+// takes more, interval arithmetic along the ray bounds value and slope over the segment (Mitchell, "Robust Ray
+// Intersection with Interval Arithmetic", 1990): a value without zero, or a slope without change of sign, settles it,
+// and what remains is cut in two with the bounds it has, near half first. Tested by: tests/runtime/certify_test.cpp
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 
 #include "runtime/field.h"
+#include "runtime/ray.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
 
 struct Certified {
-  enum class Outcome { Hit, Miss, NotFinite, Exhausted };
-  Outcome outcome;
+  Arrival::Status status;
+  int side;          // of the space searched, +1 or -1
   double t = 0;      // of the hit, in units of |direction|
   double width = 0;  // of the bracket that holds it
   std::uint32_t evaluations = 0;
-  bool contact = false;  // a miss that came too near for the resolution to exclude a touch
 };
 
-// The first root of g(t) = side * f(origin + t direction) in [begin, end], where g(begin) is taken to be positive; a
-// hit at `begin` when it is not. `end` must be finite. Exhausted only after a million evaluations (sixteen thousand
-// when the Lipschitz constant is an estimate), which no certified field has been seen to need.
-Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, double begin, double end,
+// Where to search: [begin, end] of a ray, `end` finite. `hint`: a place where a root is likely to be a little before;
+// begin when none is known.
+struct Stretch {
+  double begin, end;
+  double hint;
+};
+
+// The first root of g(t) = side * f(origin + t direction), where g(begin) is taken to be positive; a hit at `begin`
+// when it is not. `side` 0: the sign of f at `begin`. Contact: no root, but nearer to one than the resolution of
+// 2^-40 max(1, |p|). Always ends: a search that takes more than kSearchBudget evaluations goes on at ever coarser
+// resolution, and what stays open is a contact.
+Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, Stretch stretch,
                   vm::Workspace& workspace);
+
+inline constexpr std::uint32_t kSearchBudget = 1u << 14;  // evaluations at full resolution
 
 }  // namespace fathom::runtime

@@ -27,8 +27,9 @@ bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && st
 
 }  // namespace
 
-Integrator::Integrator(const World& world, Film& film) : world_(world), film_(film), stream_(world.field) {
-  for (std::uint32_t id = Stream::kCapacity; id > 0; --id) free_ids_.push_back(id - 1);
+Integrator::Integrator(const World& world, Film& film)
+    : world_(world), film_(film), marcher_(make_marcher(world.field, world.settings.marching)) {
+  for (std::uint32_t id = Marcher::kCapacity; id > 0; --id) free_ids_.push_back(id - 1);
 }
 
 void Integrator::run(const NextPath& next) {
@@ -42,9 +43,9 @@ void Integrator::run(const NextPath& next) {
       free_ids_.pop_back();
       start(id, *key);
     }
-    if (stream_.empty() && stream_.arrivals().empty()) return;
-    stream_.advance();
-    if (stream_.arrivals().size() >= kShadeBatch || stream_.empty()) settle_arrivals();
+    if (marcher_->empty() && marcher_->arrivals().empty()) return;
+    marcher_->advance();
+    if (marcher_->arrivals().size() >= kShadeBatch || marcher_->empty()) settle_arrivals();
   }
 }
 
@@ -64,19 +65,19 @@ void Integrator::start(std::uint32_t id, const PathKey& key) {
   path.bounces = 0;
   path.result = {};
   ++stats_.primary_rays;
-  stream_.add(id, {ray.origin, ray.direction});
+  marcher_->add(id, {ray.origin, ray.direction});
 }
 
 void Integrator::settle_arrivals() {
   hits_.clear();
-  stream_.take_arrivals(settled_);
+  marcher_->take_arrivals(settled_);
   for (const Arrival& arrival : settled_) {
     if (arrival.status == Arrival::Status::Hit) {
       hits_.push_back(arrival);
       continue;
     }
     Path& path = paths_[arrival.id];
-    if (arrival.status == Arrival::Status::Miss) {
+    if (arrival.status != Arrival::Status::Invalid) {
       path.result.radiance += path.throughput * background_radiance(world_.scene.background, path.direction);
     }
     end(arrival.id);
@@ -94,7 +95,7 @@ void Integrator::shade(std::span<const Arrival> arrivals) {
     hits[i] = {path.origin + arrivals[i].t * path.direction, glm::vec3(-path.direction), arrivals[i].side,
                arrivals[i].width};
   }
-  find_surfaces(world_.scene, world_.field, std::span(hits).first(arrivals.size()), points, stream_.workspace());
+  find_surfaces(world_.scene, world_.field, std::span(hits).first(arrivals.size()), points, marcher_->workspace());
   for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
 }
 
@@ -143,7 +144,7 @@ void Integrator::go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit,
   Ray ray{path.origin, path.direction};
   ray.side = through ? -arrival.side : arrival.side;
   ray.slope = std::abs(glm::dot(point.normal, glm::vec3(path.direction)));
-  stream_.add(id, ray);
+  marcher_->add(id, ray);
 }
 
 void Integrator::end(std::uint32_t id) {
@@ -158,7 +159,7 @@ void Integrator::end(std::uint32_t id) {
 
 Stats Integrator::stats() const {
   Stats stats = stats_;
-  stats.march = stream_.counters();
+  stats.march = marcher_->counters();
   return stats;
 }
 

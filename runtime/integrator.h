@@ -1,6 +1,6 @@
 // The path integrator: camera paths followed from hit to hit until they end.
 //
-// One Integrator per thread keeps a stream of rays full: every ray that arrives is shaded and goes on as the path's
+// One Integrator per thread keeps a marcher full of rays: every ray that arrives is shaded and goes on as the path's
 // next ray, or makes room for a new camera path. Light is found by hitting it.
 //
 //     Integrator integrator(world, film);
@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -78,8 +79,8 @@ class Integrator {
 
   const World& world_;
   Film& film_;
-  Stream stream_;
-  std::array<Path, Stream::kCapacity> paths_;  // [id]
+  std::unique_ptr<Marcher> marcher_;
+  std::array<Path, Marcher::kCapacity> paths_;  // [id]
   std::vector<std::uint32_t> free_ids_;
   std::vector<Arrival> settled_, hits_;  // scratch
   Stats stats_;

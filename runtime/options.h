@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/method.h"
 
 namespace fathom::runtime {
 
@@ -25,6 +26,7 @@ struct RenderOptions {
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
+  Marching marching;
 
   // Called now and then, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;
@@ -40,6 +42,7 @@ struct Settings {
   int threads;
   std::uint64_t seed;
   std::optional<double> far;
+  Marching marching;
 };
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);

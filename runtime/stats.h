@@ -10,13 +10,17 @@ namespace fathom::runtime {
 // Counts of marching alone; each worker has its own.
 struct MarchCounters {
   std::uint64_t rays = 0;
+  // How they ended.
   std::uint64_t hits = 0;
+  std::uint64_t misses = 0;
+  std::uint64_t contacts = 0;  // misses that came nearer to a surface than double resolves
+  std::uint64_t invalid = 0;   // rays that saw a distance that is not finite, or had no direction
+  // Which tier said so; the others were decided in float.
+  std::uint64_t clipped = 0;                // never came into the scene's bound
+  std::uint64_t certified = 0;              // decided in double (runtime/certify.h)
+  std::uint64_t exhausted = 0;              // misses of a method that gives rays up (runtime/method.h)
   std::uint64_t evaluations = 0;            // of the field, float and double
-  std::uint64_t certified = 0;              // rays that double precision decided (runtime/certify.h)
-  std::uint64_t certified_evaluations = 0;  // theirs, part of `evaluations`
-  std::uint64_t contacts = 0;               // misses that came too near to exclude a touch
-  std::uint64_t invalid = 0;                // rays that saw a distance that is not finite, or had no direction
-  std::uint64_t exhausted = 0;              // rays certify() gave up; the field's constant is wrong or an estimate
+  std::uint64_t certified_evaluations = 0;  // those in double, part of `evaluations`
 
   void merge(const MarchCounters& other);
 };

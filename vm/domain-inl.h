@@ -8,6 +8,7 @@
 #define FATHOM_VM_DOMAIN_INL
 #endif
 
+#include "vm/number/along-inl.h"
 #include "vm/number/interval_elementary-inl.h"
 #include "vm/number/number-inl.h"
 
@@ -72,6 +73,8 @@ HWY_INLINE Interval permute(Interval n) {
   const double result = mixed - 289 * std::floor(mixed / 289);
   return {result, result};
 }
+
+HWY_INLINE Along permute(const Along& n) { return steps(n, permute(n.v)); }
 
 // As cell, with copy (i, j, l) moved by up to k[18], k[19], k[20] along the axes, differently for each; k[21..23]:
 // how far the copy's numbers are from the cell's.

@@ -73,6 +73,14 @@ struct Range {
 // Analysis", 1966.
 Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
+// What a program does along a stretch of a line: f(origin + t direction) and its derivative by t, for t in [begin,
+// end] (vm/number/along-inl.h). The derivative's range is infinite where the value may jump.
+struct AlongLine {
+  Range value, derivative;
+};
+AlongLine evaluate_along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
+                         double end, Workspace& workspace);
+
 // What a program can do over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite where nothing
 // is known, as where the value may jump.
 struct SlopeBound {

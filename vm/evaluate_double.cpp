@@ -36,6 +36,18 @@ Range range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Worksp
   return {result.lo, result.hi};
 }
 
+AlongLine along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                Workspace& workspace) {
+  const auto coordinate = [&](int axis) {
+    const double a = origin[axis] + begin * direction[axis], b = origin[axis] + end * direction[axis];
+    // Grown by far more than the rounding of the end points.
+    const double slack = 0x1p-48 * (std::fabs(a) + std::fabs(b));
+    return Along{{std::min(a, b) - slack, std::max(a, b) + slack}, {direction[axis], direction[axis]}};
+  };
+  const Along result = run_once<Along>(program, Vec3<Along>{coordinate(0), coordinate(1), coordinate(2)}, workspace);
+  return {{result.v.lo, result.v.hi}, {result.d.lo, result.d.hi}};
+}
+
 Slope coordinate(double lo, double hi, int axis) {
   const Interval zero{0, 0}, one{1, 1};
   Slope s = make_slope({lo, hi}, axis == 0 ? one : zero, axis == 1 ? one : zero, axis == 2 ? one : zero, 1, 0);
@@ -66,6 +78,11 @@ SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, 
 
 Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   return HWY_NAMESPACE::range(program, lo, hi, workspace);
+}
+
+AlongLine evaluate_along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
+                         double end, Workspace& workspace) {
+  return HWY_NAMESPACE::along(program, origin, direction, begin, end, workspace);
 }
 
 SlopeBound evaluate_slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {

@@ -324,6 +324,12 @@ HWY_INLINE Interval ellipse(const Vec3<Interval>& p, const Interval* k) {
   return outward(at(x.lo, y.lo) - slack, at(x.hi, y.hi) + slack);
 }
 
+HWY_INLINE Along ellipse(const Vec3<Along>& p, const Along* k) {
+  Interval of[4];
+  for (int i = 0; i < 4; ++i) of[i] = k[i].v;
+  return at_most(ellipse(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, of), length(p.x.d, p.y.d).hi);
+}
+
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -15,6 +15,7 @@
 #include <cstdint>
 
 #include "vm/domain-inl.h"
+#include "vm/number/along-inl.h"
 #include "vm/number/batch-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/interval_elementary-inl.h"
@@ -203,6 +204,10 @@ HWY_INLINE Interval polygon(const Vec3<Interval>& p, const Outline& corners) {
   return outward(middle - slack, middle + slack);
 }
 template <class Outline>
+HWY_INLINE Along polygon(const Vec3<Along>& p, const Outline& corners) {
+  return at_most(polygon(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, corners), length(p.x.d, p.y.d).hi);
+}
+template <class Outline>
 HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
   const Vec3<Slope> flat{p.x, p.y, constant<Slope>(0.0)};
   Slope d = distance_at(flat, polygon(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, corners));
@@ -351,6 +356,12 @@ HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4
   return -smooth_min(-a, -b, k, inv4k);
 }
 
+HWY_INLINE Along smooth_min(const Along& a, const Along& b, const Along& k, const Along& inv4k) {
+  return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v));  // the derivative is between a's and b's
+}
+HWY_INLINE Along smooth_max(const Along& a, const Along& b, const Along& k, const Along& inv4k) {
+  return -smooth_min(-a, -b, k, inv4k);
+}
 HWY_INLINE Slope smooth_min(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   const Slope generic = smooth_min<Slope>(a, b, k, inv4k);
   return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);  // the gradient is between a's and b's

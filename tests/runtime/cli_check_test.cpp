@@ -45,8 +45,7 @@ TEST_CASE("cli: check says how exact each object is and what costs the most") {
   CHECK(rope.code == 0);
   CHECK(rope.err == "");
   CHECK_THAT(rope.out, Contains("\n  floor   exact     1          1      [-inf,inf]x[-inf,-3]x[-inf,inf]\n"));
-  CHECK_THAT(rope.out,
-             Contains("\n  rope    bound     2.607      0.384  [-1.416,1.416]x[-3,3]x[-1.416,1.416]  "));
+  CHECK_THAT(rope.out, Contains("\n  rope    bound     2.607      0.384  [-1.416,1.416]x[-3,3]x[-1.416,1.416]  "));
   CHECK_THAT(rope.out, Contains("twist \"rope\" at rope.json:5:5 makes steps 2.61x shorter\n"));
   CHECK_THAT(rope.out, Contains("\ncertified: every step length is proved\n"));
   CHECK_THAT(folder.run("check bulb.json").out,

@@ -279,8 +279,8 @@ TEST_CASE("march: a composite scene agrees with certified bisection", "[march]")
   const MarchResult result = march(field, rays);
   int wrong = 0, gross = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Certified truth = certify(field, rays[i].origin, rays[i].direction, 1, 0, 30, workspace);
-    const bool expected = truth.outcome == Certified::Outcome::Hit;
+    const Certified truth = certify(field, rays[i].origin, rays[i].direction, 1, {0, 30, 0}, workspace);
+    const bool expected = truth.status == Arrival::Status::Hit;
     wrong += expected != (result.arrivals[i].status == Arrival::Status::Hit);
     gross += expected && std::abs(truth.t - result.arrivals[i].t) > 0.02;
   }

@@ -37,6 +37,10 @@ HWY_INLINE Batch operator/(Batch a, Batch b) { return {hn::Div(a.v, b.v)}; }
 HWY_INLINE Batch operator-(Batch a) { return {hn::Neg(a.v)}; }
 HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
 HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
+HWY_INLINE BatchMask operator==(Batch a, Batch b) { return {hn::Eq(a.v, b.v)}; }
+HWY_INLINE BatchMask operator&(BatchMask a, BatchMask b) { return {hn::And(a.m, b.m)}; }
+HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }
+HWY_INLINE BatchMask operator!(BatchMask a) { return {hn::Not(a.m)}; }
 HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
 HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
 // a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; other machines and Highway's emulation

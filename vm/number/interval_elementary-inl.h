@@ -111,9 +111,7 @@ inline Interval compare(Interval a, Interval b) {
   if (equal) return {0, 0};
   return {a.lo < b.hi ? -1.0 : (a.lo == b.hi ? 0.0 : 1.0), b.lo < a.hi ? 1.0 : (b.lo == a.hi ? 0.0 : -1.0)};
 }
-inline Interval step(Interval edge, Interval x) {
-  return {x.lo < edge.hi ? 0.0 : 1.0, x.hi < edge.lo ? 0.0 : 1.0};
-}
+inline Interval step(Interval edge, Interval x) { return {x.lo < edge.hi ? 0.0 : 1.0, x.hi < edge.lo ? 0.0 : 1.0}; }
 
 // |x|^y over x in [a.lo, a.hi], both >= 0.
 inline Interval positive_power(Interval a, Interval y) {

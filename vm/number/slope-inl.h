@@ -65,7 +65,9 @@ inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, doubl
   const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);
   const double length = bound(std::sqrt(mx * mx + my * my + mz * mz));
   const double n = std::min(bound(norm), length);
-  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {}, kUnbounded};
+  return {
+      v,         intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {},
+      kUnbounded};
 }
 // f(a), f's derivative being in `slope` over a's exact values.
 inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
@@ -191,8 +193,8 @@ inline Slope sqrt(const Slope& a) {
   }
   // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and e over the sum of the roots.
   const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
-  const double error = std::min({apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit),
-                                 a.squares ? a.root_error : kUnbounded});
+  const double error = std::min(
+      {apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit), a.squares ? a.root_error : kUnbounded});
   const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
   const double norm = std::min(times(a.norm, magnitude(slope)), a.squares ? gram_norm(a.g) : kUnbounded);
   Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);

@@ -127,12 +127,8 @@ inline Slope ceil(const Slope& a) { return steps(ceil(a.v), ceil(seen(a))); }
 inline Slope round_nearest(const Slope& a) { return steps(round_nearest(a.v), round_nearest(seen(a))); }
 inline Slope sign(const Slope& a) { return steps(sign(a.v), sign(seen(a))); }
 inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logical_not(seen(a))); }
-inline Slope compare(const Slope& a, const Slope& b) {
-  return steps(compare(a.v, b.v), compare(seen(a), seen(b)));
-}
-inline Slope step(const Slope& edge, const Slope& x) {
-  return steps(step(edge.v, x.v), step(seen(edge), seen(x)));
-}
+inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
+inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
 
 inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());

@@ -1,0 +1,99 @@
+// A register of lanes: a view of what lanes.h keeps in arrays. N: vm's Batch (f32 lanes) or Real (one double).
+#if defined(FATHOM_RUNTIME_LANE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_RUNTIME_LANE_INL
+#undef FATHOM_RUNTIME_LANE_INL
+#else
+#define FATHOM_RUNTIME_LANE_INL
+#endif
+
+#include <limits>
+#include <utility>
+
+#include "runtime/lanes.h"
+#include "vm/number/batch-inl.h"
+#include "vm/number/real-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::runtime::HWY_NAMESPACE {
+
+using vm::HWY_NAMESPACE::any;  // of a bool
+using vm::HWY_NAMESPACE::Batch;
+using vm::HWY_NAMESPACE::Real;
+
+template <class N>
+using MaskOf = decltype(std::declval<N>() < std::declval<N>());
+
+HWY_INLINE Batch load(const float* from, Batch*) { return Batch::load(from); }
+HWY_INLINE Real load(const double* from, Real*) { return {*from}; }
+HWY_INLINE void store(Batch a, float* to) { a.store(to); }
+HWY_INLINE void store(Real a, double* to) { *to = a.v; }
+
+template <class N>
+HWY_INLINE N number(double value) {
+  return N::broadcast(value);
+}
+template <class N>
+HWY_INLINE MaskOf<N> is_zero(N a) {
+  return a == number<N>(0);
+}
+
+// The lanes of one register, and the rules for all of them. What is put only where a mask holds stays elsewhere.
+template <class N, class S>
+class LaneView {
+ public:
+  using Mask = MaskOf<N>;
+
+  HWY_INLINE LaneView(Lanes<S>& lanes, std::size_t first) : lanes_(lanes), first_(first) {}
+
+  HWY_INLINE N get(LaneRow row) const { return load(&lanes_.row[row][first_], static_cast<N*>(nullptr)); }
+  HWY_INLINE void put(LaneRow row, N value) { store(value, &lanes_.row[row][first_]); }
+  HWY_INLINE void put(LaneRow row, Mask where, N value) { put(row, select(where, value, get(row))); }
+
+  HWY_INLINE Mask in_phase(LanePhase phase) const { return get(kPhase) == code(phase); }
+  HWY_INLINE void enter(Mask where, LanePhase phase) { put(kPhase, where, code(phase)); }
+
+  // What is concluded first holds.
+  HWY_INLINE void conclude(Mask where, LaneVerdict verdict) {
+    verdict_ = select(where & going_, code(verdict), verdict_);
+    going_ = going_ & (!where);
+  }
+  HWY_INLINE Mask going() const { return going_; }
+  HWY_INLINE void settle(Mask where, N t, N width) {
+    const Mask open = where & going_;
+    put(kT, open, t);
+    put(kWidth, open, width);
+    conclude(open, LaneVerdict::Hit);
+  }
+
+  // The field is wanted at t_next.
+  HWY_INLINE void finish() {
+    const N t = get(kTNext);
+    put(kX, get(kOx) + t * get(kDx));
+    put(kY, get(kOy) + t * get(kDy));
+    put(kZ, get(kOz) + t * get(kDz));
+    put(kVerdict, verdict_);
+  }
+
+ private:
+  template <class Enum>
+  static HWY_INLINE N code(Enum value) {
+    return number<N>(static_cast<double>(value));
+  }
+
+  Lanes<S>& lanes_;
+  std::size_t first_;
+  N verdict_ = number<N>(0);
+  Mask going_ = number<N>(0) == number<N>(0);
+};
+
+// d_f (field.h) of f at the lanes' points.
+template <class N, class S>
+HWY_INLINE N distance_error(const LaneView<N, S>& lanes, N f, const LaneRules<S>& rules) {
+  const N place = max(abs(lanes.get(kX)), max(abs(lanes.get(kY)), abs(lanes.get(kZ))));
+  const N scale = max(number<N>(1), max(place, abs(f)));
+  return N::broadcast(rules.unit) * (scale + N::broadcast(rules.magnitude));
+}
+
+}  // namespace fathom::runtime::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

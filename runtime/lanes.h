@@ -1,0 +1,82 @@
+// Many rays on their way, one array for each quantity, and how they move on by one evaluation of the field: the
+// renderer's way (tiered-inl.h), and those it is compared with (traced-inl.h).
+//
+// A lane that walks was at t with g(t) = side * f > 0 and waits for the field at t_next:
+//
+//   Start --> Walk <--> Retreat        Retreat: the last step was too long; the plain safe one is under way
+//     |        |  |                    Refine: a crossing lies in [t, t_hi]
+//   Emerge     |  Refine --> Hit       Emerge: began on the wrong side of the surface, by rounding
+//              Miss, Certify
+//
+// Not a public header: march.h is. Tested by: tests/runtime/march_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/method.h"
+
+namespace fathom::runtime {
+
+enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
+enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Retreat, Refine };
+
+// What is kept of a lane.
+enum LaneRow : std::uint8_t {
+  kX,
+  kY,
+  kZ,  // where the field is evaluated next
+  kOx,
+  kOy,
+  kOz,  // t = 0
+  kDx,
+  kDy,
+  kDz,     // unit length
+  kTMax,   // the ray ends here
+  kSide,   // 0 until the first evaluation when it has to be found out
+  kPhase,  // a LanePhase
+  kT,
+  kG,      // the last accepted sample; while refining the bracket's free end
+  kTNext,  // of x, y, z
+  kR,      // safe radius at t: nothing lies within (t - r, t + r); while refining the first bracket's width
+  kM,      // relaxation: expected slope of the safe radius along the ray
+  kSlope,  // of g over the last accepted step; while refining what g falls by over the first bracket
+  kTHi,
+  kGHi,    // while refining: the far end and its value
+  kGLo,    // ... and the value the secant uses at the free end
+  kWidth,  // of the bracket, once hit
+  kEvaluations,
+  kCrossing,  // 1: the step under way is meant to cross the surface
+  kPatience,  // samples to accept before the next attempt to cross
+  kPenalty,   // patience after the next attempt that meets no surface
+  kVerdict,   // a LaneVerdict
+  kLaneRows
+};
+
+// S: float or double. Counts and flags are numbers of that type, too: a register holds as many of each.
+template <class S>
+struct Lanes {
+  static constexpr std::size_t kCapacity = 256;  // two blocks of the machine
+  // A line of the cache longer than need be: rows a power of two apart would all compete for the same few lines.
+  static constexpr std::size_t kStride = kCapacity + 64 / sizeof(S);
+  alignas(64) S row[kLaneRows][kStride];
+};
+
+// What the lanes must know of the field and the method, in the lanes' precision.
+template <class S>
+struct LaneRules {
+  S inv_lipschitz;
+  S band;        // near the surface: distances at which a crossing is tried, scene units
+  S magnitude;   // scene units (compiler/bounds.h)
+  S unit;        // d_f at unit scale
+  S resolution;  // relative width of a bracket that is done
+  Method method;
+  S epsilon, steps, relaxation;  // of the methods that have them
+};
+
+// Moves `count` lanes on, given f at their x, y, z, and writes their verdicts. Reads f, and may write to lanes, past
+// `count` up to a whole register.
+void advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules);
+void advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules);
+
+}  // namespace fathom::runtime

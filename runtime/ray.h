@@ -1,0 +1,31 @@
+// A ray and what became of it.
+// Tested by: tests/runtime/march_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <limits>
+
+namespace fathom::runtime {
+
+struct Ray {
+  glm::dvec3 origin;     // scene units
+  glm::dvec3 direction;  // any finite length but zero; normalised unless it has unit length already
+  double t_max = std::numeric_limits<double>::infinity();  // scene units, beside the field's `far`
+  int side = 0;                                            // +1 starts outside, -1 inside a solid; 0: find out
+  float slope = -1;  // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
+};
+
+struct Arrival {
+  // Contact: a miss that came nearer to a surface than double resolves.
+  enum class Status : std::uint8_t { Hit, Miss, Contact, Invalid };
+  std::uint32_t id;
+  Status status;
+  std::int8_t side;           // of the space the ray travelled through, +1 or -1
+  std::uint32_t evaluations;  // of the field, for this ray
+  bool certified;             // decided in double
+  float width;                // of the bracket round the hit, scene units
+  double t;                   // of the hit, scene units from the origin
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,163 @@
+#include "runtime/stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::runtime {
+namespace {
+
+template <class S>
+LaneRules<S> make_rules(const Field& field, const Marching& marching) {
+  constexpr bool kSingle = sizeof(S) == sizeof(float);
+  LaneRules<S> rules{};
+  rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
+  rules.band = static_cast<S>(field.band);
+  rules.magnitude = static_cast<S>(field.magnitude);
+  // A double keeps 29 more bits, and constants rounded to float are not its concern.
+  rules.unit =
+      kSingle ? static_cast<S>(kDistanceError) : static_cast<S>(static_cast<double>(kDistanceError) * 0x1p-29);
+  rules.resolution = kSingle ? static_cast<S>(0x1p-22) : static_cast<S>(0x1p-48);
+  rules.method = marching.method;
+  rules.epsilon = static_cast<S>(marching.epsilon);
+  rules.steps = static_cast<S>(marching.steps);
+  rules.relaxation = static_cast<S>(marching.relaxation);
+  return rules;
+}
+
+// The largest S that is not above `value`.
+template <class S>
+S round_down(double value) {
+  const S rounded = static_cast<S>(value);
+  return static_cast<double>(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<S>::infinity())
+                                              : rounded;
+}
+
+// Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
+constexpr double kVagueness = 0x1p-14;
+
+constexpr bool limits_steps(Method method) { return info(method).uses_epsilon; }
+
+}  // namespace
+
+template <class S>
+Stream<S>::Stream(const Field& field, const Marching& marching)
+    : Marcher(field), rules_(make_rules<S>(field, marching)), lanes_(new Lanes<S>()) {}
+
+template <class S>
+void Stream<S>::begin(const Course& course, int side, float slope) {
+  ++live_;
+  std::size_t i = lanes_used_;
+  if (holes_.empty()) {
+    ++lanes_used_;
+  } else {
+    i = holes_.back();
+    holes_.pop_back();
+  }
+  courses_[i] = course;
+  const auto put = [&](LaneRow row, double value) { lanes_->row[row][i] = static_cast<S>(value); };
+  for (auto& row : lanes_->row) row[i] = 0;
+  put(kX, course.origin.x), put(kY, course.origin.y), put(kZ, course.origin.z);
+  put(kOx, course.origin.x), put(kOy, course.origin.y), put(kOz, course.origin.z);
+  put(kDx, course.direction.x), put(kDy, course.direction.y), put(kDz, course.direction.z);
+  lanes_->row[kTMax][i] = round_down<S>(course.length);
+  put(kSide, side);
+  const bool seeded = !limits_steps(rules_.method);  // that is not what others do
+  put(kM, seeded ? std::clamp(static_cast<double>(slope), -1.0, 0.9) : -1);
+  put(kPenalty, seeded ? 2 : 1);
+}
+
+template <>
+void Stream<float>::evaluate() {
+  const auto& row = lanes_->row;
+  vm::evaluate_distance(*field_.distance, {row[kX], row[kY], row[kZ]}, static_cast<std::size_t>(live_),
+                        distance_.data(), workspace_);
+}
+
+template <>
+void Stream<double>::evaluate() {
+  const auto& row = lanes_->row;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
+    distance_[i] = vm::evaluate_distance(*field_.distance, {row[kX][i], row[kY][i], row[kZ][i]}, workspace_);
+  }
+}
+
+template <class S>
+void Stream<S>::close_holes() {
+  for (const std::size_t hole : holes_) {
+    const std::size_t last = --lanes_used_;
+    if (hole == last) continue;
+    for (auto& row : lanes_->row) row[hole] = row[last];
+    courses_[hole] = courses_[last];
+  }
+  holes_.clear();
+}
+
+template <class S>
+void Stream<S>::advance() {
+  close_holes();
+  evaluate();
+  const std::size_t count = static_cast<std::size_t>(live_);
+  counters_.evaluations += count;
+  runtime::advance(*lanes_, count, distance_.data(), rules_);
+  const auto& verdict = lanes_->row[kVerdict];
+  for (std::size_t i = count; i-- > 0;) {
+    if (verdict[i] != 0) finish(i);
+  }
+}
+
+template <class S>
+void Stream<S>::finish(std::size_t i) {
+  const auto number = [&](LaneRow row) { return lanes_->row[row][i]; };
+  const Course& course = courses_[i];
+  const int side = number(kSide) < 0 ? -1 : 1;
+  const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
+  Arrival arrival{course.id, Arrival::Status::Invalid, static_cast<std::int8_t>(side), evaluations, false, 0, 0};
+  switch (static_cast<LaneVerdict>(number(kVerdict))) {
+    case LaneVerdict::Hit:
+      arrival.status = Arrival::Status::Hit;
+      arrival.t = course.entry + static_cast<double>(number(kT));
+      arrival.width = static_cast<float>(number(kWidth));
+      break;
+    case LaneVerdict::OutOfSteps:
+      ++counters_.exhausted;
+      [[fallthrough]];
+    case LaneVerdict::Miss:
+      arrival.status = Arrival::Status::Miss;
+      break;
+    default:
+      break;
+  }
+  if (number(kVerdict) == static_cast<S>(LaneVerdict::Certify)) {
+    certify_from(course, side, what_is_left(i), evaluations);
+  } else {
+    arrive(arrival);
+  }
+  --live_;
+  holes_.push_back(i);
+}
+
+// What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first.
+template <class S>
+Stretch Stream<S>::what_is_left(std::size_t i) {
+  const Course& course = courses_[i];
+  const int side = lanes_->row[kSide][i] < 0 ? -1 : 1;
+  Stretch left{static_cast<double>(lanes_->row[kT][i]), course.length, 0};
+  if (lanes_->row[kPhase][i] != static_cast<S>(LanePhase::Refine)) return left;
+  // The bracket, grown by what made it vague, and on until double, too, is in front of the surface.
+  const double hi = static_cast<double>(lanes_->row[kTHi][i]);
+  double slack = std::max(kVagueness * hi, static_cast<double>(field_.band));
+  left.hint = hi + slack;
+  const auto in_front = [&](double t) {
+    return side * vm::evaluate_distance(*field_.distance, course.origin + t * course.direction, workspace_) > 0;
+  };
+  do {
+    left.begin = std::max(0.0, left.begin - slack);
+    slack *= 2;
+  } while (left.begin > 0 && !in_front(left.begin));
+  return left;
+}
+
+template class Stream<float>;
+template class Stream<double>;
+
+}  // namespace fathom::runtime

@@ -1,0 +1,84 @@
+// The ways of others to follow rays, to compare them with (method.h): a hit is where the field falls below epsilon,
+// and a ray that takes too many evaluations is given up. For a register of lanes at once.
+#if defined(FATHOM_RUNTIME_TRACED_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_RUNTIME_TRACED_INL
+#undef FATHOM_RUNTIME_TRACED_INL
+#else
+#define FATHOM_RUNTIME_TRACED_INL
+#endif
+
+#include "runtime/lane-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::runtime::HWY_NAMESPACE {
+
+// How far the next step goes, given the safe radius there.
+struct PlainStep {
+  static constexpr bool kRelaxed = false;
+  template <class View, class N, class Mask>
+  static HWY_INLINE N next(View&, Mask, N r, N, N) {
+    return r;
+  }
+  template <class View, class Mask>
+  static HWY_INLINE void retreat(View&, Mask) {}
+};
+
+// Keinert et al., "Enhanced Sphere Tracing", 2014: after a step that was too long the ray goes on with plain ones.
+struct FixedStep {
+  static constexpr bool kRelaxed = true;
+  template <class View, class N, class Mask>
+  static HWY_INLINE N next(View& a, Mask, N r, N, N relaxation) {
+    return select(a.get(kPenalty) > number<N>(1), r, relaxation * r);
+  }
+  template <class View, class Mask>
+  static HWY_INLINE void retreat(View& a, Mask failed) {
+    a.put(kPenalty, failed, a.get(kPenalty) + a.get(kPenalty));
+  }
+};
+
+// Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023.
+struct AutomaticStep {
+  static constexpr bool kRelaxed = true;
+  template <class View, class N, class Mask>
+  static HWY_INLINE N next(View& a, Mask accepted, N r, N z, N) {
+    const Mask learns = accepted & (z > number<N>(0));
+    const N slope = (r - a.get(kR)) / select(learns, z, number<N>(1));
+    const N m = number<N>(0.7) * a.get(kM) + number<N>(0.3) * slope;
+    a.put(kM, learns, min(m, number<N>(0.9)));
+    return number<N>(2) * r / (number<N>(1) - a.get(kM));
+  }
+  template <class View, class Mask>
+  static HWY_INLINE void retreat(View& a, Mask failed) {
+    a.put(kM, failed, number<decltype(a.get(kM))>(-1));
+  }
+};
+
+template <class Step, class N, class S>
+HWY_INLINE void trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& rules, N f) {
+  LaneView<N, S> a(lanes, first);
+  const N zero = number<N>(0), evaluations = a.get(kEvaluations) + number<N>(1);
+  a.put(kEvaluations, evaluations);
+  a.put(kSide, is_zero(a.get(kSide)), select(f < zero, number<N>(-1), number<N>(1)));
+  const N g = a.get(kSide) * f, r = g * N::broadcast(rules.inv_lipschitz);
+  const N t = a.get(kTNext), z = t - a.get(kT);
+  a.conclude(!(abs(f) < number<N>(std::numeric_limits<double>::infinity())), LaneVerdict::Invalid);
+
+  MaskOf<N> accepted = is_zero(zero);
+  if constexpr (Step::kRelaxed) {
+    // The balls of this sample and the last leave a gap: back to where the last one ends.
+    accepted = !(z > a.get(kR) + abs(r));
+    Step::retreat(a, !accepted);
+  }
+  a.settle(accepted & (g < N::broadcast(rules.epsilon)), t, N::broadcast(rules.epsilon));
+  a.conclude(accepted & !(t < a.get(kTMax)), LaneVerdict::Miss);
+  a.conclude(!(evaluations < N::broadcast(rules.steps)), LaneVerdict::OutOfSteps);
+  const N step = Step::next(a, accepted, r, z, N::broadcast(rules.relaxation));
+  a.put(kT, accepted & a.going(), t);
+  a.put(kR, accepted, r);
+  a.put(kTNext, min(select(accepted, t + step, a.get(kT) + a.get(kR)), a.get(kTMax)));
+  a.finish();
+}
+
+}  // namespace fathom::runtime::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

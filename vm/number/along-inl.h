@@ -1,0 +1,158 @@
+// Along: what f does along a stretch of a line: the range of its value, and the range of its derivative by the line's
+// parameter. A search for roots needs both: where the derivative keeps its sign there is at most one, and next to a
+// touch the value is nearly still, which the value's range alone says only of very short stretches. Source: Mitchell,
+// "Robust Ray Intersection with Interval Arithmetic", 1990.
+//
+//     sqrt(t^2 + 1) - 2 over t in [0, 1]:    v [-1, -0.58]   d [0, 0.71]
+//
+// Holds, as Slope, for programs without undefined operations; where the value may jump the derivative has no bound.
+// Tested by: tests/vm/along_test.cpp
+#if defined(FATHOM_VM_ALONG_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_ALONG_INL
+#undef FATHOM_VM_ALONG_INL
+#else
+#define FATHOM_VM_ALONG_INL
+#endif
+
+#include "vm/number/interval_elementary-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+struct Along {
+  using Constant = Along;
+  Interval v, d;
+
+  static inline Along broadcast(double value) { return {Interval::broadcast(value), {0, 0}}; }
+};
+
+// f(a), f's derivative being in `slope`.
+inline Along chain(const Along& a, Interval v, Interval slope) { return {v, a.d * slope}; }
+inline Along jump(const Along&, Interval v) { return {v, whole_line()}; }
+// One of the two, which meet where the choice changes.
+inline Along either(const Along& a, const Along& b, Interval v) { return {v, hull(a.d, b.d)}; }
+
+inline Along operator-(const Along& a) { return {-a.v, -a.d}; }
+inline Along operator+(const Along& a, const Along& b) { return {a.v + b.v, a.d + b.d}; }
+inline Along operator-(const Along& a, const Along& b) { return {a.v - b.v, a.d - b.d}; }
+inline Along operator*(const Along& a, const Along& b) { return {a.v * b.v, a.v * b.d + b.v * a.d}; }
+inline Along operator/(const Along& a, const Along& b) {
+  if (contains(b.v, 0)) return {whole_line(), whole_line()};
+  const Interval q = a.v / b.v;
+  return {q, (a.d - q * b.d) / b.v};
+}
+inline Along divide(const Along& a, const Along& b) { return a / b; }
+
+inline IntervalMask operator<(const Along& a, const Along& b) { return a.v < b.v; }
+inline IntervalMask operator>(const Along& a, const Along& b) { return b < a; }
+inline Along select(IntervalMask mask, const Along& yes, const Along& no) {
+  if (!mask.maybe_false) return yes;
+  if (!mask.maybe_true) return no;
+  return either(yes, no, hull(yes.v, no.v));
+}
+inline Along min(const Along& a, const Along& b) {
+  if (a.v.hi < b.v.lo) return a;
+  if (b.v.hi < a.v.lo) return b;
+  return either(a, b, min(a.v, b.v));
+}
+inline Along max(const Along& a, const Along& b) {
+  if (a.v.hi < b.v.lo) return b;
+  if (b.v.hi < a.v.lo) return a;
+  return either(a, b, max(a.v, b.v));
+}
+inline Along abs(const Along& a) {
+  return chain(a, abs(a.v), a.v.lo >= 0 ? Interval{1, 1} : a.v.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1});
+}
+inline Along sqr(const Along& a) { return chain(a, sqr(a.v), a.v + a.v); }
+inline Along sqrt(const Along& a) {
+  const Interval root = sqrt(a.v);
+  return chain(a, root, root.lo > 0 ? Interval{0.5, 0.5} / root : whole_line());
+}
+
+// A number that changes by no more than `speed` along the line.
+inline Along at_most(Interval v, double speed) { return {v, {-speed, speed}}; }
+// x dx / l, the share of one component in the derivative of a length l.
+inline Interval share(const Along& x, Interval inverse) { return intersect(x.v * inverse, -1, 1) * x.d; }
+inline Along length(const Along& x, const Along& y) {
+  const Interval l = length(x.v, y.v);
+  const double speed = length(x.d, y.d).hi;
+  if (!(l.lo > 0)) return at_most(l, speed);
+  const Interval inverse = Interval{1, 1} / l;
+  return {l, intersect(share(x, inverse) + share(y, inverse), -speed, speed)};
+}
+inline Along length(const Along& x, const Along& y, const Along& z) {
+  const Interval l = length(x.v, y.v, z.v);
+  const double speed = length(x.d, y.d, z.d).hi;
+  if (!(l.lo > 0)) return at_most(l, speed);
+  const Interval inverse = Interval{1, 1} / l;
+  return {l, intersect(share(x, inverse) + share(y, inverse) + share(z, inverse), -speed, speed)};
+}
+
+inline Along sin(const Along& a) { return chain(a, sin(a.v), cos(a.v)); }
+inline Along cos(const Along& a) { return chain(a, cos(a.v), -sin(a.v)); }
+inline Along tan(const Along& a) {
+  const Interval t = tan(a.v);
+  return magnitude(t) < std::numeric_limits<double>::infinity() ? chain(a, t, Interval{1, 1} + sqr(t)) : jump(a, t);
+}
+// 1/sqrt(1 - x^2), and 0 where |x| > 1; unbounded near 1.
+inline Interval asin_rise(Interval x) {
+  const Interval one{1, 1}, m = abs(x);
+  if (m.lo > 1) return {0, 0};
+  if (!(m.hi < 1)) return {0, std::numeric_limits<double>::infinity()};
+  return one / sqrt((one - m) * (one + m));
+}
+inline Along asin(const Along& a) { return chain(a, asin(a.v), asin_rise(a.v)); }
+inline Along acos(const Along& a) { return chain(a, acos(a.v), -asin_rise(a.v)); }
+inline Along atan(const Along& a) {
+  const Interval one{1, 1};
+  return chain(a, atan(a.v), one / (one + sqr(a.v)));
+}
+inline Along atan2(const Along& y, const Along& x) {
+  const Interval angle = atan2(y.v, x.v);
+  if (contains(y.v, 0) && x.v.lo <= 0) return jump(y, angle);  // the branch cut
+  const Interval square = sqr(y.v) + sqr(x.v);
+  return {angle, x.v / square * y.d - y.v / square * x.d};
+}
+inline Along exp(const Along& a) { return chain(a, exp(a.v), exp(a.v)); }
+inline Along log(const Along& a) { return a.v.lo > 0 ? chain(a, log(a.v), Interval{1, 1} / a.v) : jump(a, log(a.v)); }
+inline Along pow(const Along& x, const Along& y) {
+  const Interval v = pow(x.v, y.v);
+  const bool fixed = y.d.lo == 0 && y.d.hi == 0 && y.v.hi - y.v.lo < 1e-9;
+  const double n = round_nearest(Real{y.v.lo}).v;
+  if (fixed && contains(y.v, n) && (n > 0 || !contains(x.v, 0))) {
+    return chain(x, v, n == 0 ? Interval{0, 0} : Interval{n, n} * pow(x.v, Interval{n - 1, n - 1}));
+  }
+  if (x.v.lo > 0) return {v, exp(y * log(x)).d};
+  // Above 1 a power of what may be 0 still has a slope.
+  if (fixed && x.v.lo >= 0 && y.v.lo > 1) return chain(x, v, y.v * pow(x.v, y.v - Interval{1, 1}));
+  return jump(x, v);
+}
+
+// A step function: constant where there is one step.
+inline Along steps(const Along& a, Interval v) { return v.lo == v.hi ? Along{v, {0, 0}} : jump(a, v); }
+inline Along floor(const Along& a) { return steps(a, floor(a.v)); }
+inline Along ceil(const Along& a) { return steps(a, ceil(a.v)); }
+inline Along round_nearest(const Along& a) { return steps(a, round_nearest(a.v)); }
+inline Along sign(const Along& a) { return steps(a, sign(a.v)); }
+inline Along logical_not(const Along& a) { return steps(a, logical_not(a.v)); }
+inline Along compare(const Along& a, const Along& b) { return steps(a, compare(a.v, b.v)); }
+inline Along step(const Along& edge, const Along& x) { return steps(x, step(edge.v, x.v)); }
+inline Along mod(const Along& a, const Along& b) {
+  if (contains(b.v, 0)) return {whole_line(), whole_line()};
+  const Along turns = floor(a / b);
+  return turns.v.lo == turns.v.hi ? a - b * turns : jump(a, mod(a.v, b.v));
+}
+inline Along logical_and(const Along& a, const Along& b) {
+  if (!contains(a.v, 0)) return b;
+  if (a.v.lo == a.v.hi) return {{0, 0}, {0, 0}};
+  return jump(a, logical_and(a.v, b.v));
+}
+inline Along logical_or(const Along& a, const Along& b) {
+  if (!contains(a.v, 0)) return a;
+  if (a.v.lo == a.v.hi) return b;
+  return jump(a, logical_or(a.v, b.v));
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
