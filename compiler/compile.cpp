@@ -154,7 +154,10 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const Knowledge& known = all_known[field.root];
   warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
-  if (options.lint) lint(local, *elaborated, *surface, diagnostics);
+  if (options.lint) {
+    lint(local, *elaborated, *surface, diagnostics);
+    lint_places(local, origin, diagnostics);
+  }
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(source),
                        origin,
