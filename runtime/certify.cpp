@@ -12,6 +12,7 @@ constexpr std::uint32_t kBudget = 1u << 20;          // evaluations
 constexpr std::uint32_t kEstimateBudget = 1u << 14;  // the same where L is an estimate and may never certify
 // Segments shorter than this times max(1, |p|) are not cut further: the resolution of float32 coordinates.
 constexpr double kResolution = 0x1p-23;
+constexpr int kNarrowings = 8;  // evaluations at most to narrow a hit's bracket
 // Intervals cost several evaluations: worth it where bisection would need many.
 constexpr double kRangeRatio = 4;
 
@@ -40,7 +41,7 @@ class Search {
       const double lo = s.a + s.ga / speed_, hi = s.b - std::abs(s.gb) / speed_;
       const double middle = (lo + hi) / 2;
       if (hi - lo <= resolution(middle) || !(middle > s.a && middle < s.b)) {
-        if (s.gb <= 0) return hit(std::max(s.a, lo), std::min(s.b, hi));
+        if (s.gb <= 0) return narrow(s, std::max(s.a, lo), std::min(s.b, hi));
         result_.contact = true;
         continue;
       }
@@ -75,6 +76,26 @@ class Search {
     const vm::Range range =
         vm::evaluate_range(*field_.distance, glm::min(a, b) - margin, glm::max(a, b) + margin, workspace_);
     return side_ > 0 ? range.lo > 0 : range.hi < 0;
+  }
+
+  // The hit of a segment that is not cut further, between `lo` and `hi`. What is seen from nearer than that
+  // resolution is found by the Illinois method, as in march_lane.cpp.
+  Certified narrow(Segment s, double lo, double hi) {
+    double weight_a = s.ga, weight_b = s.gb;
+    for (int i = 0; i < kNarrowings && hi - lo > field_.finest; ++i) {
+      const double t = s.a + weight_a / (weight_a - weight_b) * (s.b - s.a);
+      if (!(t > s.a && t < s.b)) break;
+      const double g = value(t);
+      if (!std::isfinite(g)) return finish(Certified::Outcome::NotFinite);
+      if (g > 0) {
+        s.a = t, weight_a = g, weight_b /= 2;
+        lo = std::min(t + g / speed_, hi);
+      } else {
+        s.b = t, weight_b = g, weight_a /= 2;
+        hi = std::max(t + g / speed_, lo);
+      }
+    }
+    return hit(lo, hi);
   }
 
   Certified hit(double lo, double hi) {

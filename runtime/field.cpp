@@ -36,6 +36,10 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   field.magnitude = static_cast<float>(scene.magnitude);
   field.certified = scene.certified;
   field.band = static_cast<float>(kBand * extent);
+  // d_f counts numbers up to 1 wherever a ray is: seen from closer than 0.4, roots matter that it calls rounding.
+  constexpr float kFinest = 0x1p-10f;  // of the band
+  const float finest = kFinest * field.band;
+  field.finest = finest < kRootError * kDistanceError ? finest : std::numeric_limits<float>::infinity();
   // Where the bound does not end a ray, `far` has to: certify() needs an end.
   constexpr double kFarthest = 1e12;
   const bool bounded = scene.bound.empty() || scene.bound.finite();

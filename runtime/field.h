@@ -18,6 +18,7 @@ struct Field {
   bool certified;       // whether that is proved
   double far;           // rays end here, scene units; may be infinite when the bound is finite
   float band;           // near the surface: distances at which a crossing is tried, scene units
+  float finest;         // roots are found to this where the camera is close to its target, else infinite; scene units
   float inv_lipschitz;
   float magnitude;  // scene units (compiler/bounds.h)
 };
@@ -32,6 +33,9 @@ inline constexpr double kDefaultFar = 1e4;  // scene units
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6
 // (tests/compiler/shapes_test.cpp).
 inline constexpr float kDistanceError = static_cast<float>(vm::kFloatError);
+
+// A value this small a part of d_f holds no more digits of a root: half a unit in the last place at 1.
+inline constexpr float kRootError = 0.0625f;
 
 inline float distance_error(const Field& field, float x, float y, float z, float distance) {
   return kDistanceError *

@@ -93,7 +93,7 @@ void Stream::advance() {
   const std::size_t count = static_cast<std::size_t>(live_);
   vm::evaluate_distance(*field_.distance, {x_.data(), y_.data(), z_.data()}, count, distance_.data(), workspace_);
   counters_.evaluations += count;
-  const LaneRules rules{field_.inv_lipschitz, field_.band};
+  const LaneRules rules{field_.inv_lipschitz, field_.band, field_.finest};
   // Downwards: a lane that ends is replaced by the last one, which has had its turn.
   for (int i = live_ - 1; i >= 0; --i) {
     const std::size_t n = static_cast<std::size_t>(i);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/field.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -18,8 +20,8 @@ constexpr float kOvershootErrors = 4;
 constexpr float kLongestCrossing = 16;
 // A lane that takes more evaluations in float than this is finished by certify().
 constexpr int kBudget = 512;
-// A value this small a part of d_f holds no more digits of the root: half a unit in the last place at 1.
-constexpr float kRootError = 0.0625f;
+// Where roots are wanted finer than kRootError is (LaneRules::finest): half a unit in the last place of t.
+constexpr float kRootShare = 0x1p-24f;
 // Width of a bracket that is done, relative to t: two units in the last place.
 constexpr float kRootWidth = 0x1p-22f;
 
@@ -31,6 +33,10 @@ float band_of(float error, const LaneRules& rules) { return std::max(rules.band,
 
 float longest_crossing(float error, const LaneRules& rules) {
   return kLongestCrossing * std::min(band_of(error, rules), 2 * rules.band);
+}
+
+bool is_root(float g, float t, float error, const LaneRules& rules) {
+  return std::abs(g) <= std::min(kRootError * error, std::max(kRootShare * t, rules.finest));
 }
 
 // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
@@ -105,19 +111,19 @@ LaneVerdict divide(Lane& a) {
   return LaneVerdict::Going;
 }
 
-LaneVerdict begin_refining(Lane& a, float g, float error) {
+LaneVerdict begin_refining(Lane& a, float g, float error, const LaneRules& rules) {
   a.phase = Lane::Phase::Refine;
   a.t_hi = a.t_next;
   a.g_hi = g;
   a.g_lo = a.g;
-  if (-g <= kRootError * error) return hit(a, a.t_hi, kRootWidth * a.t_hi);
+  if (is_root(g, a.t_hi, error, rules)) return hit(a, a.t_hi, kRootWidth * a.t_hi);
   return divide(a);
 }
 
 // Illinois method: an end that stays twice running has its value halved, which pulls the secant towards it (Dowell
 // and Jarratt, "A Modified Regula Falsi Method", 1971).
-LaneVerdict refine(Lane& a, float g, float error) {
-  if (std::abs(g) <= kRootError * error) return hit(a, a.t_next, kRootWidth * a.t_next);
+LaneVerdict refine(Lane& a, float g, float error, const LaneRules& rules) {
+  if (is_root(g, a.t_next, error, rules)) return hit(a, a.t_next, kRootWidth * a.t_next);
   if (g > 0) {
     a.t = a.t_next;
     a.g = a.g_lo = g;
@@ -140,7 +146,7 @@ LaneVerdict walk(Lane& a, float g, float error, const LaneRules& rules) {
     return retreat(a, error);
   }
   if (a.crossing || plain || gap <= std::min(band_of(error, rules), 2 * rules.band))
-    return begin_refining(a, g, error);
+    return begin_refining(a, g, error, rules);
   return retreat(a, error);
 }
 
@@ -181,7 +187,7 @@ LaneVerdict update(Lane& a, float f, float error, const LaneRules& rules) noexce
     case Lane::Phase::Retreat:
       return walk(a, a.side * f, error, rules);
     case Lane::Phase::Refine:
-      return refine(a, a.side * f, error);
+      return refine(a, a.side * f, error, rules);
   }
   return LaneVerdict::Invalid;
 }

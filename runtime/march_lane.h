@@ -43,7 +43,8 @@ struct Lane {
 // What a lane must know of the field.
 struct LaneRules {
   float inv_lipschitz;
-  float band;  // scene units
+  float band;    // scene units
+  float finest;  // scene units (runtime/field.h)
 };
 
 // Moves the lane on, given f at t_next and the error bound d_f there.
