@@ -30,6 +30,16 @@ constexpr std::string_view kGraph = "graph";    // the graph as it was read
 constexpr std::string_view kOrigin = "origin";  // the first step (compiler/origin.h)
 constexpr std::string_view kFuse = "fuse";      // the last, over programs
 
+// All places of the scene become those of the programs; returns the origin.
+glm::dvec3 move_to_origin(Elaborated& elaborated) {
+  const glm::dvec3 origin = choose_origin(elaborated.scene, elaborated.camera);
+  if (origin == glm::dvec3(0)) return origin;
+  elaborated.scene = moved(elaborated.scene, origin);
+  elaborated.camera.position -= origin;
+  elaborated.camera.target -= origin;
+  return origin;
+}
+
 Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
   if (options.stop_after == kGraph) return scene;
   if (on_pass) on_pass(kOrigin, scene);
@@ -134,19 +144,14 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (!elaborated) return std::nullopt;
 
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
-  const glm::dvec3 origin =
-      options.stop_after == kGraph ? glm::dvec3(0) : choose_origin(elaborated->scene, elaborated->camera);
-  const Scene local = moved(elaborated->scene, origin);
-  elaborated->camera.position -= origin;
-  elaborated->camera.target -= origin;
-
-  const Scene field = optimise(local, false, options, options.on_pass);
+  const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
+  const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
   const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
   std::optional<vm::VerifiedProgram> distance = assemble(field, source, fused, diagnostics);
   if (!distance) return std::nullopt;
   std::optional<vm::VerifiedProgram> surface = distance;
   if (elaborated->surfaces.size() > 1) {
-    surface = assemble(optimise(local, true, options, nullptr), source, fused, diagnostics);
+    surface = assemble(optimise(elaborated->scene, true, options, nullptr), source, fused, diagnostics);
     if (!surface) return std::nullopt;
   }
 
@@ -155,8 +160,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
   if (options.lint) {
-    lint(local, *elaborated, *surface, diagnostics);
-    lint_places(local, origin, diagnostics);
+    lint(elaborated->scene, *elaborated, *surface, diagnostics);
+    lint_places(elaborated->scene, origin, diagnostics);
   }
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(source),

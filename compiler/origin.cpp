@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 #include <vector>
 
 #include "compiler/affine.h"
 #include "compiler/bounds.h"
 #include "compiler/direction.h"
-#include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
 #include "vm/opcode.h"
 
@@ -42,6 +42,8 @@ Box finite_part(const Scene& scene, const std::vector<Knowledge>& known) {
   return parts[scene.root];
 }
 
+double largest_part(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
 // The largest power of two up to `value` > 0.
 double power_of_two(double value) {
   int exponent;
@@ -54,9 +56,9 @@ dvec3 middle_if_far(const Box& box) {
   if (box.empty()) return dvec3(0);
   constexpr double kFar = 8, kLeast = 0x1p-20;
   const dvec3 middle = (box.lo + box.hi) * 0.5;
-  const double farthest = std::max({std::abs(middle.x), std::abs(middle.y), std::abs(middle.z)});
   // Of what has next to no size, a millionth of its distance.
-  const double size = std::max(glm::length(box.hi - box.lo) / 2, kLeast * farthest), unit = power_of_two(size);
+  const double size = std::max(glm::length(box.hi - box.lo) / 2, kLeast * largest_part(middle)),
+               unit = power_of_two(size);
   dvec3 origin(0);
   for (int i = 0; i < 3; ++i) {
     if (std::abs(middle[i]) > kFar * size) origin[i] = unit * std::round(middle[i] / unit);
@@ -158,6 +160,14 @@ class Mover {
   std::vector<NodeId> twins_;  // [node]
 };
 
+// Whether what the move takes off the points' coordinates is at least what it adds to the numbers that cancel: a
+// steep formula multiplies the rounding of coordinates that it cannot be rid of.
+bool pays(const Scene& scene, dvec3 origin, double magnitude) {
+  constexpr double kRounding = 1 + 1e-9;
+  const Scene there = moved(scene, origin);
+  return analyse(there.graph)[there.root].magnitude <= (magnitude + largest_part(origin)) * kRounding;
+}
+
 }  // namespace
 
 bool takes_own_point(const Graph& graph, NodeId id) {
@@ -171,13 +181,14 @@ dvec3 choose_origin(const Scene& scene, const Camera& camera) {
   const std::vector<Knowledge> known = analyse(scene.graph);
   const Box part = finite_part(scene, known);
   const Box view{glm::min(camera.position, camera.target), glm::max(camera.position, camera.target)};
-  if (part.contains(camera.target)) {
-    const dvec3 near_view = middle_if_far(view);
-    if (near_view != dvec3(0)) return near_view;
+  const dvec3 near_view = part.contains(camera.target) ? middle_if_far(view) : dvec3(0);
+  const dvec3 near_parts = middle_if_far(known[scene.root].box.finite() ? part : unite(part, view));
+  for (const dvec3 origin : {near_view, near_parts}) {
+    if (origin != dvec3(0) && pays(scene, origin, known[scene.root].magnitude)) return origin;
   }
-  return middle_if_far(known[scene.root].box.finite() ? part : unite(part, view));
+  return dvec3(0);
 }
 
-Scene moved(const Scene& scene, dvec3 origin) { return origin == dvec3(0) ? scene : Mover(scene, origin).run(); }
+Scene moved(const Scene& scene, dvec3 origin) { return Mover(scene, origin).run(); }
 
 }  // namespace fathom::compiler

@@ -16,17 +16,18 @@
 
 namespace fathom::compiler {
 
-// Scene units. The middle of what the camera looks at, the box of the way to its target, when the target lies within the
-// parts of the scene that end (beside an endless plane, a ball); else the middle of those parts, to which in a scene
-// without an end in some direction the way to the target is added. 0 along axes on which the middle is no farther from
-// zero than 8 times half the box's diagonal, as in most scenes it is not. A multiple of the largest power of two within
-// the latter, so that numbers of few digits stay so.
+// Scene units. The middle of what the camera looks at, the box of the way to its target, when the target lies within
+// the parts of the scene that end (beside an endless plane, a ball); else the middle of those parts, to which in a
+// scene without an end in some direction the way to the target is added. 0 along axes on which the middle is no
+// farther from zero than 8 times half the box's diagonal, as in most scenes it is not. A multiple of the largest
+// power of two within the latter, so that numbers of few digits stay so. No origin is chosen that would make float
+// errors larger.
 glm::dvec3 choose_origin(const Scene& scene, const Camera& camera);
 
 // The scene with `origin` at zero. A move goes through what only combines or changes distances, and ends in the
 // numbers of transforms, planes, triangles and quads, or in a new transform. Below that transform points have the
-// scene's coordinates once more: a formula written for a far place, a repetition of cells far away stay as coarse as
-// they were, which Knowledge::magnitude says.
+// scene's coordinates once more: a formula written for a far place, a twist about a far axis stay as coarse as they
+// were, which Knowledge::magnitude says.
 Scene moved(const Scene& scene, glm::dvec3 origin);
 
 // Whether the node's children are evaluated at the node's own point, and their distances are all it needs.

@@ -148,6 +148,15 @@ TEST_CASE("origin: what the camera is close to counts when it is part of the sce
   CHECK(origin_of(at("0"), R"([0, 3, 100], "target": [0, 3, 99])") == dvec3(0));
 }
 
+TEST_CASE("origin: a formula keeps its coordinates, and a steep one the scene's origin", "[origin]") {
+  const auto near_formula = [](const std::string& slope) {
+    return origin_of(R"({"type": "expression", "half_size": [1, 1, 1], "formula": ")" + slope + R"(*x - 0.25"})",
+                     R"([0.7, 0.7, 0.71], "target": [0.7, 0.7, 0.7])");
+  };
+  CHECK(near_formula("0.5").x == Approx(0.7).margin(0.01));
+  CHECK(near_formula("20") == dvec3(0));
+}
+
 // What a camera that looks from x over an endless floor shows is there, whatever else is in the scene.
 TEST_CASE("origin: of an endless scene the camera's view counts", "[origin]") {
   const std::string floor = R"({"type": "plane", "normal": [0, 1, 0]})";
