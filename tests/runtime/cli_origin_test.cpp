@@ -70,6 +70,11 @@ TEST_CASE("cli: dump says where the programs' origin is, check speaks of the sce
   CHECK(check.code == 0);
   CHECK(check.err == "");
   CHECK_THAT(check.out, Contains("[99999.5,100000.5]x[0,1]x[-0.5,0.5]") && Contains("no constant broken"));
+  // A hair is not too thin where floats are fine: only far from the camera, or from the programs' origin.
+  std::string hair = kFar;
+  hair.replace(hair.find("0.5, \"translate\""), 3, "0.005");
+  folder.write("hair.json", hair);
+  CHECK(folder.run("check hair.json").err == "");
   CHECK_THAT(folder.run("render far.json -o a.png --size 8x8 --spp 1 -vvvv").err,
              Contains("the programs' origin is 100000 0 0") && Contains("camera at 100000 2 5 towards 100000 0.5 0"));
 }
