@@ -87,6 +87,7 @@ class Search {
       if (!(t > s.a && t < s.b)) break;
       const double g = value(t);
       if (!std::isfinite(g)) return finish(Certified::Outcome::NotFinite);
+      if (g == 0) return hit(t, t);
       if (g > 0) {
         s.a = t, weight_a = g, weight_b /= 2;
         lo = std::min(t + g / speed_, hi);
