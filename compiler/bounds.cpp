@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
@@ -49,7 +52,14 @@ std::string_view name(Exactness exactness) {
 }
 
 std::string describe(const Box& box) {
-  const auto side = [](double lo, double hi) { return fmt::format("[{:.4g},{:.4g}]", lo, hi); };
+  // Four digits, and more of a side that is far from zero for its length.
+  const auto side = [](double lo, double hi) {
+    int digits = 4;
+    for (double ratio = std::max(std::abs(lo), std::abs(hi)) / (hi - lo); ratio >= 100 && digits < 17; ratio /= 10) {
+      ++digits;
+    }
+    return fmt::format("[{:.{}g},{:.{}g}]", lo, digits, hi, digits);
+  };
   if (box.empty()) return "empty";
   return side(box.lo.x, box.hi.x) + "x" + side(box.lo.y, box.hi.y) + "x" + side(box.lo.z, box.hi.z);
 }

@@ -23,6 +23,7 @@ struct Box {
     return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
   }
   Box grown(double by) const { return empty() ? *this : Box{lo - by, hi + by}; }
+  Box moved(glm::dvec3 by) const { return {lo + by, hi + by}; }
 };
 
 inline bool Box::finite() const {

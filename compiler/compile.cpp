@@ -13,6 +13,7 @@
 #include "compiler/fuse.h"
 #include "compiler/lints.h"
 #include "compiler/lower.h"
+#include "compiler/origin.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
@@ -25,9 +26,24 @@ constexpr std::size_t kMaxInstructions = 1'000'000;
 
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
+constexpr std::string_view kGraph = "graph";    // the graph as it was read
+constexpr std::string_view kOrigin = "origin";  // the first step (compiler/origin.h)
+constexpr std::string_view kFuse = "fuse";      // the last, over programs
+
+// All places of the scene become those of the programs; returns the origin.
+glm::dvec3 move_to_origin(Elaborated& elaborated) {
+  const glm::dvec3 origin = choose_origin(elaborated.scene, elaborated.camera);
+  if (origin == glm::dvec3(0)) return origin;
+  elaborated.scene = moved(elaborated.scene, origin);
+  elaborated.camera.position -= origin;
+  elaborated.camera.target -= origin;
+  return origin;
+}
+
 Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
-  if (on_pass) on_pass("graph", scene);
-  if (options.stop_after == "graph") return scene;
+  if (options.stop_after == kGraph) return scene;
+  if (on_pass) on_pass(kOrigin, scene);
+  if (options.stop_after == kOrigin) return scene;
   for (const Pass& pass : passes()) {
     if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
     if (on_pass) on_pass(pass.name, scene);
@@ -35,8 +51,6 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   }
   return scene;
 }
-
-constexpr std::string_view kFuse = "fuse";  // the last pass, over programs
 
 bool leaves_float(const Instruction& instruction) {
   return !std::all_of(instruction.immediates.begin(), instruction.immediates.end(), fits_float);
@@ -90,11 +104,18 @@ std::size_t count_nodes(const Scene& scene) {
   return count;
 }
 
+std::string summarise(std::size_t nodes, Knowledge known, glm::dvec3 origin) {
+  known.box = known.box.moved(origin);
+  return fmt::format("{} {}, {}", nodes, nodes == 1 ? "node" : "nodes", describe(known));
+}
+
 // Warns when float32 knows distances near the surface less well than a ten-thousandth of what the camera looks at.
 void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
                           Diagnostics& diagnostics) {
   const double error = vm::kFloatError * known[scene.root].magnitude;
-  if (error <= 1e-4 * glm::length(camera.target - camera.position)) return;
+  const double most = 1e-4 * glm::length(camera.target - camera.position);
+  // Numbers up to 1 are reckoned with wherever a ray is (runtime/field.h).
+  if (error <= most || known[scene.root].magnitude <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {
     if (known[child].magnitude == known[scene.root].magnitude) worst = child;
@@ -122,6 +143,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions);
   if (!elaborated) return std::nullopt;
 
+  if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
+  const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
   const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
   std::optional<vm::VerifiedProgram> distance = assemble(field, source, fused, diagnostics);
@@ -136,9 +159,13 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const Knowledge& known = all_known[field.root];
   warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
-  if (options.lint) lint(elaborated->scene, *elaborated, *surface, diagnostics);
+  if (options.lint) {
+    lint(elaborated->scene, *elaborated, *surface, diagnostics);
+    lint_places(elaborated->scene, origin, diagnostics);
+  }
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(source),
+                       origin,
                        std::move(*distance),
                        std::move(*surface),
                        known.box,
@@ -147,8 +174,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        known.certified,
                        count_nodes(field),
                        ""};
-  result.summary =
-      fmt::format("{} {}, {}", result.node_count, result.node_count == 1 ? "node" : "nodes", describe(known));
+  result.summary = summarise(result.node_count, known, origin);
   return result;
 }
 
@@ -160,7 +186,7 @@ std::optional<GraphSize> measure(const Scene& scene, const Source& source) {
 }
 
 std::vector<std::string_view> pass_names() {
-  std::vector<std::string_view> names;
+  std::vector<std::string_view> names = {kOrigin};
   for (const Pass& pass : passes()) names.push_back(pass.name);
   names.push_back(kFuse);
   return names;

@@ -17,9 +17,9 @@
 namespace fathom::compiler {
 
 struct CompileOptions {
-  // Stop optimising after the pass of this name; "graph" stands for "before the first pass".
+  // Stop after the step of this name; "graph" stands for "before the first": the graph as it was read, its origin 0.
   std::optional<std::string> stop_after;
-  // Called with the distance graph before the first pass (as "graph") and after each pass.
+  // Called with the distance graph as it was read (as "graph") and after each step.
   std::function<void(std::string_view pass, const Scene& scene)> on_pass;
   // Values for the scene's parameters in place of its own.
   Definitions definitions;
@@ -42,7 +42,7 @@ struct GraphSize {
 // nullopt when the graph's program goes beyond a limit of the machine.
 std::optional<GraphSize> measure(const Scene& scene, const Source& source);
 
-// Names of the passes, in order: those over the graph (compiler/passes/passes.h), then compiler/fuse.h.
+// Names of the steps, in order: compiler/origin.h, those over the graph (compiler/passes/passes.h), compiler/fuse.h.
 std::vector<std::string_view> pass_names();
 
 }  // namespace fathom::compiler

@@ -85,8 +85,11 @@ struct SceneTables {
   Background background;
 };
 
+// All places in it, the camera's among them, are in the programs' coordinates: the scene's minus `origin`. What takes
+// or prints places of the scene (runtime/cli) adds it; the renderer has no need to know.
 struct CompiledScene : SceneTables {
   Source source;
+  glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
   vm::VerifiedProgram distance;  // the field
   vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
 
@@ -95,7 +98,7 @@ struct CompiledScene : SceneTables {
   double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
   bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
   std::size_t node_count = 0;  // distinct nodes after the passes
-  std::string summary;         // e.g. "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
+  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
 };
 
 }  // namespace fathom::compiler

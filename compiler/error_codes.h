@@ -87,6 +87,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0509", "a formula without a bound"},
     {"W0510", "the camera is inside a solid"},
     {"W0511", "an offset of what is no distance"},
+    {"W0512", "a part too small for where it stands"},
 };
 
 }  // namespace fathom::compiler

@@ -284,16 +284,6 @@ class Linter {
     }
   }
 
-  // Twice the thickness of a wall, or the smallest extent of a primitive's box; infinite when it has neither.
-  double thickness(NodeId id) const {
-    const NodeSpec& row = spec(kind(id));
-    double least = row.category == Category::Primitive ? least_extent(box(id)) : kInfinity;
-    for (const NamedParam& param : named_params(kind(id), graph_.params(id))) {
-      if (param.name == "thickness" || param.name == "half_depth") least = std::min(least, 2 * param.values[0]);
-    }
-    return least;
-  }
-
   // What is thinner than 16 times the float error at its distance from the camera. Nearest and largest uses count.
   void check_thinness() {
     constexpr double kErrors = 16;
@@ -306,7 +296,8 @@ class Linter {
     }
     for (NodeId id = scene_.root + 1; id-- > 0;) {
       if (!field_.reached(id) || scale[id] == 0) continue;
-      const double thin = thickness(id) * scale[id], resolution = kErrors * vm::kFloatError * away[id];
+      const double thin = thickness(graph_, id, box(id)) * scale[id],
+                   resolution = kErrors * vm::kFloatError * away[id];
       if (thin < resolution) {
         warn("W0506", id, fmt::format("the {} is thinner than floats tell apart", word(id)),
              fmt::format("{:.2g} thick, {:.3g} from the camera or the origin, where {:.2g} is the least to rely on",
@@ -355,6 +346,15 @@ class Linter {
 void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgram& surface,
           Diagnostics& diagnostics) {
   Linter(scene, tables, diagnostics).run(surface);
+}
+
+double thickness(const Graph& graph, NodeId id, const Box& box) {
+  const Kind kind = graph.kind(id);
+  double least = spec(kind).category == Category::Primitive ? least_extent(box) : kInfinity;
+  for (const NamedParam& param : named_params(kind, graph.params(id))) {
+    if (param.name == "thickness" || param.name == "half_depth") least = std::min(least, 2 * param.values[0]);
+  }
+  return least;
 }
 
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {

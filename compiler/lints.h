@@ -12,9 +12,17 @@
 
 namespace fathom::compiler {
 
-// `scene` is the graph before the first pass, `surface` its program.
+// `scene` is the graph before the first pass, in the programs' coordinates like `tables`; `surface` is its program.
 void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgram& surface,
           Diagnostics& diagnostics);
+
+// Parts that are small beside their coordinates (W0512) and have no warning of being too thin yet. The programs' zero
+// is at `origin`.
+void lint_places(const Scene& scene, glm::dvec3 origin, Diagnostics& diagnostics);
+
+// Twice the thickness of a wall, or the smallest side of a primitive's box; infinite when it has neither. `box` is
+// the node's; the result is in the node's own space.
+double thickness(const Graph& graph, NodeId id, const Box& box);
 
 // The one of them that every compilation reports (W0509), for with it a picture may be wrong.
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics);

@@ -146,7 +146,9 @@ class Probing {
   // In chunks, each with a row of its own, merged in their order.
   void run(const vm::VerifiedProgram& program, std::uint64_t points, ProbeRow& row) const {
     const Knowledge& known = field_.known(row.node);
-    const Box box = region(known.box, options_.reach);
+    // Nodes below a transform have a zero of their own.
+    const glm::dvec3 zero = row.what == ProbeRow::What::Node ? glm::dvec3(0) : options_.origin;
+    const Box box = region(known.box.moved(-zero), options_.reach).moved(zero);
     const std::uint64_t chunks = (points + kChunk - 1) / kChunk;
     ProbeRow blank = row;
     blank.place = {};

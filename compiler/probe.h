@@ -21,6 +21,7 @@ namespace fathom::compiler {
 struct ProbeOptions {
   std::uint64_t points = 1'000'000;  // in the whole field, and as many again shared out among all other rows
   double reach = 50;                 // scene units
+  glm::dvec3 origin{0};              // of the scene's and the objects' endless sides, scene units
   int threads = 1;
 };
 

@@ -149,10 +149,13 @@ glm::dvec3 Slice::point(int column, int row) const {
   return point;
 }
 
-Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height) {
+glm::dvec2 on_plane(Axis axis, glm::dvec3 point) {
   const View view = view_of(axis);
-  Slice slice{axis,  at,    {box.lo[view.first], box.lo[view.second]}, {box.hi[view.first], box.hi[view.second]},
-              width, height};
+  return {point[view.first], point[view.second]};
+}
+
+Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height) {
+  Slice slice{axis, at, on_plane(axis, box.lo), on_plane(axis, box.hi), width, height};
   frame_side(slice.lo.x, slice.hi.x);
   frame_side(slice.lo.y, slice.hi.y);
   double pixel = std::max((slice.hi.x - slice.lo.x) / width, (slice.hi.y - slice.lo.y) / height);

@@ -34,6 +34,9 @@ struct Slice {
   glm::dvec3 point(int column, int row) const;
 };
 
+// The two of the point's coordinates that a plane across the axis has, in the order of Slice::lo.
+glm::dvec2 on_plane(Axis axis, glm::dvec3 point);
+
 // The slice of `box`, a tenth larger, widened until the pixels are square. A side without an end is taken to 2 from
 // the origin, or to a length of 4.
 Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height);

@@ -47,6 +47,7 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   compiler::ProbeOptions options;
   options.points = static_cast<std::uint64_t>(*request.probes);
   options.reach = 10 * glm::length(scene.camera.target - scene.camera.position);
+  options.origin = scene.origin;
   options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   const std::vector<compiler::ProbeRow> rows = probe(graph, scene.surfaces, options);
   const std::vector<const compiler::ProbeRow*> culprits = compiler::culprits(graph, rows);

@@ -98,6 +98,12 @@ std::string print(const compiler::Scene& scene, const compiler::Source& source, 
   return print_graph(scene, source);
 }
 
+// Where the zero of what follows is in the scene.
+std::string origin_line(const compiler::CompiledScene& scene) {
+  const glm::dvec3 origin = scene.origin;
+  return origin == glm::dvec3(0) ? "" : fmt::format("; origin {} {} {}\n", origin.x, origin.y, origin.z);
+}
+
 std::string print_bytecode(const compiler::CompiledScene& scene, const DumpRequest& request) {
   const bool surface = request.program == 1;
   const char* name = surface ? "surface" : "distance";
@@ -106,8 +112,8 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
     return fmt::format("{}\n{} of the graph\n\n{}", operation_table(program), count_of(scene.node_count, "node"),
                        cost_by_node(program));
   }
-  if (request.format == kJson) return program_json(program, name, scene.summary);
-  return fmt::format("; {}: {}\n", name, scene.summary) + vm::disassemble(program);
+  if (request.format == kJson) return program_json(program, name, scene);
+  return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) + vm::disassemble(program);
 }
 
 }  // namespace
@@ -136,7 +142,10 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (request.diff && !request.after) diff.add_fused(scene.distance);
-  if (request.stage == kGraph) streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
+  if (request.stage == kGraph) {
+    if (request.format <= kText) streams.out << origin_line(scene);
+    streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
+  }
   if (request.stage == kBytecode) streams.out << print_bytecode(scene, request);
   return kDone;
 }

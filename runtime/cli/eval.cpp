@@ -6,6 +6,7 @@
 // Tested by: tests/runtime/cli_test.cpp
 #include <fmt/format.h>
 
+#include <glm/common.hpp>
 #include <ostream>
 
 #include "runtime/cli/scene_file.h"
@@ -97,7 +98,7 @@ std::string_view surface_name(const compiler::CompiledScene& scene, std::uint32_
 void print_f64(const compiler::CompiledScene& scene, const std::vector<glm::dvec3>& points, std::ostream& out) {
   vm::Workspace workspace;
   for (const glm::dvec3& point : points) {
-    const vm::SurfaceValue value = vm::evaluate_surface(scene.surface, point, workspace);
+    const vm::SurfaceValue value = vm::evaluate_surface(scene.surface, point - scene.origin, workspace);
     out << fmt::format("{} {} {} {} {}\n", value.distance, value.gradient.x, value.gradient.y, value.gradient.z,
                        surface_name(scene, value.surface));
   }
@@ -108,9 +109,10 @@ void print_f32(const compiler::CompiledScene& scene, const std::vector<glm::dvec
   std::vector<float> x(count), y(count), z(count), distance(count), gx(count), gy(count), gz(count);
   std::vector<std::uint32_t> surface(count);
   for (std::size_t i = 0; i < count; ++i) {
-    x[i] = static_cast<float>(points[i].x);
-    y[i] = static_cast<float>(points[i].y);
-    z[i] = static_cast<float>(points[i].z);
+    const glm::vec3 point(points[i] - scene.origin);
+    x[i] = point.x;
+    y[i] = point.y;
+    z[i] = point.z;
   }
   vm::Workspace workspace;
   vm::evaluate_surface(scene.surface, {x.data(), y.data(), z.data()}, count,
@@ -120,10 +122,18 @@ void print_f32(const compiler::CompiledScene& scene, const std::vector<glm::dvec
   }
 }
 
+// The box in the programs' coordinates, grown by more than the rounding of its corners.
+PointBox local(const PointBox& box, glm::dvec3 origin) {
+  if (origin == glm::dvec3(0)) return box;
+  const glm::dvec3 lo = box.lo - origin, hi = box.hi - origin;
+  return {lo - 0x1p-52 * glm::abs(lo), hi + 0x1p-52 * glm::abs(hi)};
+}
+
 void print_ranges(const compiler::CompiledScene& scene, const std::vector<PointBox>& boxes, std::ostream& out) {
   vm::Workspace workspace;
   for (const PointBox& box : boxes) {
-    const vm::Range range = vm::evaluate_range(scene.distance, box.lo, box.hi, workspace);
+    const auto [lo, hi] = local(box, scene.origin);
+    const vm::Range range = vm::evaluate_range(scene.distance, lo, hi, workspace);
     out << fmt::format("{} {}\n", range.lo, range.hi);
   }
 }

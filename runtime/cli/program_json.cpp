@@ -58,17 +58,17 @@ Json source_json(const vm::DebugEntry& entry) {
 
 }  // namespace
 
-std::string program_json(const vm::VerifiedProgram& verified, std::string_view which, std::string_view summary) {
+std::string program_json(const vm::VerifiedProgram& verified, std::string_view which,
+                         const compiler::CompiledScene& scene) {
   const vm::Program& program = verified.program();
-  const Json head = {{"scene", program.source_name},
-                     {"program", which},
-                     {"summary", summary},
-                     {"instructions", verified.instructions()},
-                     {"words", program.words.size()},
-                     {"max_values", verified.max_values()},
-                     {"max_points", verified.max_points()},
-                     {"locals", program.locals},
-                     {"cost", verified.cost()}};
+  Json head = {{"scene", program.source_name}, {"program", which}, {"summary", scene.summary}};
+  if (scene.origin != glm::dvec3(0)) head["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
+  head["instructions"] = verified.instructions();
+  head["words"] = program.words.size();
+  head["max_values"] = verified.max_values();
+  head["max_points"] = verified.max_points();
+  head["locals"] = program.locals;
+  head["cost"] = verified.cost();
   std::string out = print(head);
   out.back() = ',';  // the object goes on
   out += "\"code\":[";

@@ -5,14 +5,16 @@
 #include <string>
 #include <string_view>
 
-#include "vm/verify.h"
+#include "compiler/compiled_scene.h"
 
 namespace fathom::cli {
 
-// {"scene": name, "program": which, "summary": ..., sizes, "code": [...]}, an instruction a line:
+// {"scene": name, "program": which, "summary": ..., sizes, "code": [...]}, after the summary "origin": [x,y,z] where
+// that is not zero (compiler/origin.h); an instruction a line:
 //     {"offset": 0, "op": "sphere", "immediates": {"radius": 0.5}, "values": [0, 1], "points": [1, 1], "cost": 8,
 //      "source": {"line": 6, "column": 5}, "symbol": "sphere \"ball\""}
 // Immediates are the unrounded ones; the code holds the nearest floats. tee, load and tag have an "operand", too.
-std::string program_json(const vm::VerifiedProgram& program, std::string_view which, std::string_view summary);
+std::string program_json(const vm::VerifiedProgram& program, std::string_view which,
+                         const compiler::CompiledScene& scene);
 
 }  // namespace fathom::cli

@@ -69,12 +69,14 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-runtime::Slice place_slice(const SliceRequest& request, const compiler::Box& bound) {
-  runtime::Slice slice = runtime::frame_slice(bound, static_cast<runtime::Axis>(request.axis), request.at.value_or(0),
-                                              request.size->width, request.size->height);
+// In the programs' coordinates.
+runtime::Slice place_slice(const SliceRequest& request, const compiler::CompiledScene& scene) {
+  const auto axis = static_cast<runtime::Axis>(request.axis);
+  const double at = request.at.value_or(0) - scene.origin[request.axis];
+  runtime::Slice slice = runtime::frame_slice(scene.bound, axis, at, request.size->width, request.size->height);
   if (request.box) {
-    slice.lo = request.box->lo;
-    slice.hi = request.box->hi;
+    slice.lo = request.box->lo - runtime::on_plane(axis, scene.origin);
+    slice.hi = request.box->hi - runtime::on_plane(axis, scene.origin);
   }
   return slice;
 }
@@ -125,7 +127,7 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
 
-  const runtime::Slice slice = place_slice(request, scene.bound);
+  const runtime::Slice slice = place_slice(request, scene);
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const std::vector<float> field =
       runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors));

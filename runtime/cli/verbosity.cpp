@@ -33,15 +33,17 @@ std::string describe_settings(const compiler::CompiledScene& scene, const runtim
   text += fmt::format("{}x{} pixels, {} samples a pixel, {} bounces, tiles of {}, seed {}\n", settings.width,
                       settings.height, settings.spp, settings.bounces, settings.tile, settings.seed);
   text += settings.far ? fmt::format("rays end {:.6g} from the camera\n", *settings.far) : "";
-  text += fmt::format("bound {} to {}, Lipschitz constant {:.6g} ({})\n", triple(scene.bound.lo),
-                      triple(scene.bound.hi), scene.lipschitz, scene.certified ? "proved" : "an estimate");
+  const compiler::Box bound = scene.bound.moved(scene.origin);
+  text += fmt::format("bound {} to {}, Lipschitz constant {:.6g} ({})\n", triple(bound.lo), triple(bound.hi),
+                      scene.lipschitz, scene.certified ? "proved" : "an estimate");
+  if (scene.origin != glm::dvec3(0)) text += fmt::format("the programs' origin is {}\n", triple(scene.origin));
   return text;
 }
 
 std::string describe_tables(const compiler::CompiledScene& scene) {
   const compiler::Camera& camera = scene.camera;
-  std::string text = fmt::format("camera at {} towards {}, up {}\n", triple(camera.position), triple(camera.target),
-                                 triple(camera.up));
+  std::string text = fmt::format("camera at {} towards {}, up {}\n", triple(camera.position + scene.origin),
+                                 triple(camera.target + scene.origin), triple(camera.up));
   const char* types[] = {"diffuse", "emissive", "specular", "transparent"};
   for (const compiler::Material& material : scene.materials) {
     text += fmt::format("material `{}`: {}, colour {}\n", material.name,

@@ -1,6 +1,7 @@
 #include "compiler/probe.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "compiler/formula_field.h"
 #include "compiler/make_node.h"
@@ -56,6 +57,18 @@ TEST_CASE("a twist whose constant is halved is named, and not what lies above it
   REQUIRE(guilty.size() == 1);
   CHECK(guilty[0]->node == t.twist);
   CHECK(guilty[0]->place.type == "twist");
+}
+
+TEST_CASE("what has no end is probed where the scene is", "[probe]") {
+  Scene scene;
+  const double up[] = {0, 1, 0, 0};
+  scene.root = scene.graph.add(Kind::Plane, up, {});
+  ProbeOptions options = kOptions;
+  options.origin = {1e5, 0, 0};
+  const std::vector<ProbeRow> rows = probe(scene, {}, options);
+  REQUIRE(rows.size() == 1);
+  CHECK(std::abs(rows[0].at.x - 1e5) <= 11);
+  CHECK(std::abs(rows[0].at.z) <= 11);
 }
 
 TEST_CASE("a formula whose constant is halved is named, and an estimate never breaks", "[probe]") {

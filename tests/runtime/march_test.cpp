@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 
 #include "runtime/certify.h"
@@ -15,35 +14,10 @@
 namespace fathom::runtime {
 namespace {
 
-using Truth = std::function<Real(const Ray&)>;  // distance to the first surface, negative for a miss
-
 const char* const kSphere = R"("objects": [{"type": "sphere", "radius": 1}])";
 const char* const kBox = R"("objects": [{"type": "box", "half_size": [0.75, 0.5, 1]}])";
 const char* const kPlane = R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])";
 const char* const kTorus = R"("objects": [{"type": "torus", "major_radius": 1, "minor_radius": 0.25}])";
-
-struct Judgement {
-  int hits = 0, false_hits = 0, false_misses = 0, invalid = 0;
-  std::vector<double> errors;  // sorted
-  double p99() const { return errors.at(errors.size() * 99 / 100); }
-  double worst() const { return errors.back(); }
-};
-
-Judgement judge(const MarchResult& result, const std::vector<Ray>& rays, const Truth& truth) {
-  Judgement judgement;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Arrival& arrival = result.arrivals[i];
-    const Real expected = truth(rays[i]);
-    const bool hit = arrival.status == Arrival::Status::Hit;
-    judgement.invalid += arrival.status == Arrival::Status::Invalid;
-    judgement.hits += hit;
-    judgement.false_hits += hit && expected < 0;
-    judgement.false_misses += !hit && expected >= 0;
-    if (hit && expected >= 0) judgement.errors.push_back(static_cast<double>(std::abs(arrival.t - expected)));
-  }
-  std::sort(judgement.errors.begin(), judgement.errors.end());
-  return judgement;
-}
 
 void expect_accurate(const char* scene_text, const std::vector<Ray>& rays, const Truth& truth) {
   const auto scene = scene_of(scene_text);
@@ -288,29 +262,6 @@ TEST_CASE("march: a composite scene agrees with certified bisection", "[march]")
   CHECK((wrong + gross) * 1e6 <= 50.0 * static_cast<double>(rays.size()));
   CHECK(result.counters.certified * 500 <= rays.size());  // 0.2 %
   CHECK(result.counters.invalid + result.counters.exhausted == 0);
-}
-
-TEST_CASE("march: far from the origin the error is that of float coordinates", "[march]") {
-  for (const double offset : {10.0, 100.0, 1000.0, 10000.0}) {
-    const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1, "translate": [)" +
-                                std::to_string(offset) + ", 0, 0]}]");
-    std::vector<Ray> here = rays_at_sphere(2000, 5), there = here;
-    for (Ray& ray : there) ray.origin.x += offset;
-    const MarchResult result = march(make_field(scene), there);
-    const double unit = static_cast<double>(std::nextafter(static_cast<float>(offset + 1), INFINITY)) -
-                        static_cast<double>(static_cast<float>(offset + 1));
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      const Real truth = sphere_distance(here[i]);
-      if (truth < 0 || result.arrivals[i].status != Arrival::Status::Hit) continue;
-      errors.push_back(static_cast<double>(std::abs(result.arrivals[i].t - truth)) / unit);
-    }
-    std::sort(errors.begin(), errors.end());
-    INFO(offset << ": median " << errors[errors.size() / 2] << " units in the last place of the coordinates");
-    CHECK(errors.size() > 1900);
-    CHECK(errors[errors.size() * 9 / 10] <= 4);
-    CHECK(result.counters.exhausted == 0);
-  }
 }
 
 TEST_CASE("march: an arrival depends on its ray alone", "[march]") {

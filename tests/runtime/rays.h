@@ -1,11 +1,14 @@
-// Rays at random whose numbers are exact in float, and the true distances along them to solids of closed form.
+// Rays at random whose numbers are exact in float, the true distances along them to solids of closed form, and what
+// marching makes of the two.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <random>
+#include <vector>
 
 #include "runtime/march.h"
 
@@ -82,6 +85,31 @@ inline Real torus_distance(const Ray& ray) {
     t += step;
   }
   return -1;
+}
+
+using Truth = std::function<Real(const Ray&)>;  // distance to the first surface, negative for a miss
+
+struct Judgement {
+  int hits = 0, false_hits = 0, false_misses = 0, invalid = 0;
+  std::vector<double> errors;  // sorted
+  double p99() const { return errors.at(errors.size() * 99 / 100); }
+  double worst() const { return errors.back(); }
+};
+
+inline Judgement judge(const MarchResult& result, const std::vector<Ray>& rays, const Truth& truth) {
+  Judgement judgement;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Arrival& arrival = result.arrivals[i];
+    const Real expected = truth(rays[i]);
+    const bool hit = arrival.status == Arrival::Status::Hit;
+    judgement.invalid += arrival.status == Arrival::Status::Invalid;
+    judgement.hits += hit;
+    judgement.false_hits += hit && expected < 0;
+    judgement.false_misses += !hit && expected >= 0;
+    if (hit && expected >= 0) judgement.errors.push_back(static_cast<double>(std::abs(arrival.t - expected)));
+  }
+  std::sort(judgement.errors.begin(), judgement.errors.end());
+  return judgement;
 }
 
 }  // namespace fathom::runtime
