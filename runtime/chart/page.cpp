@@ -38,6 +38,7 @@ body { margin: 0 auto; padding: 1rem; max-width: 62rem; background: var(--paper)
   font: 1rem/1.5 system-ui, sans-serif; }
 h1 { font-size: 1.7rem; margin: 0.5rem 0; } h2 { margin: 2.5rem 0 0.5rem; } h3 { margin: 1.5rem 0 0.5rem; }
 figure { margin: 1.2rem 0; }
+figcaption { margin-top: 0.6rem; }
 figcaption, footer { color: var(--soft); font-size: 0.92rem; max-width: 46rem; }
 .wide { overflow-x: auto; }
 .wide svg { display: block; width: 100%; min-width: 44rem; height: auto; border-radius: 6px; }

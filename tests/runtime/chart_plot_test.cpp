@@ -323,7 +323,7 @@ TEST_CASE("chart plot: whatever the numbers and the words are, the text is well 
     const std::string svg = plot_svg(plot);
     CHECK(what_is_wrong(svg) == "");
     for (const char* bad : {"\"nan", "\"inf", "\"-nan", "\"-inf", " nan", " inf", "Hnan", "Vnan", "Hinf", "Vinf"}) {
-        CAPTURE(bad);
+      CAPTURE(bad);
       CHECK(count_of(svg, bad) == 0);
     }
     std::size_t points = 0;
