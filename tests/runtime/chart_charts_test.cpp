@@ -170,6 +170,21 @@ TEST_CASE("chart B: points are in the order of samples, whatever the rows' order
   CHECK(chart_b(rows, "composite", kProvenance) == svg);
 }
 
+TEST_CASE("chart B: the floor is that at the most samples", "[chart]") {
+  auto rows = sample_images();
+  rows.erase(rows.begin() + 5, rows.end());
+  for (ImageMeasurement& row : rows) row.floor = 4e-5 / row.spp;  // 4 to 1024
+  std::swap(rows.front(), rows.back());
+  const std::string svg = chart_b(rows, "composite", kProvenance);
+  const auto markers = circles(svg, "marker");  // by samples: a decade has the same height everywhere
+  const double decade = (markers[4].y - markers[0].y) / std::log10(rows.back().relmse_med / rows.front().relmse_med);
+  const double level = markers[4].y + decade * std::log10(rows.front().relmse_med / (4e-5 / 1024));
+  const std::regex line("y1=\"([0-9.]+)\"[^>]*class=\"level\"");
+  std::smatch match;
+  REQUIRE(std::regex_search(svg, match, line));
+  CHECK(std::stod(match[1]) == Approx(level).margin(0.1));
+}
+
 TEST_CASE("chart B: a floor of 0 and a panel that was not measured", "[chart]") {
   auto rows = sample_images();
   for (ImageMeasurement& row : rows) {

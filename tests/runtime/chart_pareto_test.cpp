@@ -106,6 +106,8 @@ TEST_CASE("chart pareto: the staircase is of those that fail no more often than 
   CHECK(names_of(reliable_front(rows, Cost::Time)) == "bcertifyinga");
   rows.back().gross_ppm = 0;
   CHECK(names_of(reliable_front(rows, Cost::Time)) == "dccertifyinga");
+  rows.push_back(row("e", 60, 1e-6, 0));  // no better than a, and slower
+  CHECK(names_of(reliable_front(rows, Cost::Time)) == "dccertifyinga");
 }
 
 // What makes the picture readable: the eye can tell whether the default is on the front.
