@@ -56,3 +56,12 @@ TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]
     }
   }
 }
+
+TEST_CASE("charts know numbers and pictures, not scenes and rays", "[layers]") {
+  for (const auto& entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "runtime/chart")) {
+    for (const std::string& include : includes(entry.path())) {
+      CAPTURE(entry.path().string(), include);
+      CHECK((include.starts_with("runtime/chart/") || include == "runtime/image.h"));
+    }
+  }
+}

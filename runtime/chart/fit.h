@@ -1,0 +1,23 @@
+// Power laws through measured points: least squares of log y on log x.
+// Tested by: tests/runtime/chart_pareto_test.cpp
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/chart/measurements.h"
+
+namespace fathom::runtime {
+
+// y = factor * x^slope. Both are NaN where there are no two different x.
+struct PowerLaw {
+  double slope, factor;
+};
+
+// Points that have no logarithm (0, negative, not finite) take no part. The spans are equally long.
+PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
+
+// relMSE over seconds for each scene, method, precision and eps, in the order in which they come first.
+std::vector<ImageCurve> fit_curves(std::span<const ImageMeasurement> rows);
+
+}  // namespace fathom::runtime

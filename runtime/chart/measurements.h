@@ -1,0 +1,78 @@
+// What `fathom chart` measured: plain numbers between those who take them and those who draw them.
+//
+// Shares of rays are in ppm, lengths in scene units, angles in radians. A quantity that could not be measured is NaN,
+// and is drawn and written as missing, never as 0.
+// Tested by: tests/runtime/chart_csv_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace fathom::runtime {
+
+inline constexpr const char* kDefaultMethod = "certifying";
+
+// One way to intersect one class of rays with one scene.
+struct RayMeasurement {
+  std::string scene;
+  std::string method;     // kDefaultMethod, or another
+  std::string precision;  // "f32" or "f64"
+  double eps = 0;         // of a hit, scene units; 0: the method has none
+  double relax = 0;       // factor on the step; 0: automatic, 1: plain sphere tracing
+  int steps_max = 0;      // 0: none
+  std::string ray_class;  // "camera", "bounce" or "grazing"
+  std::uint64_t rays = 0;
+  double ns_med = 0, ns_min = 0, ns_max = 0;        // nanoseconds per ray on one thread, over the rounds
+  double evals_mean = 0, evals_p99 = 0;             // evaluations of the field per ray
+  double false_hit_ppm = 0;                         // rays that miss and were said to hit
+  double false_miss_ppm = 0;                        // rays that hit and were said to miss
+  double exhausted_ppm = 0;                         // rays that ran out of steps
+  double contact_ppm = 0;                           // misses that came too near to exclude a touch; no failures
+  double gross_ppm = 0;                             // hits far from the true one
+  double terr_p50 = 0, terr_p99 = 0, terr_max = 0;  // |t - t_ref| of the hits, scene units
+  double nerr_p50 = 0, nerr_p99 = 0, nerr_max = 0;  // angle between the normals, radians
+  bool reference = false;                           // the truth itself: its errors are 0 by definition
+};
+
+// Pictures of one scene at one number of samples, each with its own seed. relMSE = mean((I - R)^2 / (R^2 + c)), R the
+// reference, c = 0.01 times the square of R's mean.
+struct ImageMeasurement {
+  std::string scene;
+  std::string method;
+  std::string precision;
+  double eps = 0;  // scene units; 0: the method has none
+  int spp = 0;
+  int seeds = 0;                                             // pictures taken
+  double seconds_med = 0, seconds_min = 0, seconds_max = 0;  // for one picture
+  double relmse_med = 0, relmse_p05 = 0, relmse_p95 = 0;     // over the seeds
+  double relmse_trimmed_med = 0;                             // without the worst 0.1 % of the pixels
+  double floor = 0;  // relMSE of the mean over the seeds: the bias, and what noise the mean still has
+};
+
+// A power law through the points of one method: relMSE = factor * seconds^slope.
+struct ImageCurve {
+  std::string scene;
+  std::string method;
+  std::string precision;
+  double eps = 0;
+  double slope = 0;   // -1 without bias and with independent samples; NaN where there are no two points
+  double factor = 0;  // relMSE after one second
+};
+
+// Where the numbers are from.
+struct Provenance {
+  std::string commit, cpu, compiler, isa, date, command;
+  int rounds = 0;  // each time is the median of so many
+};
+
+// In one line, for the foot of a chart.
+inline std::string source_of(const Provenance& provenance) {
+  std::string line;
+  for (const std::string* part :
+       {&provenance.commit, &provenance.cpu, &provenance.isa, &provenance.compiler, &provenance.date}) {
+    if (!part->empty()) line += (line.empty() ? "" : " · ") + *part;
+  }
+  return line;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,56 @@
+// What plot.cpp, plot_panel.cpp and plot_legend.cpp draw with: sizes, and marks as SVG elements. Pixels, y downwards.
+// Tested by: tests/runtime/chart_plot_test.cpp
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <string>
+#include <string_view>
+
+#include "runtime/chart/label_layout.h"
+#include "runtime/chart/log_axis.h"
+#include "runtime/chart/plot.h"
+
+namespace fathom::runtime {
+
+inline constexpr double kPlotWidth = 960;
+inline constexpr double kLeft = 78, kRight = 20;                                  // margins of the panels
+inline constexpr double kTickSize = 11.5, kLabelSize = 10.5, kLegendSize = 12.5;  // of text
+inline constexpr double kMarkerRadius = 3.4, kBoldMarkerRadius = 4.6, kRingRadius = 7.2;
+inline constexpr const char* kInk = "#1a1a1a";
+inline constexpr const char* kSoftInk = "#666666";
+inline constexpr const char* kFrontColor = "#8c8c8c";
+
+// How wide a text will be at most, in the widest of the usual fonts.
+double text_width(std::string_view text, double size, bool bold = false);
+
+struct TextStyle {
+  double size = kTickSize;
+  const char* color = kInk;
+  const char* anchor = "start";  // "middle", "end"
+  bool bold = false;
+  bool halo = false;  // white round the letters
+};
+std::string draw_text(glm::dvec2 at, std::string_view text, const TextStyle& style);
+std::string draw_tick_label(glm::dvec2 at, const TickLabel& label, const TextStyle& style);
+
+// `attributes` goes into the element as it is.
+std::string draw_line(glm::dvec2 from, glm::dvec2 to, std::string_view color, double width,
+                      std::string_view attributes = "");
+std::string draw_circle(glm::dvec2 at, double radius, std::string_view attributes);
+
+std::string draw_disc(glm::dvec2 at, double failures_ppm, std::string_view color);
+std::string draw_ring(glm::dvec2 at);
+// The series' marker; a diamond for a value of 0.
+std::string draw_marker(const PlotSeries& series, glm::dvec2 at, bool zero);
+
+// The panel's area is `area`; the axes are those of all panels, `first` has the labels of the y axis.
+std::string draw_panel(const PlotPanel& panel, const Rectangle& area, const LogAxis& x, const LogAxis& y, bool first);
+
+// The legend from `top` downwards.
+struct Legend {
+  std::string svg;
+  double height = 0;
+};
+Legend draw_legend(const Plot& plot, double top);
+
+}  // namespace fathom::runtime
