@@ -9,7 +9,7 @@
 
 #include "bench/clouds.h"
 #include "bench/hand_written.h"
-#include "bench/stopwatch.h"
+#include "runtime/chart/stopwatch.h"
 
 namespace {
 
@@ -22,7 +22,7 @@ void measure(const char* name, const std::string& path, bench::Field by_hand, co
   const compiler::CompiledScene scene = bench::compile_file(path);
   vm::Workspace workspace;
   std::vector<float> interpreted(kPoints), hand(kPoints);
-  const auto seconds = bench::time_interleaved({[&] {
+  const auto seconds = runtime::time_interleaved({[&] {
                                                   for (int i = 0; i < kRepeats; ++i) {
                                                     vm::evaluate_distance(scene.distance, cloud.points(), kPoints,
                                                                           interpreted.data(), workspace);
@@ -36,8 +36,8 @@ void measure(const char* name, const std::string& path, bench::Field by_hand, co
   float largest = 0;
   for (std::size_t i = 0; i < kPoints; ++i) largest = std::max(largest, std::fabs(interpreted[i] - hand[i]));
   const double per_point = 1e9 / (kPoints * kRepeats);
-  const bench::Spread vm_time = bench::spread(seconds[0]), hand_time = bench::spread(seconds[1]),
-                      ratio = bench::ratio(seconds[0], seconds[1]);
+  const runtime::Spread vm_time = runtime::spread(seconds[0]), hand_time = runtime::spread(seconds[1]),
+                      ratio = runtime::ratio(seconds[0], seconds[1]);
   fmt::print(
       "{:<12} {:4} ops  machine {:6.2f}  by hand {:6.2f}  ratio {:.2f} ({:.2f}..{:.2f})  largest difference {:.1e}\n",
       name, scene.distance.instructions(), vm_time.median * per_point, hand_time.median * per_point, ratio.median,
@@ -48,7 +48,7 @@ void measure(const char* name, const std::string& path, bench::Field by_hand, co
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 51;
-  bench::pin_thread();
+  runtime::pin_thread();
   const bench::Cloud cloud = bench::make_cloud(kPoints);
   fmt::print("{} lanes' instruction set, {} points, {} rounds; ns per point (median), ratio median (least..most)\n",
              vm::isa_name(), kPoints, rounds);

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "bench/clouds.h"
-#include "bench/stopwatch.h"
+#include "runtime/chart/stopwatch.h"
 
 namespace {
 
@@ -29,23 +29,23 @@ void measure(const char* path, const bench::Cloud& cloud, int rounds) {
       vm::evaluate_distance(program, cloud.points(), kPoints, out.data(), workspace);
     }
   };
-  const auto seconds = bench::time_interleaved({[&] { run(fused, b); }, [&] { run(plain, a); }}, rounds);
+  const auto seconds = runtime::time_interleaved({[&] { run(fused, b); }, [&] { run(plain, a); }}, rounds);
   std::size_t different = 0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     different += std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]);
   }
   const double per_point = 1e9 / (kPoints * static_cast<double>(repeats));
-  const bench::Spread ratio = bench::ratio(seconds[0], seconds[1]);
+  const runtime::Spread ratio = runtime::ratio(seconds[0], seconds[1]);
   fmt::print("{:<32} {:6} -> {:5} ops {:9.2f} -> {:8.2f} ns  ratio {:.3f} ({:.2f}..{:.2f})  values that differ {}\n",
-             path, plain.instructions(), fused.instructions(), bench::spread(seconds[1]).median * per_point,
-             bench::spread(seconds[0]).median * per_point, ratio.median, ratio.least, ratio.most, different);
+             path, plain.instructions(), fused.instructions(), runtime::spread(seconds[1]).median * per_point,
+             runtime::spread(seconds[0]).median * per_point, ratio.median, ratio.least, ratio.most, different);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 51;
-  bench::pin_thread();
+  runtime::pin_thread();
   const bench::Cloud cloud = bench::make_cloud(kPoints);
   fmt::print("{} lanes' instruction set, {} points, {} rounds; medians, ratio fused / plain (least..most)\n",
              vm::isa_name(), kPoints, rounds);

@@ -10,7 +10,7 @@
 
 namespace fathom::runtime {
 
-inline constexpr const char* kDefaultMethod = "certifying";
+inline constexpr const char* kDefaultMethod = "tiered";
 
 // One way to intersect one class of rays with one scene.
 struct RayMeasurement {

@@ -35,7 +35,7 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
   REQUIRE((camera && bounce && grazing));
   CHECK(camera->x < bounce->x);
   CHECK(bounce->x < grazing->x);
-  for (const char* name : {"certifying f32", "sphere tracing f32", "sphere tracing f32, 64 steps",
+  for (const char* name : {"tiered f32", "sphere tracing f32", "sphere tracing f32, 64 steps",
                            "sphere tracing f32, relaxed automatically", "sphere tracing f64", "interval f64"}) {
     CAPTURE(name);
     CHECK(find_text(words, name) != nullptr);
@@ -64,7 +64,7 @@ TEST_CASE("chart A: the default is bold, on the front and on the staircase", "[c
     corner << "H" << marker.x << "V" << marker.y;
     CHECK(count_of(svg, corner.str()) == 2);
   }
-  CHECK(count_of(svg, ">certifying</text>") == 3);
+  CHECK(count_of(svg, ">tiered</text>") == 3);
 }
 
 TEST_CASE("chart A: the axes are time or evaluations, and p99", "[chart]") {
@@ -152,14 +152,14 @@ TEST_CASE("chart B: curves over samples with their slopes, floors and both panel
   const std::string svg = chart_b(rows, "composite", kProvenance);
   CHECK(what_is_wrong(svg) == "");
   const auto words = texts(svg);
-  CHECK(find_text(words, "certifying f32, slope −1.00") != nullptr);
+  CHECK(find_text(words, "tiered f32, slope −1.00") != nullptr);
   CHECK(find_text(words, "sphere tracing f32, eps 1e-3, slope −0.68") != nullptr);
   CHECK(find_text(words, "all pixels") != nullptr);
   CHECK(find_text(words, "without the worst 0.1 % of pixels") != nullptr);
   CHECK(circles(svg, "marker").size() == 2 * rows.size() + 4);
   CHECK(count_of(svg, "class=\"level\"") == 4);
   CHECK(count_of(svg, ">1024 spp<") == 2);  // of the default, in both panels
-  CHECK(contains(svg, "certifying f32\n4 samples per pixel, 16 seeds\n0.084 s (0.0806 to 0.0899)\n"));
+  CHECK(contains(svg, "tiered f32\n4 samples per pixel, 16 seeds\n0.084 s (0.0806 to 0.0899)\n"));
   CHECK(contains(svg, "5 to 95 % of 16 seeds"));
 }
 

@@ -27,7 +27,7 @@ inline std::vector<runtime::RayMeasurement> sample_rays() {
       {"sphere tracing", "f32", 1e-6, 1, 0, {1.25, 1.26}, {35.8, 35.5}, 1.7e-5, {0, 0}, {0, 1100}},
       {"sphere tracing", "f32", 1e-3, 1, 64, {.76, .95}, {20.9, 26.3}, 1.1e-2, {1040, 360}, {52400, 57040}},
       {"sphere tracing", "f32", 1e-5, 0, 0, {1.10, 1.06}, {22.4, 21.9}, 1.6e-4, {20, 0}, {0, 440}},
-      {"certifying", "f32", 0, 0, 0, {1.14, 1.03}, {25.2, 21.6}, 2.5e-6, {0, 0}, {0, 0}},
+      {"tiered", "f32", 0, 0, 0, {1.14, 1.03}, {25.2, 21.6}, 2.5e-6, {0, 0}, {0, 0}},
       {"sphere tracing", "f64", 1e-9, 1, 0, {1.85, 1.60}, {48.6, 42.5}, 9.3e-9, {0, 0}, {0, 40}},
       {"interval", "f64", 0, 0, 0, {54.7, 26.1}, {87.9, 47.6}, 7.5e-9, {0, 0}, {100, 20}},
       {"reference", "f64", 0, 0, 0, {2.57, 1.84}, {53.7, 38.3}, 0, {0, 0}, {0, 0}},
@@ -74,7 +74,7 @@ inline std::vector<runtime::ImageMeasurement> sample_images() {
     const char* precision;
     double eps, seconds_per_sample, noise, floor;
   };
-  const Curve curves[] = {{"certifying", "f32", 0, 0.021, 0.4, 3e-6},
+  const Curve curves[] = {{"tiered", "f32", 0, 0.021, 0.4, 3e-6},
                           {"sphere tracing", "f32", 1e-3, 0.019, 0.4, 2.1e-3},
                           {"sphere tracing", "f32", 1e-5, 0.024, 0.4, 2.2e-5},
                           {"reference", "f64", 0, 0.31, 0.4, 1e-6}};

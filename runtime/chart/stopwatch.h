@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace fathom::bench {
+namespace fathom::runtime {
 
 // Keeps the calling thread on the processor it runs on.
 inline void pin_thread() {
@@ -57,4 +57,4 @@ inline Spread ratio(const std::vector<double>& a, const std::vector<double>& b) 
   return spread(ratios);
 }
 
-}  // namespace fathom::bench
+}  // namespace fathom::runtime
