@@ -9,7 +9,7 @@
 
 #include "bench/clouds.h"
 #include "bench/hand_written.h"
-#include "runtime/chart/stopwatch.h"
+#include "runtime/measure/stopwatch.h"
 
 namespace {
 

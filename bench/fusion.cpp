@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "bench/clouds.h"
-#include "runtime/chart/stopwatch.h"
+#include "runtime/measure/stopwatch.h"
 
 namespace {
 

@@ -40,7 +40,7 @@ class Search {
     }
     if (!std::isfinite(ga)) {
       end(Arrival::Status::Invalid);
-    } else if (ga <= 0) {
+    } else if (ga < 0) {
       hit(stretch.begin, stretch.begin);
     } else {
       search(stretch, ga);
@@ -87,30 +87,31 @@ class Search {
       if (!pending_.empty() && pending_.back().a == s.b) pending_.back().ga = s.gb;
     }
     Gap gap = gap_of(s);
-    if (s.gb > 0 && gap.lo > gap.hi) return;
+    if (s.gb >= 0 && gap.lo > gap.hi) return;
     if (gap.hi - gap.lo > (s.b - s.a) / kRangeRatio) {
       if (!narrow(s)) return;
       gap = gap_of(s);
-      if (s.gb > 0 && gap.lo > gap.hi) return;
-      if (s.gb <= 0 && s.rise <= 0) return find_root(s);
+      if (s.gb >= 0 && gap.lo > gap.hi) return;
+      if (s.gb < 0 && s.rise <= 0) return find_root(s);
     }
     const double middle = (gap.lo + gap.hi) / 2;
     if (gap.hi - gap.lo <= resolution(middle) || !(middle > s.a && middle < s.b)) {
-      if (s.gb <= 0) return hit(std::max(s.a, gap.lo), std::min(s.b, gap.hi));
+      if (s.gb < 0) return hit(std::max(s.a, gap.lo), std::min(s.b, gap.hi));
       contact_ = true;
       return;
     }
     const double gm = value(middle);
     if (!std::isfinite(gm)) return end(Arrival::Status::Invalid);
-    if (gm > 0) pending_.push_back({middle, gm, s.b, s.gb, s.fall, s.rise});
+    if (gm >= 0) pending_.push_back({middle, gm, s.b, s.gb, s.fall, s.rise});
     pending_.push_back({s.a, s.ga, middle, gm, s.fall, s.rise});
   }
 
-  // g can be zero only where neither end's value and slope keep it from it; empty (lo > hi) when that is nowhere.
+  // g can be below zero only where neither end's value and slope keep it from it; empty (lo > hi) when that is
+  // nowhere.
   static Gap gap_of(const Segment& s) {
     const double infinity = std::numeric_limits<double>::infinity();
     const double lo = s.fall > 0 ? s.a + s.ga / s.fall : infinity;
-    if (s.gb <= 0) return {std::min(lo, s.b), s.b};
+    if (s.gb < 0) return {std::min(lo, s.b), s.b};
     const double hi = s.rise > 0 ? s.b - s.gb / s.rise : -infinity;
     return {lo, hi};
   }

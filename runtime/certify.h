@@ -34,9 +34,9 @@ struct Stretch {
 };
 
 // The first root of g(t) = side * f(origin + t direction), where g(begin) is taken to be positive; a hit at `begin`
-// when it is not. `side` 0: the sign of f at `begin`. Contact: no root, but nearer to one than the resolution of
-// 2^-40 max(1, |p|). Always ends: a search that takes more than kSearchBudget evaluations goes on at ever coarser
-// resolution, and what stays open is a contact.
+// when it is below 0. An exact 0 is a touch: a root only when g goes on below it. `side` 0: the sign of f at `begin`.
+// Contact: no root, but nearer to one than the resolution of 2^-40 max(1, |p|). Always ends: a search that takes more
+// than kSearchBudget evaluations goes on at ever coarser resolution, and what stays open is a contact.
 Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, Stretch stretch,
                   vm::Workspace& workspace);
 

@@ -74,7 +74,7 @@ void Marcher::arrive(Arrival arrival) {
 void Marcher::add(std::uint32_t id, const Ray& ray) {
   CHECK(live_ < kCapacity, "a ray was added to a full marcher");
   ++counters_.rays;
-  Arrival arrival{id, Arrival::Status::Invalid, 1, 0, false, 0, 0};
+  Arrival arrival{id, Arrival::Status::Invalid, 1, 0, 0, 0, 0};
   const std::optional<glm::dvec3> direction = unit(ray.direction);
   if (!direction || !finite(ray.origin) || std::isnan(ray.t_max)) return arrive(arrival);
   const std::optional<Stretch> part = clip(field_.bound, ray.origin, *direction, std::min(ray.t_max, field_.far));
@@ -92,8 +92,8 @@ void Marcher::certify_from(const Course& course, int side, const Stretch& stretc
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
-  arrive({course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations, true,
-          static_cast<float>(found.width), course.entry + found.t});
+  arrive({course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations,
+          found.evaluations, static_cast<float>(found.width), course.entry + found.t});
 }
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {

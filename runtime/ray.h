@@ -23,7 +23,7 @@ struct Arrival {
   Status status;
   std::int8_t side;           // of the space the ray travelled through, +1 or -1
   std::uint32_t evaluations;  // of the field, for this ray
-  bool certified;             // decided in double
+  std::uint32_t certified;    // those in double; 0: float decided
   float width;                // of the bracket round the hit, scene units
   double t;                   // of the hit, scene units from the origin
 };

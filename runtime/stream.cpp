@@ -111,7 +111,7 @@ void Stream<S>::finish(std::size_t i) {
   const Course& course = courses_[i];
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
-  Arrival arrival{course.id, Arrival::Status::Invalid, static_cast<std::int8_t>(side), evaluations, false, 0, 0};
+  Arrival arrival{course.id, Arrival::Status::Invalid, static_cast<std::int8_t>(side), evaluations, 0, 0, 0};
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Hit:
       arrival.status = Arrival::Status::Hit;

@@ -59,9 +59,10 @@ class Tiered {
     const Mask starting = a_.in_phase(LanePhase::Start), emerging = a_.in_phase(LanePhase::Emerge);
     const Mask retreating = a_.in_phase(LanePhase::Retreat), refining = a_.in_phase(LanePhase::Refine);
     const Mask beginning = starting | emerging, walking = !(beginning | refining);
-    const Mask outside = g_ > k(0), inside = !outside, crossing = a_.get(kCrossing) > k(0);
+    const Mask inside = g_<k(0), outside = !inside, crossing = a_.get(kCrossing)> k(0);
     const N gap = a_.get(kTNext) - a_.get(kT) - a_.get(kR) - r_;  // what neither ball covers
 
+    // An exact 0 is a touch, as where a solid is cut from its like.
     const Mask accepted = outside & (beginning | (walking & (retreating | !(gap > k(0)))));
     const Mask crossed = inside & walking & (crossing | retreating | !(gap > unseen_));
     const Mask failed = walking & !(accepted | crossed);

@@ -17,8 +17,9 @@ struct SceneArguments {
   compiler::Definitions definitions;  // values for the scene's parameters
 };
 
-// The positional argument, --define and --error-format.
-void add_scene_arguments(Arguments& arguments, SceneArguments& scene);
+// The positional argument, --define and --error-format. A scene that is not `required` has an empty path when none was
+// given.
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required = true);
 
 // The text of a file, or of standard input for "-"; otherwise the reason, for people.
 struct Unreadable {

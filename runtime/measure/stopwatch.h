@@ -1,5 +1,5 @@
-// Timing for the benches: variants of one measurement interleaved round by round on one pinned thread, in thread CPU
-// time, so that ratios inside a table hold while the machine's speed drifts.
+// Timing for charts and benches: variants of one measurement interleaved round by round on one pinned thread, in
+// thread CPU time, so that ratios inside a table hold while the machine's speed drifts.
 #pragma once
 
 #include <pthread.h>
@@ -19,6 +19,21 @@ inline void pin_thread() {
   CPU_SET(static_cast<std::size_t>(sched_getcpu()), &set);
   pthread_setaffinity_np(pthread_self(), sizeof set, &set);
 }
+
+// The same for as long as it lives.
+class Pinned {
+ public:
+  Pinned() {
+    pthread_getaffinity_np(pthread_self(), sizeof before_, &before_);
+    pin_thread();
+  }
+  ~Pinned() { pthread_setaffinity_np(pthread_self(), sizeof before_, &before_); }
+  Pinned(const Pinned&) = delete;
+  Pinned& operator=(const Pinned&) = delete;
+
+ private:
+  cpu_set_t before_;
+};
 
 inline double thread_seconds() {
   timespec t{};

@@ -1,0 +1,217 @@
+// fathom chart: every way to follow rays, measured on a scene and drawn as charts, maps and a page.
+//
+//     $ fathom chart scene.json -o charts
+//     scene: the default is on the Pareto front of time: camera yes, bounce yes, grazing yes
+//     wrote charts/index.html
+//
+// Tested by: tests/runtime/cli_chart_test.cpp
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+
+#include "runtime/chart/chart_a.h"
+#include "runtime/chart/chart_b.h"
+#include "runtime/chart/colormap.h"
+#include "runtime/chart/csv.h"
+#include "runtime/measure/maps.h"
+#include "runtime/measure/measure_rays.h"
+#include "runtime/chart/page.h"
+#include "runtime/cli/chart_request.h"
+#include "runtime/cli/chart_scenes.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/cli/version.h"
+#include "runtime/image_io.h"
+#include "vm/evaluate.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr int kMapWidth = 320;  // pixels; the height follows from the scene's film
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t begin = line.find_first_not_of(" \t", line.find(':') + 1);
+    if (begin != std::string::npos) return line.substr(begin);
+  }
+  return "unknown processor";
+}
+
+runtime::Provenance provenance_of(const ChartRequest& request) {
+  runtime::Provenance provenance;
+  provenance.commit = fmt::format("fathom {} {}", kVersion, kCommit.empty() ? "(no commit)" : kCommit);
+  provenance.cpu = processor();
+#ifdef __clang__
+  provenance.compiler = "clang " __clang_version__;
+#else
+  provenance.compiler = "g++ " __VERSION__;
+#endif
+  provenance.isa = vm::isa_name();
+  provenance.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
+  provenance.command = request.command;
+  provenance.rounds = request.rounds;
+  return provenance;
+}
+
+// Collects what is measured and drawn, and writes it; remembers the first thing that went wrong.
+class Charts {
+ public:
+  Charts(const ChartRequest& request, const Streams& streams)
+      : request_(request), streams_(streams), provenance_(provenance_of(request)) {
+    page_.provenance = provenance_;
+  }
+
+  void add(const compiler::CompiledScene& scene, const std::string& name) {
+    const runtime::Field field = runtime::make_field(scene, scene.settings.far);
+    runtime::PageScene section{name, {}, {}};
+    add_rays(scene, field, section);
+    if (!request_.no_images) add_pictures(scene, section);
+    add_maps(scene, field, section);
+    page_.scenes.push_back(section);
+  }
+
+  std::optional<std::string> finish() {
+    page_.rays = rays_;
+    write("chart.csv", runtime::rays_csv(rays_, provenance_));
+    page_.files.push_back("chart.csv");
+    if (!request_.no_images) {
+      write("images.csv", runtime::images_csv(images_, provenance_));
+      page_.files.push_back("images.csv");
+    }
+    write("index.html", runtime::page_html(page_));
+    return problem_;
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (!request_.quiet) streams_.err << text << std::flush;
+  }
+  std::string path_of(const std::string& name) const {
+    return (std::filesystem::path(request_.folder) / name).string();
+  }
+  void write(const std::string& name, const std::string& text) {
+    if (!problem_) problem_ = runtime::write_file({text.begin(), text.end()}, path_of(name));
+  }
+
+  void add_chart(runtime::PageScene& section, const std::string& suffix, const std::string& svg,
+                 const char* reading) {
+    write(fmt::format("{}-{}.svg", section.name, suffix), svg);
+    section.charts.push_back({svg, reading});
+  }
+
+  void add_rays(const compiler::CompiledScene& scene, const runtime::Field& field, runtime::PageScene& section) {
+    say(fmt::format("{}: {} rays of each class by {} methods\n", section.name, request_.rays,
+                    runtime::charted_methods().size()));
+    const std::size_t count = static_cast<std::size_t>(request_.rays);
+    const std::vector<runtime::RaySet> sets = runtime::make_ray_sets(scene, field, count, request_.seed);
+    const auto rows =
+        runtime::measure_rays(scene, field, sets, runtime::charted_methods(), request_.rounds, section.name);
+    rays_.insert(rays_.end(), rows.begin(), rows.end());
+    using runtime::Cost;
+    add_chart(section, "time", runtime::chart_a(rows, section.name, Cost::Time, provenance_),
+              runtime::kReadChartATime);
+    add_chart(section, "evaluations", runtime::chart_a(rows, section.name, Cost::Evaluations, provenance_),
+              runtime::kReadChartAEvaluations);
+    report_front(rows, section.name, Cost::Time, "time");
+    report_front(rows, section.name, Cost::Evaluations, "evaluations");
+  }
+
+  // Whether anything else is better in every way than what renders do by default.
+  void report_front(const std::vector<runtime::RayMeasurement>& rows, const std::string& name, runtime::Cost cost,
+                    const char* word) const {
+    std::string line = fmt::format("{}: the default is on the Pareto front of {}:", name, word), why;
+    for (const runtime::FrontVerdict& verdict : runtime::judge_default(rows, name, cost)) {
+      line += fmt::format(" {} {}", verdict.ray_class, verdict.on_front ? "yes" : "no");
+      for (const runtime::RayMeasurement& other : verdict.dominated_by) {
+        why += fmt::format("  {}: {} eps {:g} is better in all\n", verdict.ray_class, runtime::name_of(other, rows),
+                           other.eps);
+      }
+    }
+    streams_.out << line << '\n' << why;
+  }
+
+  void add_pictures(const compiler::CompiledScene& scene, runtime::PageScene& section) {
+    const runtime::ImagePlan& plan = request_.images;
+    say(fmt::format("{}: pictures of {}x{}, {} seeds\n", section.name, plan.width, plan.height, plan.seeds));
+    const auto rows = runtime::measure_images(scene, runtime::painted_methods(), plan, section.name);
+    images_.insert(images_.end(), rows.begin(), rows.end());
+    add_chart(section, "pictures", runtime::chart_b(rows, section.name, provenance_), runtime::kReadChartB);
+  }
+
+  void add_map(runtime::PageScene& section, const std::vector<float>& values, int width, int height,
+               const std::string& suffix, const char* title, const char* reading) {
+    const std::string name = fmt::format("{}-{}.png", section.name, suffix);
+    const runtime::Picture picture = runtime::draw_map(values, width, height, runtime::scale_for(values, true));
+    if (!problem_) problem_ = runtime::write_image(picture, path_of(name));
+    section.maps.push_back({name, title, reading});
+  }
+
+  void add_maps(const compiler::CompiledScene& scene, const runtime::Field& field, runtime::PageScene& section) {
+    const int height = std::max(1, kMapWidth * scene.film.height / scene.film.width);
+    const runtime::PixelMaps maps = runtime::measure_maps(scene, field, kMapWidth, height);
+    add_map(section, maps.evaluations, maps.width, maps.height, "map-evaluations", "Evaluations",
+            "How often the field is evaluated for each pixel's camera ray.");
+    add_map(section, maps.in_double, maps.width, maps.height, "map-double", "Decided in double",
+            "Evaluations in double of the rays that float could not decide; black where it could.");
+    add_map(section, maps.depth_error, maps.width, maps.height, "map-depth-error", "Depth error",
+            "How far the hit is from the reference, in units of float's last place; grey where both miss.");
+  }
+
+  const ChartRequest& request_;
+  const Streams& streams_;
+  runtime::Provenance provenance_;
+  runtime::Page page_;
+  std::vector<runtime::RayMeasurement> rays_;
+  std::vector<runtime::ImageMeasurement> images_;
+  std::optional<std::string> problem_;
+};
+
+// The folder exists and can be written to; otherwise the reason.
+std::optional<std::string> make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fmt::format("cannot make the folder `{}`: {}", folder, error.message());
+  return runtime::check_image_path((std::filesystem::path(folder) / "map.png").string());
+}
+
+std::string name_of_scene(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  return path == "-" || stem.empty() ? "scene" : stem;
+}
+
+}  // namespace
+
+int run_chart(std::span<const std::string> args, const Streams& streams) {
+  auto parsed = parse_chart(args, streams);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const ChartRequest& request = std::get<ChartRequest>(parsed);
+  std::vector<compiler::Source> sources;
+  if (request.scene.path.empty()) {
+    for (const ChartScene& scene : chart_scenes()) {
+      sources.emplace_back(std::string(scene.path), std::string(scene.text));
+    }
+  } else {
+    auto source = read_scene(request.scene, streams);
+    if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+    sources.push_back(std::get<compiler::Source>(std::move(source)));
+  }
+  if (const auto problem = make_folder(request.folder)) return fail(streams, kIo, *problem);
+
+  Charts charts(request, streams);
+  for (compiler::Source& source : sources) {
+    const std::string name = name_of_scene(source.name());
+    const auto compiled = compile_scene(std::move(source), request.scene, streams);
+    if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+    charts.add(std::get<compiler::CompiledScene>(compiled), name);
+  }
+  if (const auto problem = charts.finish()) return fail(streams, kIo, *problem);
+  if (!request.quiet) streams.err << fmt::format("wrote {}/index.html\n", request.folder);
+  return kDone;
+}
+
+}  // namespace fathom::cli

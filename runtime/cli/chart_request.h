@@ -1,0 +1,29 @@
+// The command line of `fathom chart` as data.
+// Tested by: tests/runtime/cli_chart_test.cpp
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "runtime/measure/measure_images.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/streams.h"
+
+namespace fathom::cli {
+
+struct ChartRequest {
+  SceneArguments scene;  // path empty: the project's own scenes
+  std::string folder;
+  int rays = 20000, rounds = 9;
+  std::uint64_t seed = 1;
+  runtime::ImagePlan images;
+  bool no_images = false, quiet = false;
+  std::string command;  // as it was given
+};
+
+// The request, or the exit code after help or a message.
+std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, const Streams& streams);
+
+}  // namespace fathom::cli

@@ -1,0 +1,17 @@
+// The scenes that `fathom chart` draws when it is given none: CMake puts the files' texts into the program.
+// Tested by: tests/runtime/cli_chart_test.cpp
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace fathom::cli {
+
+struct ChartScene {
+  std::string_view path;  // in the project
+  std::string_view text;
+};
+
+std::span<const ChartScene> chart_scenes();
+
+}  // namespace fathom::cli

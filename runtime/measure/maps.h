@@ -1,0 +1,22 @@
+// Chart C: what a picture's camera rays cost and how far off they are, pixel by pixel.
+// Tested by: tests/runtime/chart_measure_test.cpp
+#pragma once
+
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/field.h"
+
+namespace fathom::runtime {
+
+// Of the ray through each pixel's centre, [y][x].
+struct PixelMaps {
+  int width, height;               // pixels
+  std::vector<float> evaluations;  // of the field
+  std::vector<float> in_double;    // evaluations in double; 0 where float decided
+  std::vector<float> depth_error;  // |depth - reference| in units of float's last place; NaN where both miss
+};
+
+PixelMaps measure_maps(const compiler::CompiledScene& scene, const Field& field, int width, int height);
+
+}  // namespace fathom::runtime

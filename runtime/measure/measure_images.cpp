@@ -1,0 +1,134 @@
+#include "runtime/measure/measure_images.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/measure/stopwatch.h"
+#include "runtime/render.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Channels = std::vector<double>;  // linear sRGB, [y][x][rgb]
+
+// Far from those of the pictures, which count from 1.
+constexpr std::uint64_t kReferenceSeed = 1u << 20;
+// Of the mean of the reference, squared: what keeps the relative error of dark pixels finite.
+constexpr double kDark = 0.01;
+constexpr double kTrimmed = 0.001;
+
+Channels channels_of(const Film& film) {
+  Channels channels;
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x) {
+      const glm::dvec3 radiance = film.means(x, y).radiance;
+      channels.insert(channels.end(), {radiance.x, radiance.y, radiance.z});
+    }
+  }
+  return channels;
+}
+
+struct RelativeError {
+  double all, trimmed;  // without the worst 0.1 %
+};
+
+RelativeError relative_error(const Channels& picture, const Channels& reference) {
+  double mean = 0;
+  for (const double value : reference) mean += value / static_cast<double>(reference.size());
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    const double difference = picture[i] - reference[i];
+    errors.push_back(difference * difference / (reference[i] * reference[i] + kDark * mean * mean + 1e-30));
+  }
+  std::sort(errors.begin(), errors.end());
+  const std::size_t kept = errors.size() - static_cast<std::size_t>(kTrimmed * static_cast<double>(errors.size()));
+  RelativeError result{0, 0};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    result.all += errors[i] / static_cast<double>(errors.size());
+    if (i < kept) result.trimmed += errors[i] / static_cast<double>(kept);
+  }
+  return result;
+}
+
+// What is gathered for one method at one number of samples.
+struct Point {
+  Marching marching;
+  int spp;
+  std::vector<double> seconds, errors, trimmed;
+  Channels sum;
+
+  void add(const compiler::CompiledScene& scene, RenderOptions options, const Channels& reference) {
+    options.marching = marching;
+    options.spp = spp;
+    const double start = thread_seconds();
+    const RenderResult result = render(scene, options);
+    seconds.push_back(thread_seconds() - start);
+    const Channels picture = channels_of(result.film);
+    const RelativeError error = relative_error(picture, reference);
+    errors.push_back(error.all);
+    trimmed.push_back(error.trimmed);
+    sum.resize(picture.size());
+    for (std::size_t i = 0; i < picture.size(); ++i) sum[i] += picture[i];
+  }
+
+  ImageMeasurement row(const Channels& reference) const {
+    ImageMeasurement row;
+    row.method = info(marching.method).name;
+    row.precision = marching.precision == Precision::Double ? "f64" : "f32";
+    row.eps = info(marching.method).uses_epsilon ? marching.epsilon : 0;
+    row.spp = spp;
+    row.seeds = static_cast<int>(errors.size());
+    const Spread time = spread(seconds);
+    row.seconds_med = time.median, row.seconds_min = time.least, row.seconds_max = time.most;
+    std::vector<double> sorted = errors;
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double share) {
+      return sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
+    };
+    row.relmse_med = at(0.5), row.relmse_p05 = at(0.05), row.relmse_p95 = at(0.95);
+    row.relmse_trimmed_med = spread(trimmed).median;
+    Channels mean = sum;
+    for (double& value : mean) value /= static_cast<double>(errors.size());
+    row.floor = relative_error(mean, reference).all;
+    return row;
+  }
+};
+
+}  // namespace
+
+std::vector<Marching> painted_methods() {
+  std::vector<Marching> methods = {{.method = Method::Tiered}};
+  for (const double epsilon : {1e-2, 1e-3, 1e-4}) methods.push_back({.method = Method::Sphere, .epsilon = epsilon});
+  return methods;
+}
+
+std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const Marching> methods,
+                                             const ImagePlan& plan, const std::string& scene_name) {
+  RenderOptions options;
+  options.width = plan.width;
+  options.height = plan.height;
+  options.seed = kReferenceSeed;
+  options.spp = plan.reference_spp;
+  options.marching.method = Method::Certified;
+  const Channels reference = channels_of(render(scene, options).film);
+
+  const Pinned pinned;
+  options.threads = 1;
+  std::vector<Point> points;
+  for (const Marching& marching : methods) {
+    // At least two samples: a single one is taken at the pixel's centre.
+    for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({marching, spp, {}, {}, {}, {}});
+  }
+  for (int seed = 1; seed <= plan.seeds; ++seed) {
+    options.seed = static_cast<std::uint64_t>(seed);
+    for (Point& point : points) point.add(scene, options, reference);
+  }
+  std::vector<ImageMeasurement> rows;
+  for (const Point& point : points) {
+    rows.push_back(point.row(reference));
+    rows.back().scene = scene_name;
+  }
+  return rows;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,93 @@
+#include "runtime/measure/ray_sets.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "runtime/camera.h"
+#include "runtime/march.h"
+
+namespace fathom::runtime {
+namespace {
+
+using glm::dvec3;
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  // Not the standard's distributions: their numbers differ between libraries.
+  double uniform(double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(engine_() >> 11) * 0x1p-53); }
+  std::size_t index(std::size_t count) { return engine_() % count; }
+  // Evenly over the sphere.
+  dvec3 direction() {
+    while (true) {
+      const dvec3 v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const double squared = glm::dot(v, v);
+      if (squared > 1e-4 && squared <= 1) return v / std::sqrt(squared);
+    }
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+dvec3 to_float(dvec3 v) { return dvec3(glm::vec3(v)); }
+
+struct Place {
+  dvec3 position, normal;  // the normal has unit length and is on the ray's side
+};
+
+// Where the camera's rays meet surfaces, by the search in double.
+std::vector<Place> places_of(const compiler::CompiledScene& scene, const Field& field, const std::vector<Ray>& rays) {
+  const MarchResult seen = march(field, rays, {.method = Method::Certified});
+  vm::Workspace workspace;
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Arrival& arrival = seen.arrivals[i];
+    if (arrival.status != Arrival::Status::Hit) continue;
+    const dvec3 at = rays[i].origin + arrival.t * glm::normalize(rays[i].direction);
+    const dvec3 gradient = vm::evaluate_surface(scene.surface, at, workspace).gradient;
+    const double length = glm::length(gradient);
+    if (length > 0) places.push_back({at, static_cast<double>(arrival.side) / length * gradient});
+  }
+  return places;
+}
+
+Ray bounce(const Place& place, double above, Random& random) {
+  dvec3 direction = random.direction();
+  if (glm::dot(direction, place.normal) < 0) direction = -direction;
+  Ray ray{to_float(place.position + above * place.normal), to_float(direction)};
+  ray.slope = static_cast<float>(glm::dot(direction, place.normal));
+  return ray;
+}
+
+Ray graze(const Place& place, double extent, Random& random) {
+  const dvec3 along = glm::normalize(glm::cross(place.normal, random.direction()));
+  const double way = random.uniform(0.2, 1) * extent, gap = std::pow(10, random.uniform(-6, -2)) * extent;
+  const dvec3 beside = (random.uniform(0, 1) < 0.5 ? gap : -gap) * place.normal;
+  return {to_float(place.position + beside - way * along), to_float(along)};
+}
+
+}  // namespace
+
+double extent_of(const Field& field) { return 1e4 * static_cast<double>(field.band); }
+
+std::vector<RaySet> make_ray_sets(const compiler::CompiledScene& scene, const Field& field, std::size_t count,
+                                  std::uint64_t seed) {
+  Random random(seed);
+  const Camera camera(scene.camera, scene.film.width, scene.film.height);
+  RaySet seen{"camera", {}}, bounced{"bounce", {}}, grazing{"grazing", {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const CameraRay ray = camera.ray(random.uniform(0, scene.film.width), random.uniform(0, scene.film.height));
+    seen.rays.push_back({to_float(ray.origin), to_float(ray.direction)});
+  }
+  const std::vector<Place> places = places_of(scene, field, seen.rays);
+  const double extent = extent_of(field);
+  for (std::size_t i = 0; i < count && !places.empty(); ++i) {
+    bounced.rays.push_back(bounce(places[random.index(places.size())], 4e-4 * extent, random));
+    grazing.rays.push_back(graze(places[random.index(places.size())], extent, random));
+  }
+  return {seen, bounced, grazing};
+}
+
+}  // namespace fathom::runtime
