@@ -135,7 +135,7 @@ LaneVerdict walk(Lane& a, float g, float error, const LaneRules& rules) {
   const float r = safe_radius(g, error, rules);
   const float gap = z - a.r - r;  // what neither ball covers
   const bool plain = a.phase == Lane::Phase::Retreat;
-  if (g > 0) {
+  if (g >= 0) {  // a zero is no change of sign: where coplanar cuts leave nothing, the field is 0 and not below
     if (gap <= 0 || plain) return accept(a, g, r, error, rules);
     return retreat(a, error);
   }
