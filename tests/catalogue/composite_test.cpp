@@ -1,4 +1,6 @@
 // The adversarial catalogue, row I16: a scene of everything, against closed forms.
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -21,21 +23,34 @@ const char* const kComposite = R"("objects": [{"type": "plane", "normal": [0, 1,
 
 constexpr double kEnd = 30;  // of the rays, scene units
 
+// In the ring's own place; what rounding this adds is 1e-16.
+Ray to_ring(Ray ray) {
+  ray.origin -= glm::dvec3(-1.6, -0.2, 0);
+  return ray;
+}
+
 Real ring_of_the_scene(const Ray& ray) {
-  Ray moved = ray;  // what rounding this adds is 1e-16
-  moved.origin -= glm::dvec3(-1.6, -0.2, 0);
-  if (sphere_span(moved, {0, 0, 0}, 1.06L).end < 0) return -1;  // seen from there, all of it lies behind
-  return ring_distance(moved, 0.8, 0.25);
+  const Ray moved = to_ring(ray);
+  if (sphere_span(moved, {0, 0, 0}, 1.06L).end < 0) return -1;  // aside of it, or all of it behind
+  return ring_distance(moved, 0.8, 0.25, kEnd);
+}
+
+// All but the ring and the ground.
+std::array<Span, 4> spans(const Ray& ray) {
+  return {box_span(ray, {1.3, -0.4, 0.2}, glm::dvec3(0.6)), sphere_span(ray, {0, 0.3, -1.2}, 0.6),
+          sphere_span(ray, {0.2, -0.93, 1.4}, 0.07), box_span(ray, {0.2, 0, 0.6}, {0.5, 0.7, 0.002})};
+}
+
+bool starts_inside(const Ray& ray) {
+  bool inside = ray.origin.y <= -1 || torus_field(to_ring(ray), 0, 0.8, 0.25) <= 0;
+  for (const Span& span : spans(ray)) inside |= !span.empty() && span.begin <= 0 && span.end >= 0;
+  return inside;
 }
 
 Real composite_distance(const Ray& ray) {
   const Real ground = (-1 - static_cast<Real>(ray.origin.y)) / ray.direction.y;
   Real first = nearer(ring_of_the_scene(ray), ground);
-  for (const Span& span :
-       {box_span(ray, {1.3, -0.4, 0.2}, glm::dvec3(0.6)), sphere_span(ray, {0, 0.3, -1.2}, 0.6),
-        sphere_span(ray, {0.2, -0.93, 1.4}, 0.07), box_span(ray, {0.2, 0, 0.6}, {0.5, 0.7, 0.002})}) {
-    first = nearer(first, entry(span));
-  }
+  for (const Span& span : spans(ray)) first = nearer(first, entry(span));
   return first <= kEnd ? first : -1;
 }
 
@@ -48,15 +63,16 @@ std::vector<Ray> camera_rays(Random& random, int count) {
   return rays;
 }
 
-// From 2e-3 above what those have met.
+// From 2e-3 above what those have met, unless that is within another part.
 std::vector<Ray> bounce_rays(Random& random, const Places& met) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < met.hits.size(); ++i) {
     const glm::dvec3 normal(met.points[i].normal);
     glm::dvec3 d = random.direction();
     if (glm::dot(d, normal) < 0) d = -d;
-    rays.push_back({to_float(met.hits[i].position + 2e-3 * normal), to_float(d), kEnd, 1,
-                    static_cast<float>(glm::dot(d, normal))});
+    const Ray ray{to_float(met.hits[i].position + 2e-3 * normal), to_float(d), kEnd, 1,
+                  static_cast<float>(glm::dot(d, normal))};
+    if (!starts_inside(ray)) rays.push_back(ray);
   }
   return rays;
 }
@@ -139,10 +155,12 @@ TEST_CASE("I16: naive steps at the composite scene", "[catalogue]") {
   }
 }
 
-TEST_CASE("I16: a million rays at a composite scene, by float steps", "[nightly][.]") { tally(1000000, false); }
+TEST_CASE("I16: a million rays at a composite scene, by float steps", "[nightly][.]") {
+  CHECK(tally(1300000, false).judgement.rays >= 1000000);
+}
 
 TEST_CASE("I16: a million rays at a composite scene, by certified bisection", "[nightly][.]") {
-  tally(1000000, true);
+  CHECK(tally(1300000, true).judgement.rays >= 1000000);
 }
 
 }  // namespace fathom::catalogue

@@ -138,6 +138,21 @@ TEST_CASE("I5: a ray parallel to a plane or through a slit goes on to its end", 
   }
 }
 
+// Not so: bisection needs about ln(1 + s t / h) / 2s evaluations, h the height and s the slope, and gives up after a
+// million. Of a plane across an axis intervals are exact.
+TEST_CASE("I5: a ray all but parallel to a plane that is not across an axis is decided", "[unmet][.]") {
+  const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0.6, 0.8, 0]}])");
+  const glm::dvec3 normal(0.6, 0.8, 0), along = glm::normalize(glm::dvec3(0.8, -0.6, 1));
+  for (const double slope : {1e-4, 1e-5, 1e-6, 0.0}) {
+    const Ray ray{1e-5 * normal, glm::normalize(along + slope * normal), INFINITY, 1, static_cast<float>(slope)};
+    const MarchResult result = march(make_field(scene), std::span(&ray, 1));
+    INFO("slope " << slope);
+    CHECK(result.arrivals[0].status != Arrival::Status::Hit);
+    CHECK(result.counters.exhausted == 0);
+    CHECK(result.counters.evaluations <= 1000);
+  }
+}
+
 // The ball, moved away together with its rays: in exact arithmetic nothing changes. Rays at its edge, where an error
 // of the place is one of the distance many times over, are left to I2.
 TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {

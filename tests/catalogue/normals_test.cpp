@@ -291,7 +291,6 @@ TEST_CASE("N4: normals at edges and corners are unit vectors between those of th
 TEST_CASE("N5: the normal where the hit is said to be, against that where it is", "[catalogue]") {
   const auto scene = scene_of(kSphere);
   const std::vector<Ray> rays = rays_at_sphere(40000, 5);
-  const MarchResult result = march(make_field(scene), rays);
   const Places met = places(scene, rays);
   REQUIRE(met.points.size() == rays.size());
   std::vector<double> ours, naive;
