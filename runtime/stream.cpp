@@ -32,6 +32,8 @@ S round_down(double value) {
                                               : rounded;
 }
 
+// Samples to accept after the first attempt to cross that met no surface.
+constexpr double kFirstPenalty = 2;
 // Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
 
@@ -63,7 +65,7 @@ void Stream<S>::begin(const Course& course, int side, float slope) {
   put(kSide, side);
   const bool seeded = !limits_steps(rules_.method);  // that is not what others do
   put(kM, seeded ? std::clamp(static_cast<double>(slope), -1.0, 0.9) : -1);
-  put(kPenalty, seeded ? 2 : 1);
+  put(kPenalty, seeded ? kFirstPenalty : 1);
 }
 
 template <>

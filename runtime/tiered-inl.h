@@ -32,10 +32,10 @@ inline constexpr double kOvershoot = 1.1, kOvershootErrors = 4;
 // ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
 // widened by d_f may take it to twice that, no further.
 inline constexpr double kLongestCrossing = 16;
-// After an attempt that met no surface so many samples are accepted before the next, then twice as many ...
-inline constexpr double kFirstPenalty = 2, kLargestPenalty = 128;
-// A lane that takes more evaluations than this is finished by certify().
-inline constexpr double kBudget = 512;
+// After an attempt that met no surface so many samples are accepted before the next, then twice as many. A lane that
+// would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
+// more evaluations than its budget.
+inline constexpr double kMostPenalty = 16, kBudget = 512;
 // A value this small a part of d_f holds no more digits of the root: half a unit in the last place at 1.
 inline constexpr double kRootError = 0x1p-8;
 // Of d_f, what float is usually off by; and how uncertain a root may be, relative to t or to the field's band, before
@@ -72,7 +72,7 @@ class Tiered {
       begin_inside(inside & starting);
       a_.settle(inside & emerging, k(0), a_.get(kTNext));
     }
-    if (any(refining | crossed)) refine(refining, crossed, outside);
+    if (any(refining | crossed)) refine(refining, crossed);
     a_.finish();
   }
 
@@ -127,10 +127,11 @@ class Tiered {
     const N t = a_.get(kT), r = a_.get(kR), penalty = a_.get(kPenalty);
     a_.put(kM, failed, k(-1));
     a_.put(kPatience, from_crossing, penalty);
-    a_.put(kPenalty, from_crossing, min(penalty + penalty, k(kLargestPenalty)));
+    a_.put(kPenalty, from_crossing, penalty + penalty);
     a_.put(kTNext, failed, t + r);
     a_.enter(failed, LanePhase::Retreat);
-    a_.conclude(failed & !is_step(t, r), LaneVerdict::Certify);
+    const Mask grazes = from_crossing & (penalty > k(kMostPenalty)), stuck = !is_step(t, r);
+    a_.conclude(failed & (grazes | stuck), LaneVerdict::Certify);
   }
 
   // Beyond the surface it should have left. One look ahead tells whether it comes out or goes in.
@@ -141,8 +142,8 @@ class Tiered {
   }
 
   // The bracket [t, t_hi] shrinks to the sample, and the secant says where to look next.
-  HWY_INLINE void refine(Mask refining, Mask crossed, Mask outside) {
-    const Mask all = refining | crossed, lower = refining & outside, upper = all & !lower;
+  HWY_INLINE void refine(Mask refining, Mask crossed) {
+    const Mask all = refining | crossed, lower = refining & (g_ > k(0)), upper = all & !lower;
     const N t = a_.get(kTNext), half = k(0.5);
     const N lo = select(lower, t, a_.get(kT)), hi = select(upper, t, a_.get(kTHi));
     const N g_lo = select(lower, g_, select(crossed, a_.get(kG), half * a_.get(kGLo)));
@@ -150,8 +151,8 @@ class Tiered {
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
     const N next = min(max(lo + g_lo / (g_lo - g_hi) * width, lo + aside), hi - aside);
 
-    // A small value behind the surface may be where two solids meet; before it, only a touch.
-    const Mask root = outside & (!(g_ > k(kRootError) * error_));
+    // A small value behind the surface, or 0, may be where two solids meet; before it, it is no more than a touch.
+    const Mask root = lower & (!(g_ > k(kRootError) * error_));
     const Mask divisible = (width > done) & (next > lo) & (next < hi);
     const Mask found = all & (root | (!divisible));
     // A root of what is nearly level is as uncertain as d_f divided by the slope.

@@ -1,5 +1,5 @@
 // Folded, repeated and bent space where it once went wrong; in general it is judged over random graphs
-// (passes_test.cpp) and by rays (tests/runtime/warps_test.cpp).
+// (passes_test.cpp) and by rays (tests/catalogue/warps_test.cpp).
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>

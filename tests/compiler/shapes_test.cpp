@@ -133,15 +133,6 @@ TEST_CASE("every primitive in float is within 8 units of the judge's", "[shapes]
   });
 }
 
-TEST_CASE("normals of any length make the same plane", "[shapes]") {
-  vm::Workspace workspace;
-  for (double length : {1e-200, 1e-30, 1.0, 1e30, 1e200}) {
-    const vm::VerifiedProgram program = primitive_program(Kind::Plane, {0.6 * length, -0.8 * length, 0, 0.25});
-    INFO(length);
-    CHECK(std::abs(vm::evaluate_distance(program, dvec3(1, 2, 3), workspace) - (0.6 - 1.6 - 0.25)) <= 1e-15);
-  }
-}
-
 TEST_CASE("table of errors", "[.report]") {
   for_each_primitive([](const NodeSpec& row) {
     const Errors errors = measure(row.kind, 1000, 1000);

@@ -1,5 +1,5 @@
-// Rays at random whose numbers are exact in float, the true distances along them to solids of closed form, and what
-// marching makes of the two.
+// Rays at random whose numbers are exact in float, the true distances along them to solids of closed form, and how
+// far from the truth an answer is.
 #pragma once
 
 #include <algorithm>
@@ -66,20 +66,22 @@ inline Real box_distance(const Ray& ray) {
 
 inline Real plane_distance(const Ray& ray) { return -static_cast<Real>(ray.origin.y) / ray.direction.y; }
 
-inline Real torus_field(const Ray& ray, Real t) {
+inline Real torus_field(const Ray& ray, Real t, Real major, Real minor) {
   const Real x = ray.origin.x + t * ray.direction.x, y = ray.origin.y + t * ray.direction.y,
              z = ray.origin.z + t * ray.direction.z;
-  const Real q = std::sqrt(x * x + z * z) - 1;
-  return std::sqrt(q * q + y * y) - 0.25L;
+  const Real q = std::sqrt(x * x + z * z) - major;
+  return std::sqrt(q * q + y * y) - minor;
 }
 
-// Sphere tracing in long double with steps of at least 1e-5, and bisection across a change of sign.
-inline Real torus_distance(const Ray& ray) {
-  for (Real t = 0; t < 12;) {
-    const Real step = std::max(std::abs(torus_field(ray, t)), 1e-5L);
-    if (torus_field(ray, t + step) <= 0) {
+// Sphere tracing in long double, on either side, with steps of at least 1e-5, and bisection across a change of sign.
+inline Real ring_distance(const Ray& ray, Real major, Real minor, Real end = 12) {
+  const Real side = torus_field(ray, 0, major, minor) < 0 ? -1 : 1;
+  const auto field = [&](Real t) { return side * torus_field(ray, t, major, minor); };
+  for (Real t = 0; t < end;) {
+    const Real step = std::max(field(t), 1e-5L);
+    if (field(t + step) <= 0) {
       Real lo = t, hi = t + step;
-      for (int i = 0; i < 64; ++i) (torus_field(ray, (lo + hi) / 2) > 0 ? lo : hi) = (lo + hi) / 2;
+      for (int i = 0; i < 64; ++i) (field((lo + hi) / 2) > 0 ? lo : hi) = (lo + hi) / 2;
       return lo;
     }
     t += step;
@@ -87,27 +89,53 @@ inline Real torus_distance(const Ray& ray) {
   return -1;
 }
 
+inline Real torus_distance(const Ray& ray) { return ring_distance(ray, 1, 0.25L); }
+
+// Rays that meet the unit sphere, as many as lie within equal areas of its disk, from `away` in front of it.
+inline std::vector<Ray> rays_at_sphere(int count, double away) {
+  Random random(1);
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) rays.push_back(aimed(random, std::sqrt(random.uniform(0, 1)), away));
+  return rays;
+}
+
+// The scenes of these solids.
+inline const char* const kSphere = R"("objects": [{"type": "sphere", "radius": 1}])";
+inline const char* const kBox = R"("objects": [{"type": "box", "half_size": [0.75, 0.5, 1]}])";
+inline const char* const kPlane = R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])";
+inline const char* const kTorus = R"("objects": [{"type": "torus", "major_radius": 1, "minor_radius": 0.25}])";
+
 using Truth = std::function<Real(const Ray&)>;  // distance to the first surface, negative for a miss
 
+// What became of rays, held against the truth.
 struct Judgement {
-  int hits = 0, false_hits = 0, false_misses = 0, invalid = 0;
-  std::vector<double> errors;  // sorted
-  double p99() const { return errors.at(errors.size() * 99 / 100); }
+  int rays = 0, hits = 0, false_hits = 0, false_misses = 0, invalid = 0, exhausted = 0;
+  std::vector<double> errors;  // of the hits that are hits, scene units, sorted
+
+  void note(bool hit, double t, Real expected) {
+    ++rays;
+    hits += hit;
+    false_hits += hit && expected < 0;
+    false_misses += !hit && expected >= 0;
+    if (hit && expected >= 0) errors.push_back(static_cast<double>(std::abs(t - expected)));
+  }
+  double quantile(double share) const {
+    return errors.at(static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1)));
+  }
+  double p50() const { return quantile(0.5); }
+  double p99() const { return quantile(0.99); }
   double worst() const { return errors.back(); }
+  int wrong() const { return false_hits + false_misses + invalid; }
 };
 
 inline Judgement judge(const MarchResult& result, const std::vector<Ray>& rays, const Truth& truth) {
   Judgement judgement;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Arrival& arrival = result.arrivals[i];
-    const Real expected = truth(rays[i]);
-    const bool hit = arrival.status == Arrival::Status::Hit;
     judgement.invalid += arrival.status == Arrival::Status::Invalid;
-    judgement.hits += hit;
-    judgement.false_hits += hit && expected < 0;
-    judgement.false_misses += !hit && expected >= 0;
-    if (hit && expected >= 0) judgement.errors.push_back(static_cast<double>(std::abs(arrival.t - expected)));
+    judgement.note(arrival.status == Arrival::Status::Hit, arrival.t, truth(rays[i]));
   }
+  judgement.exhausted = static_cast<int>(result.counters.exhausted);
   std::sort(judgement.errors.begin(), judgement.errors.end());
   return judgement;
 }

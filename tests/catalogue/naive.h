@@ -1,0 +1,89 @@
+// What the rows of the catalogue share: plain sphere tracing, to show that each row bites, and the compiler's
+// refusals.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "compiler/compile.h"
+#include "tests/runtime/rays.h"
+#include "tests/runtime/scenes.h"
+#include "vm/evaluate.h"
+
+namespace fathom::catalogue {
+
+using namespace runtime;
+
+// Sphere tracing as most programs have it (Hart, "Sphere Tracing", 1996): a hit is where the distance is below `eps`.
+struct Naive {
+  double eps = 1e-4;  // scene units
+  int max_steps = 1000;
+  double t_max = 100;  // scene units
+};
+
+struct NaiveArrival {
+  enum class Status { Hit, Miss, Exhausted };
+  Status status;
+  double t;
+};
+
+// In the precision of Number, float or double, all of it.
+template <class Number = float>
+NaiveArrival trace_naively(const vm::VerifiedProgram& program, const Ray& ray, const Naive& rule,
+                           vm::Workspace& workspace) {
+  using Vector = glm::vec<3, Number>;
+  const Vector origin(ray.origin), direction(ray.direction);
+  Number t = 0;
+  for (int i = 0; i < rule.max_steps; ++i) {
+    const Vector p = origin + t * direction;
+    Number d;
+    if constexpr (std::is_same_v<Number, float>) {
+      vm::evaluate_distance(program, {&p.x, &p.y, &p.z}, 1, &d, workspace);
+    } else {
+      d = vm::evaluate_distance(program, p, workspace);
+    }
+    if (d <= static_cast<Number>(rule.eps)) return {NaiveArrival::Status::Hit, static_cast<double>(t)};
+    t += d;
+    if (!(static_cast<double>(t) < rule.t_max)) return {NaiveArrival::Status::Miss, 0};
+  }
+  return {NaiveArrival::Status::Exhausted, 0};
+}
+
+// Rays that ran out of steps count as exhausted alone: no program knows whether they hit.
+template <class Number = float>
+Judgement judge_naive(const compiler::CompiledScene& scene, const std::vector<Ray>& rays, const Truth& truth,
+                      const Naive& rule) {
+  Judgement judgement;
+  vm::Workspace workspace;
+  for (const Ray& ray : rays) {
+    const NaiveArrival arrival = trace_naively<Number>(scene.distance, ray, rule, workspace);
+    if (arrival.status == NaiveArrival::Status::Exhausted) {
+      ++judgement.rays;
+      ++judgement.exhausted;
+    } else {
+      judgement.note(arrival.status == NaiveArrival::Status::Hit, arrival.t, truth(ray));
+    }
+  }
+  std::sort(judgement.errors.begin(), judgement.errors.end());
+  return judgement;
+}
+
+inline double share(int part, const Judgement& of) { return static_cast<double>(part) / of.rays; }
+
+// What the compiler says of a scene of these objects: "E0301 W0506" and so on, in source order.
+inline std::string codes_of(const std::string& objects, bool lint = false) {
+  compiler::Diagnostics diagnostics;
+  compiler::CompileOptions options;
+  options.lint = lint;
+  compile(compiler::Source("test.json", R"({"version": 1, "objects": [)" + objects + "]}"), diagnostics, options);
+  std::string codes;
+  for (const compiler::Diagnostic& diagnostic : diagnostics.all()) {
+    codes += (codes.empty() ? "" : " ") + diagnostic.code;
+  }
+  return codes;
+}
+
+}  // namespace fathom::catalogue
