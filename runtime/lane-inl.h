@@ -32,63 +32,40 @@ template <class N>
 HWY_INLINE N number(double value) {
   return N::broadcast(value);
 }
-template <class N>
-HWY_INLINE MaskOf<N> is_zero(N a) {
-  return a == number<N>(0);
+template <class N, class Enum>
+HWY_INLINE N code(Enum value) {
+  return number<N>(static_cast<double>(value));
 }
 
 // The lanes of one register, and the rules for all of them. What is put only where a mask holds stays elsewhere.
-template <class N, class S>
+template <class N, class L>
 class LaneView {
  public:
   using Mask = MaskOf<N>;
 
-  HWY_INLINE LaneView(Lanes<S>& lanes, std::size_t first) : lanes_(lanes), first_(first) {}
+  HWY_INLINE LaneView(L& lanes, std::size_t first) : lanes_(lanes), first_(first) {}
 
   HWY_INLINE N get(LaneRow row) const { return load(&lanes_.row[row][first_], static_cast<N*>(nullptr)); }
   HWY_INLINE void put(LaneRow row, N value) { store(value, &lanes_.row[row][first_]); }
   HWY_INLINE void put(LaneRow row, Mask where, N value) { put(row, select(where, value, get(row))); }
 
-  HWY_INLINE Mask in_phase(LanePhase phase) const { return get(kPhase) == code(phase); }
-  HWY_INLINE void enter(Mask where, LanePhase phase) { put(kPhase, where, code(phase)); }
-
-  // What is concluded first holds.
-  HWY_INLINE void conclude(Mask where, LaneVerdict verdict) {
-    verdict_ = select(where & going_, code(verdict), verdict_);
-    going_ = going_ & (!where);
-  }
-  HWY_INLINE Mask going() const { return going_; }
-  HWY_INLINE void settle(Mask where, N t, N width) {
-    const Mask open = where & going_;
-    put(kT, open, t);
-    put(kWidth, open, width);
-    conclude(open, LaneVerdict::Hit);
-  }
-
-  // The field is wanted at t_next.
-  HWY_INLINE void finish() {
-    const N t = get(kTNext);
+  // The field is wanted at t.
+  HWY_INLINE void finish(N t, N verdict) {
+    put(kTNext, t);
     put(kX, get(kOx) + t * get(kDx));
     put(kY, get(kOy) + t * get(kDy));
     put(kZ, get(kOz) + t * get(kDz));
-    put(kVerdict, verdict_);
+    put(kVerdict, verdict);
   }
 
  private:
-  template <class Enum>
-  static HWY_INLINE N code(Enum value) {
-    return number<N>(static_cast<double>(value));
-  }
-
-  Lanes<S>& lanes_;
+  L& lanes_;
   std::size_t first_;
-  N verdict_ = number<N>(0);
-  Mask going_ = number<N>(0) == number<N>(0);
 };
 
 // d_f (field.h) of f at the lanes' points.
-template <class N, class S>
-HWY_INLINE N distance_error(const LaneView<N, S>& lanes, N f, const LaneRules<S>& rules) {
+template <class N, class L, class S>
+HWY_INLINE N distance_error(const LaneView<N, L>& lanes, N f, const LaneRules<S>& rules) {
   const N place = max(abs(lanes.get(kX)), max(abs(lanes.get(kY)), abs(lanes.get(kZ))));
   const N scale = max(number<N>(1), max(place, abs(f)));
   return N::broadcast(rules.unit) * (scale + N::broadcast(rules.magnitude));

@@ -21,10 +21,10 @@ constexpr Row kRows[] = {
     {"contacts", "contacts", nullptr, &MarchCounters::contacts},
     {"invalid_rays", "invalid rays", nullptr, &MarchCounters::invalid},
     {"clipped_rays", "rays past the bound", nullptr, &MarchCounters::clipped},
-    {"certified_rays", "rays decided in double", nullptr, &MarchCounters::certified},
+    {"certified_rays", "rays searched in double", nullptr, &MarchCounters::certified},
     {"exhausted_rays", "rays given up", nullptr, &MarchCounters::exhausted},
     {"evaluations", "field evaluations", nullptr, &MarchCounters::evaluations},
-    {"certified_evaluations", "evaluations in double", nullptr, &MarchCounters::certified_evaluations},
+    {"certified_evaluations", "evaluations searching", nullptr, &MarchCounters::certified_evaluations},
     {"dropped_samples", "samples dropped", &Stats::dropped_samples, nullptr},
     {"saturated_samples", "samples over full", &Stats::saturated, nullptr},
 };

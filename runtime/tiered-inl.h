@@ -21,8 +21,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// Weight of the newest slope in m; Ban and Valasek's choice.
-inline constexpr double kBeta = 0.3;
+// Weight of the newest slope in m, and a step's length in 1/(1 - m) safe radii. Ban and Valasek have 0.3 and 2, with
+// which the two balls of a plane just touch and rounding decides: a hair less saves a tenth of the evaluations.
+inline constexpr double kBeta = 0.5, kReach = 1.99;
 // m stays below this, so that a step is at most 2 / (1 - 0.9) = 20 safe radii.
 inline constexpr double kLargestM = 0.9;
 // Within this many d_f of the surface, or the field's band when that is more, a crossing is tried.
@@ -53,128 +54,161 @@ class Tiered {
         field_band_(N::broadcast(rules.band)),
         resolution_(N::broadcast(rules.resolution)) {}
 
-  // f: the field at the lanes' points.
+  // f: the field at the lanes' points. What is computed for lanes that it does not concern is nowhere put.
   HWY_INLINE void run(N f, const LaneRules<S>& rules) {
     look(f, distance_error(a_, f, rules));
-    const Mask starting = a_.in_phase(LanePhase::Start), emerging = a_.in_phase(LanePhase::Emerge);
-    const Mask retreating = a_.in_phase(LanePhase::Retreat), refining = a_.in_phase(LanePhase::Refine);
-    const Mask beginning = starting | emerging, walking = !(beginning | refining);
-    const Mask inside = g_<k(0), outside = !inside, crossing = a_.get(kCrossing)> k(0);
-    const N gap = a_.get(kTNext) - a_.get(kT) - a_.get(kR) - r_;  // what neither ball covers
-
+    const N phase = a_.get(kPhase);
+    const Mask beginning = phase < code(LanePhase::Walk), refining = phase == code(LanePhase::Refine);
+    const Mask retreating = phase == code(LanePhase::Retreat), walking = !(beginning | refining);
     // An exact 0 is a touch, as where a solid is cut from its like.
-    const Mask accepted = outside & (beginning | (walking & (retreating | !(gap > k(0)))));
-    const Mask crossed = inside & walking & (crossing | retreating | !(gap > unseen_));
-    const Mask failed = walking & !(accepted | crossed);
-    accept(accepted, accepted & walking);
-    retreat(failed, failed & crossing);
-    if (any(inside & beginning)) {
-      begin_inside(inside & starting);
-      a_.settle(inside & emerging, k(0), a_.get(kTNext));
-    }
-    if (any(refining | crossed)) refine(refining, crossed);
-    a_.finish();
+    const Mask inside = g_<k(0), outside = g_ >= k(0), crossing = a_.get(kCrossing)> k(0);
+    const N gap = t_ - last_t_ - last_r_ - r_;  // what neither ball covers
+
+    const Mask accepted = outside & (beginning | (walking & (retreating | (gap <= k(0)))));
+    const Mask crossed = inside & walking & (crossing | retreating | (gap <= unseen_));
+    const Mask failed = walking & (!(accepted | crossed)), bracketed = refining | crossed;
+    phase_ = select(accepted, code(LanePhase::Walk),
+                    select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase)));
+    new_t_ = select(accepted, t_, last_t_);
+    new_r_ = select(accepted, r_, last_r_);
+    a_.put(kG, accepted, g_);
+    learn(accepted & walking, failed);
+    const N onwards = go_on(accepted), back = retreat(failed, failed & crossing);
+    next_ = select(accepted, onwards, back);
+    if (any(inside & beginning)) begin_inside(inside & beginning, phase);
+    if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
+    finish(f);
   }
 
  private:
   static HWY_INLINE N k(double value) { return number<N>(value); }
+  template <class Enum>
+  static HWY_INLINE N code(Enum value) {
+    return HWY_NAMESPACE::code<N>(value);
+  }
 
   HWY_INLINE void look(N f, N error) {
-    a_.put(kEvaluations, a_.get(kEvaluations) + k(1));
-    a_.conclude(!(abs(f) < k(std::numeric_limits<double>::infinity())), LaneVerdict::Invalid);
-    a_.put(kSide, is_zero(a_.get(kSide)), select(f < k(0), k(-1), k(1)));
+    N side = a_.get(kSide);
+    const Mask unknown = side == k(0);
+    if (any(unknown)) {
+      side = select(unknown, select(f < k(0), k(-1), k(1)), side);
+      a_.put(kSide, side);
+    }
+    evaluations_ = a_.get(kEvaluations) + k(1);
     error_ = error;
-    g_ = a_.get(kSide) * f;
+    g_ = side * f;
     r_ = (abs(g_) - error) * inv_lipschitz_;
+    t_ = a_.get(kTNext);
+    last_t_ = a_.get(kT);
+    last_g_ = a_.get(kG);
+    last_r_ = a_.get(kR);
+    last_slope_ = a_.get(kSlope);
     band_ = max(field_band_, k(kBandErrors) * error);
     unseen_ = min(band_, k(2) * field_band_);
-    longest_ = k(kLongestCrossing) * unseen_;
-    // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
-    // happens near the surface is for double to decide.
-    coarse_ = k(kOvershootErrors) * error > longest_;
   }
 
   // Steps that t can hardly hold lead nowhere.
-  HWY_INLINE Mask is_step(N t, N z) const { return z > resolution_ * max(t, error_); }
+  HWY_INLINE Mask is_stuck(N t, N z) const { return z <= resolution_ * max(t, error_); }
 
-  // The sample at t_next becomes the last accepted one; those that came there by a step learn from it, and the next
-  // step is proposed. What is computed for other lanes is nowhere put.
-  HWY_INLINE void accept(Mask accepted, Mask stepped) {
-    const N t = a_.get(kTNext), per_z = k(1) / (t - a_.get(kT));
-    const N m = k(1 - kBeta) * a_.get(kM) + k(kBeta) * ((r_ - a_.get(kR)) * per_z);
-    a_.put(kM, stepped, min(m, k(kLargestM)));
-    a_.put(kSlope, stepped, (g_ - a_.get(kG)) * per_z);
-    a_.put(kT, accepted, t);
-    a_.put(kG, accepted, g_);
-    a_.put(kR, accepted, r_);
-    a_.conclude(accepted & !(max(t, t + r_) < a_.get(kTMax)), LaneVerdict::Miss);
-
-    const N slope = a_.get(kSlope), patience = a_.get(kPatience);
-    const Mask near = accepted & (g_ < band_) & (slope < k(0));
-    const Mask waits = near & (patience > k(0)) & (r_ > error_), tries = near & !waits;
-    a_.put(kPatience, waits, patience - k(1));
-    const N relaxed = k(2) * r_ / (k(1) - a_.get(kM));
-    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) / -slope;
-    const N z = select(tries, max(relaxed, min(beyond, longest_)), relaxed);
-    a_.put(kCrossing, accepted, select(tries & (beyond > relaxed), k(1), k(0)));
-    const Mask spent = !(a_.get(kEvaluations) < k(kBudget)), stuck = !is_step(t, z);
-    a_.conclude(accepted & (spent | stuck | (near & coarse_)), LaneVerdict::Certify);
-    a_.put(kTNext, accepted, min(t + z, a_.get(kTMax)));
-    a_.enter(accepted, LanePhase::Walk);
+  // From the step that led here; one that was too long says nothing but that.
+  HWY_INLINE void learn(Mask stepped, Mask failed) {
+    const N per_z = k(1) / (t_ - last_t_), m = a_.get(kM);
+    const N mixed = min(k(1 - kBeta) * m + k(kBeta) * ((r_ - last_r_) * per_z), k(kLargestM));
+    m_ = select(stepped, mixed, select(failed, k(-1), m));
+    slope_ = select(stepped, (g_ - last_g_) * per_z, last_slope_);
+    a_.put(kM, m_);
   }
 
-  HWY_INLINE void retreat(Mask failed, Mask from_crossing) {
-    const N t = a_.get(kT), r = a_.get(kR), penalty = a_.get(kPenalty);
-    a_.put(kM, failed, k(-1));
+  // The next place after an accepted sample.
+  HWY_INLINE N go_on(Mask accepted) {
+    const N t_max = a_.get(kTMax), patience = a_.get(kPatience), longest = k(kLongestCrossing) * unseen_;
+    misses_ = accepted & (max(t_, t_ + r_) >= t_max);
+    const Mask near = accepted & (g_ < band_) & (slope_ < k(0));
+    const Mask waits = near & (patience > k(0)) & (r_ > error_), tries = near & (!waits);
+    a_.put(kPatience, waits, patience - k(1));
+    const N relaxed = k(kReach) * r_ / (k(1) - m_);
+    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) / -slope_;
+    const N z = select(tries, max(relaxed, min(beyond, longest)), relaxed);
+    a_.put(kCrossing, select(tries & (beyond > relaxed), k(1), k(0)));
+    // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
+    // happens near the surface is for double to decide.
+    const Mask coarse = near & (k(kOvershootErrors) * error_ > longest);
+    undecided_ = accepted & ((evaluations_ >= k(kBudget)) | is_stuck(t_, z) | coarse);
+    return min(t_ + z, t_max);
+  }
+
+  // The plain step from the last accepted sample.
+  HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
+    const N penalty = a_.get(kPenalty);
+    const Mask grazes = from_crossing & (penalty > k(kMostPenalty));
     a_.put(kPatience, from_crossing, penalty);
     a_.put(kPenalty, from_crossing, penalty + penalty);
-    a_.put(kTNext, failed, t + r);
-    a_.enter(failed, LanePhase::Retreat);
-    const Mask grazes = from_crossing & (penalty > k(kMostPenalty)), stuck = !is_step(t, r);
-    a_.conclude(failed & (grazes | stuck), LaneVerdict::Certify);
+    undecided_ = undecided_ | grazes | (failed & is_stuck(last_t_, last_r_));
+    return last_t_ + last_r_;
   }
 
   // Beyond the surface it should have left. One look ahead tells whether it comes out or goes in.
-  HWY_INLINE void begin_inside(Mask inside) {
-    a_.put(kTNext, inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_);
-    a_.enter(inside, LanePhase::Emerge);
-    a_.conclude(inside & coarse_ & (-g_ < error_), LaneVerdict::Certify);
+  HWY_INLINE void begin_inside(Mask inside, N phase) {
+    const Mask starting = inside & (phase == code(LanePhase::Start)), emerging = inside & (!starting);
+    const Mask coarse = k(kOvershootErrors) * error_ > k(kLongestCrossing) * unseen_;
+    undecided_ = undecided_ | (starting & coarse & (-g_ < error_));
+    phase_ = select(starting, code(LanePhase::Emerge), phase_);
+    hits_ = emerging;
+    new_t_ = select(emerging, k(0), new_t_);
+    a_.put(kWidth, emerging, t_);
+    next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
   }
 
   // The bracket [t, t_hi] shrinks to the sample, and the secant says where to look next.
-  HWY_INLINE void refine(Mask refining, Mask crossed) {
-    const Mask all = refining | crossed, lower = refining & (g_ > k(0)), upper = all & !lower;
-    const N t = a_.get(kTNext), half = k(0.5);
-    const N lo = select(lower, t, a_.get(kT)), hi = select(upper, t, a_.get(kTHi));
-    const N g_lo = select(lower, g_, select(crossed, a_.get(kG), half * a_.get(kGLo)));
-    const N g_hi = select(upper, g_, half * a_.get(kGHi));
+  HWY_INLINE void refine(Mask bracketed, Mask lower, Mask crossed) {
+    const N half = k(0.5);
+    const N lo = select(lower, t_, last_t_), hi = select(lower, a_.get(kTHi), t_);
+    const N g_lo = select(lower, g_, select(crossed, last_g_, half * a_.get(kGLo)));
+    const N g_hi = select(lower, half * a_.get(kGHi), g_);
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
     const N next = min(max(lo + g_lo / (g_lo - g_hi) * width, lo + aside), hi - aside);
 
     // A small value behind the surface, or 0, may be where two solids meet; before it, it is no more than a touch.
-    const Mask root = lower & (!(g_ > k(kRootError) * error_));
-    const Mask divisible = (width > done) & (next > lo) & (next < hi);
-    const Mask found = all & (root | (!divisible));
+    const Mask root = lower & (g_ <= k(kRootError) * error_);
+    const Mask found = bracketed & (root | (width <= done) | (next <= lo) | (next >= hi));
     // A root of what is nearly level is as uncertain as d_f divided by the slope.
-    const N fall = select(crossed, a_.get(kG) - g_, a_.get(kSlope)), over = select(crossed, width, a_.get(kR));
+    const N fall = select(crossed, last_g_ - g_, last_slope_), over = select(crossed, width, last_r_);
     const N slack = k(kTypicalError) * error_ * over;
-    const Mask vague = found & (slack > max(k(kTolerance) * t, k(kBandShare) * field_band_) * fall);
-    a_.put(kT, all, lo);
-    a_.conclude(vague, LaneVerdict::Certify);
-    a_.settle(found, select(root, t, select(g_lo < -g_hi, lo, hi)), select(root, done, width));
-    a_.put(kSlope, all, fall);
-    a_.put(kR, all, over);
-    a_.put(kTHi, all, hi);
-    a_.put(kGLo, all, g_lo);
-    a_.put(kGHi, all, g_hi);
-    a_.put(kTNext, all, next);
-    a_.enter(crossed, LanePhase::Refine);
+    const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
+    const Mask known = found & (!vague);
+    undecided_ = undecided_ | vague;
+    hits_ = hits_ | known;
+
+    a_.put(kTHi, hi);
+    a_.put(kGLo, g_lo);
+    a_.put(kGHi, g_hi);
+    a_.put(kWidth, found, select(root, done, width));
+    const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
+    new_t_ = select(known, best, select(bracketed, lo, new_t_));
+    new_r_ = select(bracketed, over, new_r_);
+    slope_ = select(bracketed, fall, slope_);
+    next_ = select(bracketed, next, next_);
   }
 
-  LaneView<N, S> a_;
+  HWY_INLINE void finish(N f) {
+    a_.put(kEvaluations, evaluations_);
+    a_.put(kPhase, phase_);
+    a_.put(kT, new_t_);
+    a_.put(kR, new_r_);
+    a_.put(kSlope, slope_);
+    const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
+    N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
+    verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
+    a_.finish(next_, select(finite, verdict, code(LaneVerdict::Invalid)));
+  }
+
+  LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
-  N error_, g_, r_, band_, unseen_, longest_;
-  Mask coarse_;
+  N error_, g_, r_, t_;                      // of the sample: d_f, value, safe radius, place
+  N last_t_, last_g_, last_r_, last_slope_;  // of the last accepted one; of a bracket as in lanes.h
+  N m_, slope_, band_, unseen_, evaluations_;
+  N phase_, new_t_, new_r_, next_;  // what is put at the end
+  Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
 
 }  // namespace fathom::runtime::HWY_NAMESPACE

@@ -55,28 +55,31 @@ struct AutomaticStep {
 
 template <class Step, class N, class S>
 HWY_INLINE void trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& rules, N f) {
-  LaneView<N, S> a(lanes, first);
+  using Mask = MaskOf<N>;
+  LaneView<N, Lanes<S>> a(lanes, first);
   const N zero = number<N>(0), evaluations = a.get(kEvaluations) + number<N>(1);
   a.put(kEvaluations, evaluations);
-  a.put(kSide, is_zero(a.get(kSide)), select(f < zero, number<N>(-1), number<N>(1)));
-  const N g = a.get(kSide) * f, r = g * N::broadcast(rules.inv_lipschitz);
-  const N t = a.get(kTNext), z = t - a.get(kT);
-  a.conclude(!(abs(f) < number<N>(std::numeric_limits<double>::infinity())), LaneVerdict::Invalid);
+  const N known = a.get(kSide), side = select(known == zero, select(f < zero, number<N>(-1), number<N>(1)), known);
+  a.put(kSide, side);
+  const N g = side * f, r = g * N::broadcast(rules.inv_lipschitz), t = a.get(kTNext), z = t - a.get(kT);
 
-  MaskOf<N> accepted = is_zero(zero);
+  Mask accepted = zero == zero;
   if constexpr (Step::kRelaxed) {
     // The balls of this sample and the last leave a gap: back to where the last one ends.
-    accepted = !(z > a.get(kR) + abs(r));
+    accepted = z <= a.get(kR) + abs(r);
     Step::retreat(a, !accepted);
   }
-  a.settle(accepted & (g < N::broadcast(rules.epsilon)), t, N::broadcast(rules.epsilon));
-  a.conclude(accepted & !(t < a.get(kTMax)), LaneVerdict::Miss);
-  a.conclude(!(evaluations < N::broadcast(rules.steps)), LaneVerdict::OutOfSteps);
+  const Mask hits = accepted & (g < N::broadcast(rules.epsilon)), ends = accepted & (t >= a.get(kTMax));
+  const Mask finite = abs(f) < number<N>(std::numeric_limits<double>::infinity());
+  N verdict = select(evaluations >= N::broadcast(rules.steps), code<N>(LaneVerdict::OutOfSteps), zero);
+  verdict = select(hits, code<N>(LaneVerdict::Hit), select(ends, code<N>(LaneVerdict::Miss), verdict));
+
   const N step = Step::next(a, accepted, r, z, N::broadcast(rules.relaxation));
-  a.put(kT, accepted & a.going(), t);
+  const N next = min(select(accepted, t + step, a.get(kT) + a.get(kR)), a.get(kTMax));
+  a.put(kT, accepted, t);
   a.put(kR, accepted, r);
-  a.put(kTNext, min(select(accepted, t + step, a.get(kT) + a.get(kR)), a.get(kTMax)));
-  a.finish();
+  a.put(kWidth, N::broadcast(rules.epsilon));
+  a.finish(next, select(finite, verdict, code<N>(LaneVerdict::Invalid)));
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE

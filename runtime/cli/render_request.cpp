@@ -51,6 +51,61 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   arguments.flag("--no-denoise", "Accepted for compatibility; there is no denoiser", request.no_denoise);
 }
 
+std::vector<std::string_view> method_names() {
+  std::vector<std::string_view> names;
+  for (const runtime::MethodInfo& method : runtime::kMethods) names.push_back(method.name);
+  return names;
+}
+
+Verdict read_relaxation(std::string_view text, double& factor) {
+  const std::optional<double> number = to_number(text);
+  if (!number || !(*number >= 1 && *number < 2))
+    return Complaint{"is not a number in [1, 2)", "1 is plain sphere tracing"};
+  factor = *number;
+  return std::nullopt;
+}
+
+void add_marching_options(Arguments& arguments, RenderRequest& request) {
+  arguments.group("How rays are followed (to compare; the default is right for pictures)");
+  arguments.option("--march", "METHOD",
+                   "tiered (default), sphere, relaxed, automatic or certified: see docs/ACCURACY.md",
+                   one_of(method_names(), request.method));
+  arguments.flag("--reference", "Search every ray in double; the same as --march certified", request.reference);
+  arguments.option("--epsilon", "DISTANCE", "What counts as a hit, scene units (1e-4); sphere, relaxed, automatic",
+                   into(read_positive, request.epsilon));
+  arguments.option("--max-steps", "N", "Evaluations before a ray is given up (512); sphere, relaxed, automatic",
+                   whole(request.steps, 1, 1 << 20));
+  arguments.option("--relaxation", "FACTOR", "Steps of so many safe radii, in [1, 2) (1.6); relaxed",
+                   into(read_relaxation, request.relaxation));
+  arguments.option("--precision", "NUMBER", "f32 (default) or f64; not for certified, which is in double",
+                   one_of({"f32", "f64"}, request.precision));
+}
+
+// The marching asked for, or the exit code after a message about options that do not go together.
+std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& request, const Streams& streams) {
+  runtime::Marching marching;
+  if (request.method >= 0) marching.method = runtime::kMethods[request.method].method;
+  if (request.reference) {
+    if (request.method >= 0 && marching.method != runtime::Method::Certified) {
+      return fail(streams, kUsage, "--reference is --march certified; it does not go with another method");
+    }
+    marching.method = runtime::Method::Certified;
+  }
+  const runtime::MethodInfo& method = runtime::info(marching.method);
+  if ((request.epsilon || request.steps) && !method.uses_epsilon) {
+    return fail(streams, kUsage, fmt::format("--epsilon and --max-steps: the method `{}` has neither", method.name),
+                {"they go with --march sphere, relaxed or automatic"});
+  }
+  if (request.relaxation && marching.method != runtime::Method::Relaxed) {
+    return fail(streams, kUsage, "--relaxation goes with --march relaxed only");
+  }
+  marching.precision = static_cast<runtime::Precision>(request.precision);
+  marching.epsilon = request.epsilon.value_or(marching.epsilon);
+  marching.steps = request.steps.value_or(marching.steps);
+  marching.relaxation = request.relaxation.value_or(marching.relaxation);
+  return marching;
+}
+
 }  // namespace
 
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
@@ -61,6 +116,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
   add_output_options(arguments, request);
   add_renderer_options(arguments, request);
+  add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
 
   if (request.size && (request.resolution || request.aspect)) {
@@ -72,6 +128,9 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.default_output = true;
   }
   request.options.threads = request.threads.value_or(0);
+  const auto marching = marching_of(request, streams);
+  if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
+  request.options.marching = std::get<runtime::Marching>(marching);
   return request;
 }
 

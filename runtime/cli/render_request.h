@@ -22,6 +22,11 @@ struct RenderRequest {
   std::optional<PixelSize> size;
   std::optional<int> threads;
   runtime::RenderOptions options;  // width and height are not set
+  int method = -1;                 // an index into runtime::kMethods; -1: not given
+  std::optional<double> epsilon, relaxation;
+  std::optional<int> steps;
+  int precision = 0;  // a runtime::Precision
+  bool reference = false;
   std::optional<std::string> stats_json;
   int verbosity = 0;
   bool quiet = false, no_denoise = false;

@@ -37,6 +37,8 @@ HWY_INLINE Batch operator/(Batch a, Batch b) { return {hn::Div(a.v, b.v)}; }
 HWY_INLINE Batch operator-(Batch a) { return {hn::Neg(a.v)}; }
 HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
 HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
+HWY_INLINE BatchMask operator<=(Batch a, Batch b) { return {hn::Le(a.v, b.v)}; }
+HWY_INLINE BatchMask operator>=(Batch a, Batch b) { return {hn::Le(b.v, a.v)}; }
 HWY_INLINE BatchMask operator==(Batch a, Batch b) { return {hn::Eq(a.v, b.v)}; }
 HWY_INLINE BatchMask operator&(BatchMask a, BatchMask b) { return {hn::And(a.m, b.m)}; }
 HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }

@@ -29,6 +29,8 @@ HWY_INLINE Real operator/(Real a, Real b) { return {a.v / b.v}; }
 HWY_INLINE Real operator-(Real a) { return {-a.v}; }
 HWY_INLINE bool operator<(Real a, Real b) { return a.v < b.v; }
 HWY_INLINE bool operator>(Real a, Real b) { return a.v > b.v; }
+HWY_INLINE bool operator<=(Real a, Real b) { return a.v <= b.v; }
+HWY_INLINE bool operator>=(Real a, Real b) { return a.v >= b.v; }
 HWY_INLINE bool operator==(Real a, Real b) { return a.v == b.v; }
 HWY_INLINE bool any(bool mask) { return mask; }
 HWY_INLINE Real select(bool mask, Real yes, Real no) { return mask ? yes : no; }
