@@ -32,7 +32,7 @@ class BarTable {
   void none(std::string_view bar, std::string_view what, std::size_t count, std::size_t tried) {
     const double most = 3e6 / static_cast<double>(tried);
     row(bar, what, "0",
-        fmt::format("{} of {}{}", count, tried, count ? "" : fmt::format(" (95 % <= {:.2g} ppm)", most)),
+        fmt::format("{} of {}{}", count, tried, count ? "" : fmt::format(" (95 % <= {:.3g} ppm)", most)),
         count == 0 && tried > 0);
   }
   int missed() const { return missed_; }
@@ -51,7 +51,11 @@ struct Counts {
   std::size_t sphere_rays = 40000, composite_rays = 500000, secondary_rays = 1000000;
   std::size_t normals = 100000, samples = 10000000;
 };
-inline constexpr Counts kFull{400000, 1000000, 10000000, 10000000, 100000000};
+inline constexpr Counts kFull{.sphere_rays = 400000,
+                              .composite_rays = 1000000,
+                              .secondary_rays = 10000000,
+                              .normals = 10000000,
+                              .samples = 100000000};
 
 void hit_bars(BarTable& table, const Counts& counts);            // B4, B5
 void composite_bars(BarTable& table, const Counts& counts);      // B6 to B9

@@ -76,9 +76,14 @@ void wrong_rays(BarTable& table, const runtime::Field& field, const RayClass& ra
       "B6", fmt::format("H, {}: false hits and misses of the default method", rays.name), "<= 50 ppm",
       fmt::format("{:.0f} ppm ({} + {}, {} gross)", wrong, judged.false_hits, judged.false_misses, judged.gross),
       wrong <= 50);
-  table.none("B7", fmt::format("H, {}: rays given up", rays.name), judged.counters.exhausted, judged.rays);
+}
+
+void tiers(BarTable& table, const runtime::Field& field, const RayClass& rays) {
+  const runtime::MarchCounters counters = runtime::march(field, rays.rays).counters;
+  table.none("B7", fmt::format("H, {}: rays given up, invalid or in contact", rays.name),
+             counters.exhausted + counters.invalid + counters.contacts, counters.rays);
   table.at_most("B7", fmt::format("H, {}: share of rays decided in double", rays.name), 0.2,
-                100 * static_cast<double>(judged.counters.certified) / count, " %");
+                100 * static_cast<double>(counters.certified) / static_cast<double>(counters.rays), " %");
 }
 
 void reference(BarTable& table, const runtime::Field& field, const std::vector<RayClass>& classes) {
@@ -140,6 +145,7 @@ void composite_bars(BarTable& table, const Counts& counts) {
   classes.push_back(bounce_rays(counts.composite_rays));
   for (const RayClass& rays : classes) wrong_rays(table, field, rays);
   reference(table, field, classes);
+  for (const RayClass& rays : classes) tiers(table, field, rays);
   for (const RayClass& rays : classes) evaluations(table, field, rays);
   for (const RayClass& rays : classes) times(table, field, rays);
 }

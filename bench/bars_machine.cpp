@@ -98,8 +98,7 @@ void evaluation(BarTable& table, std::size_t samples) {
       ++scenes;
     }
   }
-  table.none("B14",
-             fmt::format("{} scenes' values and gradients: bits that differ from scalar's on {}", scenes, others()),
+  table.none("B14", fmt::format("{} scenes: numbers that differ from the scalar machine's on {}", scenes, others()),
              count, compared);
 }
 
@@ -124,7 +123,7 @@ void arrivals(BarTable& table, std::size_t samples) {
     return bits;
   };
   const std::size_t count = differences_from_scalar(measure, compared);
-  table.none("B14", fmt::format("H, {} rays from anywhere: bits that differ from scalar's", rays.size()), count,
+  table.none("B14", fmt::format("H, {} rays from anywhere: numbers of arrivals that differ", rays.size()), count,
              compared);
 }
 
