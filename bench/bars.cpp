@@ -1,8 +1,8 @@
 // Do the bars hold? Each is measured against an independent truth: closed forms in long double, an interval solver
 // with the scene written by hand, other instruction sets. Exit status 1 when one is missed.
 //
-//     build/release/bench_bars           a few minutes
-//     build/release/bench_bars --full    as many rays, normals and samples as the bars ask for: about an hour
+//     build/release/bench_bars           two minutes
+//     build/release/bench_bars --full    as many rays, normals and samples as the bars ask for: ten minutes
 #include "bench/bars.h"
 
 #include <limits>
