@@ -364,7 +364,9 @@ HWY_INLINE Along smooth_max(const Along& a, const Along& b, const Along& k, cons
 }
 HWY_INLINE Slope smooth_min(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   const Slope generic = smooth_min<Slope>(a, b, k, inv4k);
-  return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);  // the gradient is between a's and b's
+  Slope r = either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);  // the gradient is between a's and b's
+  r.nonnegative = false;                                                      // a blend of what is not below 0 is
+  return r;
 }
 HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   return -smooth_min(-a, -b, k, inv4k);

@@ -184,4 +184,21 @@ TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") 
   CHECK(away.float_error <= 64 * 0x1p-24);
 }
 
+TEST_CASE("a blend of what is not below 0 may be", "[formula][slope]") {
+  vm::Workspace workspace;
+  const double k = 0.5;
+  // Of |x| and |y| at 0 the blend is -k / 4, below the constant it is then joined with.
+  const auto program = formula({{Opcode::X},
+                                {Opcode::Abs},
+                                {Opcode::Y},
+                                {Opcode::Abs},
+                                {Opcode::SmoothMin, {k, 1 / (4 * k)}},
+                                {Opcode::Constant, {-0.015625}},
+                                {Opcode::Min}});
+  REQUIRE(vm::evaluate_distance(program, dvec3(0), workspace) == -k / 4);
+  const vm::SlopeBound bound = vm::evaluate_slope(program, dvec3(-1e-3), dvec3(1e-3), workspace);
+  CHECK(bound.value.lo <= -k / 4);
+  CHECK(bound.lipschitz >= 1);
+}
+
 }  // namespace fathom::test

@@ -89,6 +89,28 @@ TEST_CASE("a polygon is its exact distance, with a unit gradient", "[polygon]") 
   }
 }
 
+TEST_CASE("a polygon in sheared space changes as fast as its points move", "[polygon][slope]") {
+  vm::Workspace workspace;
+  const std::vector<double> triangle = {1, 0, -1, 1, -1, -1};
+  const double shears[] = {0.5, 1, -2};
+  for (const double shear : shears) {
+    vm::Program code;
+    code.append(Opcode::Affine, 0, std::vector<double>{1, shear, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, {});
+    code.append(Opcode::Polygon, 0, triangle, {});
+    code.append(Opcode::Drop, 0, {}, {});
+    const vm::VerifiedProgram program = verified(std::move(code));
+    Random random(7);
+    for (int box = 0; box < 200; ++box) {
+      const dvec3 lo = random.in_box(3), hi = lo + 1e-3;
+      const vm::SlopeBound slope = vm::evaluate_slope(program, lo, hi, workspace);
+      const vm::SurfaceValue at = vm::evaluate_surface(program, (lo + hi) / 2.0, workspace);
+      INFO("shear " << shear << " at " << lo.x << ' ' << lo.y);
+      CHECK(glm::length(at.gradient) <= slope.lipschitz * (1 + 1e-9));
+      CHECK(slope.lipschitz <= 2 + std::abs(shear));
+    }
+  }
+}
+
 TEST_CASE("an outline has whole groups, enough of them, all finite", "[polygon][verify]") {
   const std::vector<double> triangle = {0, 0, 1, 0, 0, 1};
   const vm::VerifiedProgram program = verified(polygon_code(triangle));

@@ -206,14 +206,16 @@ inline Slope sqrt(const Slope& a) {
 inline Slope length(const Slope& x, const Slope& y) { return sqrt(sqr(x) + sqr(y)); }
 inline Slope length(const Slope& x, const Slope& y, const Slope& z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
 
-// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/opcodes.def promises.
+// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/opcodes.def promises. It changes
+// as fast as p can move, whichever way that is: by the largest singular value of p's derivatives.
 inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
-  const Slope from_origin = length(p.x, p.y, p.z);
-  const Interval all{-from_origin.norm, from_origin.norm};
+  const Slope squares = sqr(p.x) + sqr(p.y) + sqr(p.z);
+  const double speed = gram_norm(squares.g);
+  const Interval all{-speed, speed};
   const double moved = length(seen(p.x) - p.x.v, seen(p.y) - p.y.v, seen(p.z) - p.z.v).hi;
-  const double scale = std::max({1.0, magnitude(seen(from_origin)), magnitude(d) + moved});
+  const double scale = std::max({1.0, magnitude(seen(sqrt(squares))), magnitude(d) + moved});
   const double carried = std::sqrt(p.x.error * p.x.error + p.y.error * p.y.error + p.z.error * p.z.error);
-  return make_slope(d, all, all, all, from_origin.norm, carried + kFloatError / kUnit * scale);
+  return make_slope(d, all, all, all, speed, carried + kFloatError / kUnit * scale);
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
