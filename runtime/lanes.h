@@ -40,7 +40,7 @@ enum LaneRow : std::uint8_t {
   kTNext,  // of x, y, z
   kR,      // safe radius at t: nothing lies within (t - r, t + r); while refining the first bracket's width
   kM,      // relaxation: expected slope of the safe radius along the ray
-  kSlope,  // of g over the last accepted step; while refining what g falls by over the first bracket
+  kFall,   // while refining: what g falls by over the first bracket
   kTHi,
   kGHi,    // while refining: the far end and its value
   kGLo,    // ... and the value the secant uses at the free end

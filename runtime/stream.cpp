@@ -57,8 +57,7 @@ void Stream<S>::begin(const Course& course, int side, float slope) {
   }
   courses_[i] = course;
   const auto put = [&](LaneRow row, double value) { lanes_->row[row][i] = static_cast<S>(value); };
-  for (const LaneRow zero : {kTNext, kEvaluations, kWidth, kT, kG, kR, kSlope, kPhase, kCrossing, kPatience})
-    put(zero, 0);
+  for (const LaneRow zero : {kTNext, kEvaluations, kWidth, kT, kG, kR, kPhase, kCrossing, kPatience}) put(zero, 0);
   put(kX, course.origin.x), put(kY, course.origin.y), put(kZ, course.origin.z);
   put(kOx, course.origin.x), put(kOy, course.origin.y), put(kOz, course.origin.z);
   put(kDx, course.direction.x), put(kDy, course.direction.y), put(kDz, course.direction.z);

@@ -33,6 +33,8 @@ inline constexpr double kOvershoot = 1.1, kOvershootErrors = 4;
 // ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
 // widened by d_f may take it to twice that, no further.
 inline constexpr double kLongestCrossing = 16;
+// So that kOvershootErrors d_f are no longer than the longest crossing, d_f may be no more than so many bands.
+inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
 // After an attempt that met no surface so many samples are accepted before the next, then twice as many. A lane that
 // would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
 // more evaluations than its budget.
@@ -72,11 +74,12 @@ class Tiered {
     new_t_ = select(accepted, t_, last_t_);
     new_r_ = select(accepted, r_, last_r_);
     a_.put(kG, accepted, g_);
-    learn(accepted & walking, failed);
-    const N onwards = go_on(accepted), back = retreat(failed, failed & crossing);
+    const Mask stepped = accepted & walking;
+    learn(stepped, failed);
+    const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing);
     next_ = select(accepted, onwards, back);
-    if (any(inside & beginning)) begin_inside(inside & beginning, phase);
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
+    if (any(inside & beginning)) begin_inside(inside & beginning, phase);
     finish(f);
   }
 
@@ -88,12 +91,9 @@ class Tiered {
   }
 
   HWY_INLINE void look(N f, N error) {
-    N side = a_.get(kSide);
-    const Mask unknown = side == k(0);
-    if (any(unknown)) {
-      side = select(unknown, select(f < k(0), k(-1), k(1)), side);
-      a_.put(kSide, side);
-    }
+    // Without a branch: in most registers some lane begins, in as many none.
+    const N known = a_.get(kSide), side = select(known == k(0), select(f < k(0), k(-1), k(1)), known);
+    a_.put(kSide, side);
     evaluations_ = a_.get(kEvaluations) + k(1);
     error_ = error;
     g_ = side * f;
@@ -102,7 +102,6 @@ class Tiered {
     last_t_ = a_.get(kT);
     last_g_ = a_.get(kG);
     last_r_ = a_.get(kR);
-    last_slope_ = a_.get(kSlope);
     band_ = max(field_band_, k(kBandErrors) * error);
     unseen_ = min(band_, k(2) * field_band_);
   }
@@ -112,27 +111,26 @@ class Tiered {
 
   // From the step that led here; one that was too long says nothing but that.
   HWY_INLINE void learn(Mask stepped, Mask failed) {
-    const N per_z = k(1) / (t_ - last_t_), m = a_.get(kM);
-    const N mixed = min(k(1 - kBeta) * m + k(kBeta) * ((r_ - last_r_) * per_z), k(kLargestM));
-    m_ = select(stepped, mixed, select(failed, k(-1), m));
-    slope_ = select(stepped, (g_ - last_g_) * per_z, last_slope_);
+    const N m = a_.get(kM), seen = (r_ - last_r_) / (t_ - last_t_);
+    m_ = select(stepped, min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM)), select(failed, k(-1), m));
     a_.put(kM, m_);
   }
 
   // The next place after an accepted sample.
-  HWY_INLINE N go_on(Mask accepted) {
+  HWY_INLINE N go_on(Mask accepted, Mask stepped) {
     const N t_max = a_.get(kTMax), patience = a_.get(kPatience), longest = k(kLongestCrossing) * unseen_;
     misses_ = accepted & (max(t_, t_ + r_) >= t_max);
-    const Mask near = accepted & (g_ < band_) & (slope_ < k(0));
+    const Mask near = stepped & (g_ < band_) & (g_ < last_g_);
     const Mask waits = near & (patience > k(0)) & (r_ > error_), tries = near & (!waits);
-    a_.put(kPatience, waits, patience - k(1));
+    patience_ = select(waits, patience - k(1), patience);
     const N relaxed = k(kReach) * r_ / (k(1) - m_);
-    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) / -slope_;
+    // Where the line through the last two samples would be well beyond the surface.
+    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) * (t_ - last_t_) / (last_g_ - g_);
     const N z = select(tries, max(relaxed, min(beyond, longest)), relaxed);
     a_.put(kCrossing, select(tries & (beyond > relaxed), k(1), k(0)));
     // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
     // happens near the surface is for double to decide.
-    const Mask coarse = near & (k(kOvershootErrors) * error_ > longest);
+    const Mask coarse = near & (error_ > k(kCoarse) * field_band_);
     undecided_ = accepted & ((evaluations_ >= k(kBudget)) | is_stuck(t_, z) | coarse);
     return min(t_ + z, t_max);
   }
@@ -141,7 +139,7 @@ class Tiered {
   HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
     const N penalty = a_.get(kPenalty);
     const Mask grazes = from_crossing & (penalty > k(kMostPenalty));
-    a_.put(kPatience, from_crossing, penalty);
+    a_.put(kPatience, select(from_crossing, penalty, patience_));
     a_.put(kPenalty, from_crossing, penalty + penalty);
     undecided_ = undecided_ | grazes | (failed & is_stuck(last_t_, last_r_));
     return last_t_ + last_r_;
@@ -150,10 +148,10 @@ class Tiered {
   // Beyond the surface it should have left. One look ahead tells whether it comes out or goes in.
   HWY_INLINE void begin_inside(Mask inside, N phase) {
     const Mask starting = inside & (phase == code(LanePhase::Start)), emerging = inside & (!starting);
-    const Mask coarse = k(kOvershootErrors) * error_ > k(kLongestCrossing) * unseen_;
+    const Mask coarse = error_ > k(kCoarse) * field_band_;
     undecided_ = undecided_ | (starting & coarse & (-g_ < error_));
     phase_ = select(starting, code(LanePhase::Emerge), phase_);
-    hits_ = emerging;
+    hits_ = hits_ | emerging;
     new_t_ = select(emerging, k(0), new_t_);
     a_.put(kWidth, emerging, t_);
     next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
@@ -172,7 +170,7 @@ class Tiered {
     const Mask root = lower & (g_ <= k(kRootError) * error_);
     const Mask found = bracketed & (root | (width <= done) | (next <= lo) | (next >= hi));
     // A root of what is nearly level is as uncertain as d_f divided by the slope.
-    const N fall = select(crossed, last_g_ - g_, last_slope_), over = select(crossed, width, last_r_);
+    const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), over = select(crossed, width, last_r_);
     const N slack = k(kTypicalError) * error_ * over;
     const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
     const Mask known = found & (!vague);
@@ -182,11 +180,11 @@ class Tiered {
     a_.put(kTHi, hi);
     a_.put(kGLo, g_lo);
     a_.put(kGHi, g_hi);
-    a_.put(kWidth, found, select(root, done, width));
+    a_.put(kWidth, select(root, done, width));
     const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
     new_t_ = select(known, best, select(bracketed, lo, new_t_));
     new_r_ = select(bracketed, over, new_r_);
-    slope_ = select(bracketed, fall, slope_);
+    a_.put(kFall, fall);
     next_ = select(bracketed, next, next_);
   }
 
@@ -195,7 +193,6 @@ class Tiered {
     a_.put(kPhase, phase_);
     a_.put(kT, new_t_);
     a_.put(kR, new_r_);
-    a_.put(kSlope, slope_);
     const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
     N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
     verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
@@ -204,9 +201,9 @@ class Tiered {
 
   LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
-  N error_, g_, r_, t_;                      // of the sample: d_f, value, safe radius, place
-  N last_t_, last_g_, last_r_, last_slope_;  // of the last accepted one; of a bracket as in lanes.h
-  N m_, slope_, band_, unseen_, evaluations_;
+  N error_, g_, r_, t_;         // of the sample: d_f, value, safe radius, place
+  N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lanes.h
+  N m_, patience_, band_, unseen_, evaluations_;
   N phase_, new_t_, new_r_, next_;  // what is put at the end
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
