@@ -14,6 +14,9 @@ constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget
 constexpr double kResolution = 0x1p-40;
 // Intervals cost several evaluations: worth it where so many of the segment's length would be needed to settle it.
 constexpr double kRangeRatio = 3;
+// ... and where they told something lately: bounds on the slope that are so much tighter, in one of a few tries.
+constexpr double kProgress = 0.8;
+constexpr int kPatience = 3, kSeldom = 16;
 
 struct Segment {
   double a, ga, b, gb;  // gb: NaN when it is not known yet
@@ -88,7 +91,7 @@ class Search {
     }
     Gap gap = gap_of(s);
     if (s.gb >= 0 && gap.lo > gap.hi) return;
-    if (gap.hi - gap.lo > (s.b - s.a) / kRangeRatio) {
+    if (gap.hi - gap.lo > (s.b - s.a) / kRangeRatio && worth_narrowing()) {
       if (!narrow(s)) return;
       gap = gap_of(s);
       if (s.gb >= 0 && gap.lo > gap.hi) return;
@@ -116,6 +119,9 @@ class Search {
     return {lo, hi};
   }
 
+  // Of iterated maps intervals know nothing until a segment is tiny: where they keep failing they are seldom asked.
+  bool worth_narrowing() { return in_vain_ < kPatience || ++skipped_ % kSeldom == 0; }
+
   // Takes what interval arithmetic knows of the segment; false when it excludes a root.
   bool narrow(Segment& s) {
     ++result_.evaluations;
@@ -124,9 +130,12 @@ class Search {
       line.value = {-line.value.hi, -line.value.lo};
       line.derivative = {-line.derivative.hi, -line.derivative.lo};
     }
+    const double known = s.fall + s.rise;
     s.fall = std::min(s.fall, std::max(0.0, -line.derivative.lo));
     s.rise = std::min(s.rise, std::max(0.0, line.derivative.hi));
-    return !(line.value.lo > 0);
+    const bool excluded = line.value.lo > 0;
+    in_vain_ = excluded || s.fall + s.rise < kProgress * known ? 0 : in_vain_ + 1;
+    return !excluded;
   }
 
   // g falls from above zero at a to zero or below at b: the Illinois method (Dowell and Jarratt, "A Modified Regula
@@ -171,6 +180,7 @@ class Search {
   vm::Workspace& workspace_;
   std::vector<Segment> pending_;  // in order along the ray, the nearest last
   bool contact_ = false, done_ = false;
+  int in_vain_ = 0, skipped_ = 0;  // intervals that told nothing in a row; those not asked since
   Certified result_{};
 };
 

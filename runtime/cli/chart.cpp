@@ -8,6 +8,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -126,7 +128,10 @@ class Charts {
                     const char* word) const {
     std::string line = fmt::format("{}: the default is on the Pareto front of {}:", name, word), why;
     for (const runtime::FrontVerdict& verdict : runtime::judge_default(rows, name, cost)) {
-      line += fmt::format(" {} {}", verdict.ray_class, verdict.on_front ? "yes" : "no");
+      const bool hits = std::any_of(rows.begin(), rows.end(), [&](const runtime::RayMeasurement& row) {
+        return row.ray_class == verdict.ray_class && runtime::is_default(row) && !std::isnan(row.terr_p99);
+      });
+      line += fmt::format(" {} {}", verdict.ray_class, verdict.on_front ? "yes" : hits ? "no" : "(no ray hits)");
       for (const runtime::RayMeasurement& other : verdict.dominated_by) {
         why += fmt::format("  {}: {} eps {:g} is better in all\n", verdict.ray_class, runtime::name_of(other, rows),
                            other.eps);

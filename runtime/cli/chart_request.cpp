@@ -29,7 +29,7 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
   arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
   arguments.option("-o,--output", "FOLDER", "Where index.html, *.csv, *.svg and *.png go (chart)", any_text(folder));
   arguments.group("Rays");
-  arguments.option("--rays", "N", "Rays of each class: camera, bounce, grazing (20000)",
+  arguments.option("--rays", "N", "Rays of each class: camera, bounce, grazing (10000)",
                    whole(rays, 100, 10'000'000));
   arguments.option("--rounds", "N", "Times each method is timed; the median counts (9)", whole(rounds, 1, 1001));
   arguments.option("--seed", "N", "Seed of the rays (1)", into(read_seed, seed));
@@ -38,7 +38,7 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
   arguments.option("--size", "WxH", "Width and height of the pictures compared (64x36)", into(read_size, size));
   arguments.option("-s,--spp", "N", "Most samples per pixel (64)", whole(spp, 2, 1 << 14));
   arguments.option("--seeds", "N", "Pictures for each point of the chart (16)", whole(seeds, 1, 4096));
-  arguments.option("--reference-spp", "N", "Samples per pixel of the reference (1024)",
+  arguments.option("--reference-spp", "N", "Samples per pixel of the reference (256)",
                    whole(reference_spp, 2, 1 << 20));
   if (const auto code = arguments.parse(args, streams)) return *code;
 

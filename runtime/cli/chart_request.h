@@ -16,7 +16,7 @@ namespace fathom::cli {
 struct ChartRequest {
   SceneArguments scene;  // path empty: the project's own scenes
   std::string folder;
-  int rays = 20000, rounds = 9;
+  int rays = 10000, rounds = 9;
   std::uint64_t seed = 1;
   runtime::ImagePlan images;
   bool no_images = false, quiet = false;

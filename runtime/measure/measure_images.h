@@ -16,7 +16,7 @@ struct ImagePlan {
   int width = 64, height = 36;  // pixels
   int spp = 64;                 // at most; the curve's other points have a quarter of the next
   int seeds = 16;               // pictures for each point; the reference has seeds of its own
-  int reference_spp = 1024;
+  int reference_spp = 256;
 };
 
 // The default, and sphere tracing at several eps.
