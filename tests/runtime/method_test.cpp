@@ -322,17 +322,23 @@ TEST_CASE("method: a box that stands on the ground is hit at its face, just abov
   CHECK(worst_difference(march(field, rays).arrivals, truth.arrivals) <= 2e-5);
 }
 
-// A bracket over a short chord is nearly level at its end; it was taken as it was, whatever the error of the float
-// distances makes of its root.
+// Along a ray near its outline a ball is nearly level, and float holds few digits of the root; what it
+// cannot decide is for double, but that is not all.
 TEST_CASE("method: grazing hits of a ball are not vague", "[march]") {
   const auto scene = scene_of(kSphere);
   Random random(27);
-  std::vector<Ray> rays;
-  for (int i = 0; i < 4000; ++i) rays.push_back(aimed(random, 1 - std::pow(10, random.uniform(-6, -4)), 5));
-  const Judgement judgement = judge(march(make_field(scene), rays), rays, sphere_distance);
-  CHECK(judgement.wrong() == 0);
-  REQUIRE(judgement.errors.size() > rays.size() / 2);
-  CHECK(judgement.worst() <= 1e-4);
+  std::vector<Ray> nearly_past, shallow;
+  for (int i = 0; i < 4000; ++i) nearly_past.push_back(aimed(random, 1 - std::pow(10, random.uniform(-6, -4)), 5));
+  for (int i = 0; i < 4000; ++i) shallow.push_back(aimed(random, 1 - std::pow(10, random.uniform(-4, -1)), 5));
+  for (const std::vector<Ray>* rays : {&nearly_past, &shallow}) {
+    const MarchResult result = march(make_field(scene), *rays);
+    const Judgement judgement = judge(result, *rays, sphere_distance);
+    INFO(result.counters.certified << " of " << rays->size() << " decided in double");
+    CHECK(judgement.wrong() == 0);
+    CHECK(judgement.errors.size() == rays->size());
+    CHECK(judgement.worst() <= 1e-4);
+    if (rays == &shallow) CHECK(result.counters.certified < rays->size() / 2);
+  }
 }
 
 // Nothing is hit here, but copies pressed flat leave only tiny safe steps: the search in double took more than 1e5
