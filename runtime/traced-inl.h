@@ -65,8 +65,11 @@ HWY_INLINE void trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& ru
 
   Mask accepted = zero == zero;
   if constexpr (Step::kRelaxed) {
-    // The balls of this sample and the last leave a gap: back to where the last one ends.
-    accepted = z <= a.get(kR) + abs(r);
+    // Where the balls of this sample and the last leave a gap, or this one is behind the surface, back to where the
+    // last ball ends; what is found there counts.
+    const Mask retreating = a.get(kPhase) == code<N>(LanePhase::Retreat);
+    accepted = retreating | (z <= a.get(kR) + r);
+    a.put(kPhase, select(accepted, code<N>(LanePhase::Walk), code<N>(LanePhase::Retreat)));
     Step::retreat(a, !accepted);
   }
   const Mask hits = accepted & (g < N::broadcast(rules.epsilon)), ends = accepted & (t >= a.get(kTMax));

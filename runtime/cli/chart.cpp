@@ -19,20 +19,20 @@
 #include "runtime/chart/chart_b.h"
 #include "runtime/chart/colormap.h"
 #include "runtime/chart/csv.h"
-#include "runtime/measure/maps.h"
-#include "runtime/measure/measure_rays.h"
 #include "runtime/chart/page.h"
 #include "runtime/cli/chart_request.h"
 #include "runtime/cli/chart_scenes.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
 #include "runtime/image_io.h"
+#include "runtime/measure/maps.h"
+#include "runtime/measure/measure_rays.h"
 #include "vm/evaluate.h"
 
 namespace fathom::cli {
 namespace {
 
-constexpr int kMapWidth = 320;  // pixels; the height follows from the scene's film
+constexpr int kMapSide = 320;  // pixels, the longer one; the other follows from the scene's film
 
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -157,8 +157,10 @@ class Charts {
   }
 
   void add_maps(const compiler::CompiledScene& scene, const runtime::Field& field, runtime::PageScene& section) {
-    const int height = std::max(1, kMapWidth * scene.film.height / scene.film.width);
-    const runtime::PixelMaps maps = runtime::measure_maps(scene, field, kMapWidth, height);
+    const int longer = std::max(scene.film.width, scene.film.height);
+    const int width = std::max(1, kMapSide * scene.film.width / longer);
+    const int height = std::max(1, kMapSide * scene.film.height / longer);
+    const runtime::PixelMaps maps = runtime::measure_maps(scene, field, width, height);
     add_map(section, maps.evaluations, maps.width, maps.height, "map-evaluations", "Evaluations",
             "How often the field is evaluated for each pixel's camera ray.");
     add_map(section, maps.in_double, maps.width, maps.height, "map-double", "Decided in double",
@@ -184,9 +186,43 @@ std::optional<std::string> make_folder(const std::string& folder) {
   return runtime::check_image_path((std::filesystem::path(folder) / "map.png").string());
 }
 
-std::string name_of_scene(const std::string& path) {
-  const std::string stem = std::filesystem::path(path).stem().string();
-  return path == "-" || stem.empty() ? "scene" : stem;
+std::variant<std::vector<compiler::Source>, ExitCode> read_scenes(const ChartRequest& request,
+                                                                  const Streams& streams) {
+  std::vector<compiler::Source> sources;
+  if (request.scene.path.empty()) {
+    for (const ChartScene& scene : chart_scenes()) {
+      sources.emplace_back(std::string(scene.path), std::string(scene.text));
+    }
+    return sources;
+  }
+  auto source = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  sources.push_back(std::get<compiler::Source>(std::move(source)));
+  return sources;
+}
+
+// Of the files: that of the scene's without its ending; `scene` for standard input.
+std::string name_of(const compiler::Source& source, const ChartRequest& request) {
+  const std::string stem = std::filesystem::path(source.name()).stem().string();
+  return request.scene.path == "-" || stem.empty() ? "scene" : stem;
+}
+
+struct NamedScene {
+  std::string name;
+  compiler::CompiledScene scene;
+};
+
+std::variant<std::vector<NamedScene>, ExitCode> compile_scenes(const ChartRequest& request, const Streams& streams) {
+  auto sources = read_scenes(request, streams);
+  if (const auto* code = std::get_if<ExitCode>(&sources)) return *code;
+  std::vector<NamedScene> scenes;
+  for (compiler::Source& source : std::get<std::vector<compiler::Source>>(sources)) {
+    const std::string name = name_of(source, request);
+    auto compiled = compile_scene(std::move(source), request.scene, streams);
+    if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+    scenes.push_back({name, std::get<compiler::CompiledScene>(std::move(compiled))});
+  }
+  return scenes;
 }
 
 }  // namespace
@@ -195,25 +231,13 @@ int run_chart(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_chart(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const ChartRequest& request = std::get<ChartRequest>(parsed);
-  std::vector<compiler::Source> sources;
-  if (request.scene.path.empty()) {
-    for (const ChartScene& scene : chart_scenes()) {
-      sources.emplace_back(std::string(scene.path), std::string(scene.text));
-    }
-  } else {
-    auto source = read_scene(request.scene, streams);
-    if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-    sources.push_back(std::get<compiler::Source>(std::move(source)));
-  }
+  // A scene with errors leaves no folder behind.
+  const auto scenes = compile_scenes(request, streams);
+  if (const auto* code = std::get_if<ExitCode>(&scenes)) return *code;
   if (const auto problem = make_folder(request.folder)) return fail(streams, kIo, *problem);
 
   Charts charts(request, streams);
-  for (compiler::Source& source : sources) {
-    const std::string name = name_of_scene(source.name());
-    const auto compiled = compile_scene(std::move(source), request.scene, streams);
-    if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-    charts.add(std::get<compiler::CompiledScene>(compiled), name);
-  }
+  for (const auto& [name, scene] : std::get<std::vector<NamedScene>>(scenes)) charts.add(scene, name);
   if (const auto problem = charts.finish()) return fail(streams, kIo, *problem);
   if (!request.quiet) streams.err << fmt::format("wrote {}/index.html\n", request.folder);
   return kDone;

@@ -60,7 +60,7 @@ std::vector<std::string_view> method_names() {
 Verdict read_relaxation(std::string_view text, double& factor) {
   const std::optional<double> number = to_number(text);
   if (!number || !(*number >= 1 && *number < 2))
-    return Complaint{"is not a number in [1, 2)", "1 is plain sphere tracing"};
+    return Complaint{fmt::format("`{}` is not a number in [1, 2)", text), "1 is plain sphere tracing"};
   factor = *number;
   return std::nullopt;
 }
@@ -99,7 +99,12 @@ std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& reque
   if (request.relaxation && marching.method != runtime::Method::Relaxed) {
     return fail(streams, kUsage, "--relaxation goes with --march relaxed only");
   }
-  marching.precision = static_cast<runtime::Precision>(request.precision);
+  if (request.precision >= 0) {
+    if (marching.method == runtime::Method::Certified) {
+      return fail(streams, kUsage, "--precision does not go with --march certified, which is always in double");
+    }
+    marching.precision = static_cast<runtime::Precision>(request.precision);
+  }
   marching.epsilon = request.epsilon.value_or(marching.epsilon);
   marching.steps = request.steps.value_or(marching.steps);
   marching.relaxation = request.relaxation.value_or(marching.relaxation);

@@ -25,7 +25,7 @@ struct RenderRequest {
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
-  int precision = 0;  // a runtime::Precision
+  int precision = -1;  // a runtime::Precision; -1: not given
   bool reference = false;
   std::optional<std::string> stats_json;
   int verbosity = 0;

@@ -5,8 +5,8 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "runtime/measure/stopwatch.h"
 #include "runtime/march.h"
+#include "runtime/measure/stopwatch.h"
 #include "runtime/surface.h"
 
 namespace fathom::runtime {
@@ -114,9 +114,12 @@ class Comparison {
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
       const bool hit = arrivals[i].status == Status::Hit, expected = reference_[i].status == Status::Hit;
       const bool given_up = limited && !hit && arrivals[i].evaluations >= static_cast<std::uint32_t>(marching.steps);
-      if (given_up) row.exhausted_ppm += ppm;
       if (arrivals[i].status == Status::Contact) row.contact_ppm += ppm;
-      if (!is_known(i) || given_up) continue;
+      if (!is_known(i)) continue;
+      if (given_up) {
+        row.exhausted_ppm += ppm;
+        continue;
+      }
       if (hit && !expected) row.false_hit_ppm += ppm;
       if (!hit && expected) row.false_miss_ppm += ppm;
       if (hit && expected && error(arrivals, i) > kGross * extent_of(field_)) row.gross_ppm += ppm;
