@@ -22,6 +22,7 @@
 #include "runtime/chart/page.h"
 #include "runtime/cli/chart_request.h"
 #include "runtime/cli/chart_scenes.h"
+#include "runtime/cli/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
 #include "runtime/image_io.h"
@@ -234,6 +235,10 @@ int run_chart(std::span<const std::string> args, const Streams& streams) {
   // A scene with errors leaves no folder behind.
   const auto scenes = compile_scenes(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&scenes)) return *code;
+  const std::filesystem::path folder = request.folder;
+  std::vector<std::string> texts;
+  for (const char* name : {"index.html", "chart.csv", "images.csv"}) texts.push_back((folder / name).string());
+  if (const auto code = check_collisions(request.scene.path, texts, streams)) return *code;
   if (const auto problem = make_folder(request.folder)) return fail(streams, kIo, *problem);
 
   Charts charts(request, streams);
