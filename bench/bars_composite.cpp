@@ -119,7 +119,9 @@ void evaluations(BarTable& table, const runtime::Field& field, const RayClass& r
 void times(BarTable& table, const runtime::Field& field, const RayClass& rays) {
   constexpr std::size_t kRays = 20000;
   constexpr int kRounds = 51;
-  const Marching plain{Method::Sphere, runtime::Precision::Single, 1e-6};
+  // A thousand steps: with fewer it is a few per cent faster and gives more rays up (2000 per million at a thousand,
+  // where the default gives up none).
+  const Marching plain{Method::Sphere, runtime::Precision::Single, 1e-6, 1000};
   const std::span<const runtime::Ray> some(rays.rays.data(), std::min(kRays, rays.rays.size()));
   const auto seconds = runtime::time_interleaved(
       {[&] { runtime::march(field, some); }, [&] { runtime::march(field, some, plain); }}, kRounds);

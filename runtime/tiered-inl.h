@@ -38,7 +38,7 @@ inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
 // After an attempt that met no surface so many samples are accepted before the next, then twice as many. A lane that
 // would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
 // more evaluations than its budget.
-inline constexpr double kMostPenalty = 16, kBudget = 768;
+inline constexpr double kMostPenalty = 16, kBudget = 704;
 // A value this small a part of d_f holds no more digits of the root: half a unit in the last place at 1.
 inline constexpr double kRootError = 0x1p-8;
 // Of d_f, what float is usually off by; and how uncertain a root may be, relative to t or to the field's band, before
