@@ -183,7 +183,7 @@ TEST_CASE("S3: the shadow beside a ball that all but touches a floor", "[catalog
 }
 
 // From the floor, 1e-4 to 0.3 from the touch: where the ball is no farther from it than new rays start.
-TEST_CASE("S3: rays from the floor under a ball that all but touches it", "[catalogue]") {
+TEST_CASE("S3: rays from the floor under a ball that all but touches it", "[catalogue][heavy]") {
   const auto scene = scene_of(kBallOnFloor);
   const Field field = make_field(scene);
   Random random(3);

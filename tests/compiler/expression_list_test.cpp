@@ -110,7 +110,7 @@ TEST_CASE("a byte order mark and the extremes of float are read", "[import]") {
   CHECK(!compiler::compile(compiler::Source("a.vm", "_0 const 3.41e38\n"), diagnostics));
 }
 
-TEST_CASE("prospero: small, proved, and the same as line by line", "[import]") {
+TEST_CASE("prospero: small, proved, and the same as line by line", "[import][heavy]") {
   const std::string text = model("prospero.vm");
   const CompiledScene scene = compiled(text);
   CHECK(scene.node_count <= 7591);

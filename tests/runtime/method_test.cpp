@@ -343,7 +343,7 @@ TEST_CASE("method: grazing hits of a ball are not vague", "[march]") {
 
 // Nothing is hit here, but copies pressed flat leave only tiny safe steps: the search in double took more than 1e5
 // evaluations for a ray.
-TEST_CASE("method: among flat copies rays end in reasonable evaluations", "[march]") {
+TEST_CASE("method: among flat copies rays end in reasonable evaluations", "[march][heavy]") {
   const auto scene = scene_of(R"("objects": [{"type": "repetition", "period": [0.5, 1, 1], "scale": [1, 0.0003, 1],
       "of": {"type": "intersection", "of": [{"type": "box", "half_size": [0.01, 1, 0.2], "translate": [-0.12, 0, 0]},
                                             {"type": "box", "half_size": [0.06, 1, 0.6]}]}}])");

@@ -115,7 +115,7 @@ vm::VerifiedProgram over(Kind kind, const std::vector<double>& params,
 
 }  // namespace
 
-TEST_CASE("along a line: values and slopes are within the bounds, of every opcode", "[along]") {
+TEST_CASE("along a line: values and slopes are within the bounds, of every opcode", "[along][heavy]") {
   vm::Workspace workspace;
   std::set<Opcode> seen;
   int stretches = 0, bounded = 0, compared = 0;
