@@ -9,6 +9,7 @@
 #include "runtime/render.h"
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
+#include "tests/runtime/estimate.h"
 
 namespace fathom::catalogue {
 namespace {
@@ -21,24 +22,6 @@ RenderResult picture(const std::string& scene_text, int width, int height, int s
   RenderResult result = render(scene_of(scene_text), options);
   CHECK(result.stats.dropped_samples == 0);
   return result;
-}
-
-struct Estimate {
-  double mean, sigma;  // of red radiance; sigma of the mean, from the spread between pixels
-};
-
-Estimate estimate(const Film& film) {
-  double sum = 0, squares = 0;
-  const double n = static_cast<double>(film.width()) * film.height();
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) {
-      const double value = film.means(x, y).radiance.x;
-      sum += value;
-      squares += value * value;
-    }
-  }
-  const double mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
 }
 
 // Towards a light at `degrees` from the normal, on a side at random.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 
 namespace fathom::runtime {
@@ -17,25 +18,6 @@ RenderOptions options_of(int width, int height, int spp) {
   options.height = height;
   options.spp = spp;
   return options;
-}
-
-struct Estimate {
-  double mean, sigma;  // of the mean over the whole picture
-};
-
-// Red radiance over all pixels; sigma from the spread between pixels, which are independent.
-Estimate estimate(const Film& film) {
-  double sum = 0, squares = 0;
-  const double n = static_cast<double>(film.width()) * film.height();
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) {
-      const double value = film.means(x, y).radiance.x;
-      sum += value;
-      squares += value * value;
-    }
-  }
-  const double mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
 }
 
 void expect_mean(const RenderResult& result, double reference) {

@@ -1,0 +1,30 @@
+// What the pixels of a picture of one brightness say of it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/film.h"
+
+namespace fathom::runtime {
+
+struct Estimate {
+  double mean, sigma;  // of the mean over the whole picture
+};
+
+// Red radiance over all pixels; sigma from the spread between pixels, which are independent.
+inline Estimate estimate(const Film& film) {
+  double sum = 0, squares = 0;
+  const double n = static_cast<double>(film.width()) * film.height();
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x) {
+      const double value = film.means(x, y).radiance.x;
+      sum += value;
+      squares += value * value;
+    }
+  }
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1))};
+}
+
+}  // namespace fathom::runtime
