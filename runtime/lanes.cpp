@@ -1,9 +1,6 @@
 // The lanes' two ways on, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
 #include "runtime/lanes.h"
 
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS HWY_SSSE3
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/lanes.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep

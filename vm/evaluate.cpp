@@ -7,10 +7,6 @@
 #include <limits>
 #include <new>
 
-// SSSE3 machines run the portable code; each target costs compile time and a test run.
-#ifndef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS HWY_SSSE3
-#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
