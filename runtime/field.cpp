@@ -34,7 +34,6 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   field.lipschitz = scene.lipschitz;
   field.inv_lipschitz = static_cast<float>(1 / scene.lipschitz);
   field.magnitude = static_cast<float>(scene.magnitude);
-  field.certified = scene.certified;
   field.band = static_cast<float>(kBand * extent);
   // Where the bound does not end a ray, `far` has to: certify() needs an end.
   constexpr double kFarthest = 1e12;

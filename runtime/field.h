@@ -15,7 +15,6 @@ struct Field {
   const vm::VerifiedProgram* distance;
   compiler::Box bound;  // the field is positive outside; a little larger than the scene's own
   double lipschitz;     // |f(p) - f(q)| <= lipschitz * |p - q|
-  bool certified;       // whether that is proved
   double far;           // rays end here, scene units; may be infinite when the bound is finite
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;

@@ -102,22 +102,27 @@ std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marchi
   return std::make_unique<Stream<float>>(field, marching);
 }
 
-MarchResult march(const Field& field, std::span<const Ray> rays, const Marching& marching) {
-  MarchResult result;
-  result.arrivals.resize(rays.size());
+MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
+                     const std::function<void(const Arrival&)>& settle) {
   const std::unique_ptr<Marcher> marcher = make_marcher(field, marching);
   std::vector<Arrival> arrivals;
-  std::size_t next = 0;
-  while (next < rays.size() || !marcher->empty()) {
+  for (std::size_t next = 0; next < rays.size() || !marcher->empty();) {
     while (next < rays.size() && marcher->room() > 0) {
       marcher->add(static_cast<std::uint32_t>(next), rays[next]);
       ++next;
     }
     marcher->advance();
     marcher->take_arrivals(arrivals);
-    for (const Arrival& arrival : arrivals) result.arrivals[arrival.id] = arrival;
+    for (const Arrival& arrival : arrivals) settle(arrival);
   }
-  result.counters = marcher->counters();
+  return marcher->counters();
+}
+
+MarchResult march(const Field& field, std::span<const Ray> rays, const Marching& marching) {
+  MarchResult result;
+  result.arrivals.resize(rays.size());
+  result.counters =
+      follow(field, rays, marching, [&](const Arrival& arrival) { result.arrivals[arrival.id] = arrival; });
   return result;
 }
 

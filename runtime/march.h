@@ -21,6 +21,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
@@ -87,6 +88,10 @@ class Marcher {
 };
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching = {});
+
+// Follows all of `rays`, whose ids are their places; `settle` is given each arrival.
+MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
+                     const std::function<void(const Arrival&)>& settle);
 
 // All of `rays`, in order: arrivals[i].id == i.
 struct MarchResult {

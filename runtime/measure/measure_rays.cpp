@@ -23,20 +23,6 @@ bool in_double(const Marching& marching) {
   return marching.precision == Precision::Double || marching.method == Method::Certified;
 }
 
-// Follows the rays and forgets what became of them.
-void follow(const Field& field, std::span<const Ray> rays, const Marching& marching) {
-  const std::unique_ptr<Marcher> marcher = make_marcher(field, marching);
-  std::vector<Arrival> arrivals;
-  for (std::size_t next = 0; next < rays.size() || !marcher->empty();) {
-    while (next < rays.size() && marcher->room() > 0) {
-      marcher->add(static_cast<std::uint32_t>(next), rays[next]);
-      ++next;
-    }
-    marcher->advance();
-    marcher->take_arrivals(arrivals);
-  }
-}
-
 double share(const std::vector<double>& sorted, double quantile) {
   if (sorted.empty()) return std::nan("");
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(quantile * static_cast<double>(sorted.size())))];
@@ -157,7 +143,7 @@ void time_rows(const Field& field, const RaySet& set, std::span<const Marching> 
     std::span<const Ray> rays = set.rays;
     if (in_double(marching)) rays = rays.first(std::min(rays.size(), kTimedInDouble));
     counts.push_back(static_cast<double>(std::max<std::size_t>(1, rays.size())));
-    variants.push_back([&field, &marching, rays] { follow(field, rays, marching); });
+    variants.push_back([&field, &marching, rays] { follow(field, rays, marching, [](const Arrival&) {}); });
   }
   const std::vector<std::vector<double>> seconds = time_interleaved(variants, rounds);
   for (std::size_t i = 0; i < rows.size(); ++i) {
