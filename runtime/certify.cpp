@@ -36,17 +36,22 @@ class Search {
   }
 
   Certified run(const Stretch& stretch) {
-    double ga = value(stretch.begin);
+    Stretch left = stretch;
+    double ga = value(left.begin);
     if (side_ == 0) {
       side_ = ga < 0 ? -1 : 1;
       ga = std::abs(ga);
     }
+    for (double back = left.hint - left.begin; ga < 0 && back > 0 && left.begin > 0; back *= 2) {
+      left.begin = std::max(0.0, left.begin - back);
+      ga = value(left.begin);
+    }
     if (!std::isfinite(ga)) {
       end(Arrival::Status::Invalid);
     } else if (ga < 0) {
-      hit(stretch.begin, stretch.begin);
+      hit(left.begin, left.begin);
     } else {
-      search(stretch, ga);
+      search(left, ga);
     }
     result_.side = side_ < 0 ? -1 : 1;
     return result_;

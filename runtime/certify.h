@@ -26,11 +26,10 @@ struct Certified {
   std::uint32_t evaluations = 0;
 };
 
-// Where to search: [begin, end] of a ray, `end` finite. `hint`: a place where a root is likely to be a little before;
-// begin when none is known.
+// Where to search: [begin, end] of a ray, `end` finite.
 struct Stretch {
   double begin, end;
-  double hint;
+  double hint;  // of a root that is guessed to lie in [begin, hint], which may have to grow towards 0; else 0
 };
 
 // The first root of g(t) = side * f(origin + t direction), where g(begin) is taken to be positive; a hit at `begin`

@@ -37,8 +37,6 @@ constexpr double kFirstPenalty = 2;
 // Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
 
-constexpr bool limits_steps(Method method) { return info(method).uses_epsilon; }
-
 }  // namespace
 
 template <class S>
@@ -63,7 +61,7 @@ void Stream<S>::begin(const Course& course, int side, float slope) {
   put(kDx, course.direction.x), put(kDy, course.direction.y), put(kDz, course.direction.z);
   lanes_->row[kTMax][i] = round_down<S>(course.length);
   put(kSide, side);
-  const bool seeded = !limits_steps(rules_.method);  // that is not what others do
+  const bool seeded = !info(rules_.method).uses_epsilon;  // that is not what others do
   put(kM, seeded ? std::clamp(static_cast<double>(slope), -1.0, 0.9) : -1);
   put(kPenalty, seeded ? kFirstPenalty : 1);
 }
@@ -114,7 +112,11 @@ void Stream<S>::finish(std::size_t i) {
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
   Arrival arrival{course.id, Arrival::Status::Invalid, static_cast<std::int8_t>(side), evaluations, 0, 0, 0};
+  --live_;
+  holes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
+    case LaneVerdict::Certify:
+      return certify_from(course, side, what_is_left(i), evaluations);
     case LaneVerdict::Hit:
       arrival.status = Arrival::Status::Hit;
       arrival.t = course.entry + static_cast<double>(number(kT));
@@ -129,34 +131,18 @@ void Stream<S>::finish(std::size_t i) {
     default:
       break;
   }
-  if (number(kVerdict) == static_cast<S>(LaneVerdict::Certify)) {
-    certify_from(course, side, what_is_left(i), evaluations);
-  } else {
-    arrive(arrival);
-  }
-  --live_;
-  holes_.push_back(i);
+  arrive(arrival);
 }
 
-// What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first.
+// What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first, grown by
+// what made it vague.
 template <class S>
-Stretch Stream<S>::what_is_left(std::size_t i) {
-  const Course& course = courses_[i];
-  const int side = lanes_->row[kSide][i] < 0 ? -1 : 1;
-  Stretch left{static_cast<double>(lanes_->row[kT][i]), course.length, 0};
-  if (lanes_->row[kPhase][i] != static_cast<S>(LanePhase::Refine)) return left;
-  // The bracket, grown by what made it vague, and on until double, too, is in front of the surface.
-  const double hi = static_cast<double>(lanes_->row[kTHi][i]);
-  double slack = std::max(kVagueness * hi, static_cast<double>(field_.band));
-  left.hint = hi + slack;
-  const auto in_front = [&](double t) {
-    return side * vm::evaluate_distance(*field_.distance, course.origin + t * course.direction, workspace_) > 0;
-  };
-  do {
-    left.begin = std::max(0.0, left.begin - slack);
-    slack *= 2;
-  } while (left.begin > 0 && !in_front(left.begin));
-  return left;
+Stretch Stream<S>::what_is_left(std::size_t i) const {
+  const auto number = [&](LaneRow row) { return static_cast<double>(lanes_->row[row][i]); };
+  const double t = number(kT), length = courses_[i].length;
+  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {t, length, 0};
+  const double slack = std::max(kVagueness * number(kTHi), static_cast<double>(field_.band));
+  return {std::max(0.0, t - slack), length, number(kTHi) + slack};
 }
 
 template class Stream<float>;

@@ -23,7 +23,7 @@ class Stream final : public Marcher {
   void close_holes();
   void evaluate();
   void finish(std::size_t lane);
-  Stretch what_is_left(std::size_t lane);
+  Stretch what_is_left(std::size_t lane) const;
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
