@@ -23,32 +23,38 @@ enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Retreat, Refine };
 
 // What is kept of a lane.
 enum LaneRow : std::uint8_t {
+  // Where the field is evaluated next.
   kX,
   kY,
-  kZ,  // where the field is evaluated next
+  kZ,
+  // The ray: where t = 0, its direction of unit length, and where it ends.
   kOx,
   kOy,
-  kOz,  // t = 0
+  kOz,
   kDx,
   kDy,
-  kDz,     // unit length
-  kTMax,   // the ray ends here
+  kDz,
+  kTMax,
   kSide,   // 0 until the first evaluation when it has to be found out
   kPhase,  // a LanePhase
+  // The last accepted sample: place, value, and safe radius: nothing lies within (t - r, t + r). While refining t is
+  // the bracket's free end, r the first bracket's width. Once hit t is the root.
   kT,
-  kG,      // the last accepted sample; while refining the bracket's free end
-  kTNext,  // of x, y, z
-  kR,      // safe radius at t: nothing lies within (t - r, t + r); while refining the first bracket's width
+  kG,
+  kR,
+  kTNext,  // of kX, kY, kZ
   kM,      // relaxation: expected slope of the safe radius along the ray
-  kFall,   // while refining: what g falls by over the first bracket
+  // While refining: the far end, the values the secant takes for both ends, and what g falls by over the first
+  // bracket.
   kTHi,
-  kGHi,    // while refining: the far end and its value
-  kGLo,    // ... and the value the secant uses at the free end
+  kGHi,
+  kGLo,
+  kFall,
   kWidth,  // of the bracket, once hit
   kEvaluations,
   kCrossing,  // 1: the step under way is meant to cross the surface
   kPatience,  // samples to accept before the next attempt to cross
-  kPenalty,   // patience after the next attempt that meets no surface
+  kPenalty,   // patience after the next attempt that meets no surface; of FixedStep: above 1 once a step was too long
   kVerdict,   // a LaneVerdict
   kLaneRows
 };

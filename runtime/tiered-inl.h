@@ -39,10 +39,10 @@ inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
 // would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
 // more evaluations than its budget.
 inline constexpr double kMostPenalty = 16, kBudget = 704;
-// A value this small a part of d_f holds no more digits of the root: half a unit in the last place at 1.
+// A value this small a part of d_f holds no more digits of the root: a fiftieth of a unit in the last place at 1.
 inline constexpr double kRootError = 0x1p-8;
 // Of d_f, what float is usually off by; and how uncertain a root may be, relative to t or to the field's band, before
-// double looks at it.
+// double looks at it. What is small beside 1 and seen from nearby needs it, where d_f is large for what is seen.
 inline constexpr double kTypicalError = 0.25, kTolerance = 0x1p-16, kBandShare = 0.125;
 
 template <class N, class S>
@@ -63,7 +63,8 @@ class Tiered {
     const Mask beginning = phase < code(LanePhase::Walk), refining = phase == code(LanePhase::Refine);
     const Mask retreating = phase == code(LanePhase::Retreat), walking = !(beginning | refining);
     // An exact 0 is a touch, as where a solid is cut from its like.
-    const Mask inside = g_<k(0), outside = g_ >= k(0), crossing = a_.get(kCrossing)> k(0);
+    const Mask inside = g_ < k(0), outside = g_ >= k(0);
+    const Mask crossing = a_.get(kCrossing) == k(1);
     const N gap = t_ - last_t_ - last_r_ - r_;  // what neither ball covers
 
     const Mask accepted = outside & (beginning | (walking & (retreating | (gap <= k(0)))));

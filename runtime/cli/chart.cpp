@@ -69,7 +69,9 @@ class Charts {
     page_.provenance = provenance_;
   }
 
+  // Nothing more is measured once something could not be written.
   void add(const compiler::CompiledScene& scene, const std::string& name) {
+    if (problem_) return;
     const runtime::Field field = runtime::make_field(scene, scene.settings.far);
     runtime::PageScene section{name, {}, {}};
     add_rays(scene, field, section);
