@@ -106,11 +106,11 @@ inline constexpr std::size_t kSlot<Batch> = kLanes >= 8 ? 8 : 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
 
-HWY_INLINE Batch immediate(const Program& program, std::size_t word, Batch*) {
+HWY_INLINE Batch immediate(const Code& program, std::size_t word, Batch*) {
   return Batch::broadcast(std::bit_cast<float>(program.words[word]));
 }
 template <class C>
-HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
+HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
   return C::broadcast(program.wide[word]);
 }
 
@@ -119,7 +119,7 @@ HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
 template <class C, int kSize>
 class Outline {
  public:
-  Outline(const Program& program, std::size_t word, std::size_t count) : Outline(program.wide.data() + word, count) {}
+  Outline(const Code& program, std::size_t word, std::size_t count) : Outline(program.wide + word, count) {}
   Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
 
   std::size_t count() const { return count_; }
@@ -143,14 +143,13 @@ class Machine {
   static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
 
   // `used` is how many of a slot's numbers matter.
-  Machine(const VerifiedProgram& verified, Workspace& workspace, std::size_t used)
-      : program_(verified.program()), used_(used) {
-    const std::size_t point_bytes = verified.max_points() * kBlock * sizeof(Vec3<P>);
-    const std::size_t value_slots = verified.max_values() + program_.locals + kSpares;
+  Machine(const Code& program, Workspace& workspace, std::size_t used) : program_(program), used_(used) {
+    const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Vec3<P>);
+    const std::size_t value_slots = program_.max_values + program_.locals + kSpares;
     auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_slots * kBlock * sizeof(T)));
     points_ = reinterpret_cast<Vec3<P>*>(memory);
     values_ = reinterpret_cast<T*>(memory + point_bytes);
-    locals_ = values_ + verified.max_values() * kBlock;
+    locals_ = values_ + program_.max_values * kBlock;
     spares_ = locals_ + program_.locals * kBlock;
   }
 
@@ -161,7 +160,7 @@ class Machine {
   void interpret() {
     point_ = points_;
     top_ = values_ - kBlock;
-    const std::size_t size = program_.words.size();
+    const std::size_t size = program_.size;
     for (at_ = 0; at_ != size;) {
       const std::uint32_t word = program_.words[at_];
       ++at_;
@@ -223,7 +222,7 @@ class Machine {
     for (int i = 0; i < Count; ++i) {
       result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
     }
-    result.words = program_.words.data() + at_;
+    result.words = program_.words + at_;
     at_ += Count;
     return result;
   }
@@ -330,7 +329,7 @@ class Machine {
     }
   }
 
-  const Program& program_;
+  const Code program_;
   std::size_t used_;
   Vec3<P>* points_;
   T* values_;
