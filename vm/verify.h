@@ -36,6 +36,7 @@ class VerifiedProgram {
   std::uint32_t max_values() const { return max_values_; }
   std::uint32_t max_points() const { return max_points_; }
   std::uint32_t instructions() const { return instructions_; }
+  std::uint32_t choices() const { return choices_; }  // instructions that can hand on one operand (vm/opcode.h)
   std::uint32_t cost() const { return cost_; }  // multiply-adds per point, by the table's estimate
 
  private:
@@ -43,7 +44,7 @@ class VerifiedProgram {
   VerifiedProgram() = default;
 
   Program program_;
-  std::uint32_t max_values_ = 0, max_points_ = 0, instructions_ = 0, cost_ = 0;
+  std::uint32_t max_values_ = 0, max_points_ = 0, instructions_ = 0, choices_ = 0, cost_ = 0;
 };
 
 [[nodiscard]] std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits& limits = {});
