@@ -83,13 +83,12 @@ HWY_INLINE Stretch stretch_of(const Batch* k) {
   return {std::sqrt(most), std::sqrt(trace)};
 }
 
-// A shape's value where p can be anywhere in the ball, by its value at the centre. Rounding errs, at either place, by
-// what vm/opcodes.def promises, where `size` is that of features far from the origin; both together by 20 units of
-// 2^-24, of 32 here.
-HWY_INLINE Enclosure around(const Ball& ball, Batch value, Batch size, BatchMask& known) {
-  const Batch scale = max(Batch::broadcast(1.0f), max(taxicab(ball.centre), abs(value)));
-  const Batch reach = scale + size + ball.radius;
-  const Batch slack = ball.radius + reach * Batch::broadcast(0x1p-19f);
+// A shape's value where its point can be anywhere in the ball about `centre`, by its value there. Rounding errs, at
+// either place, by what vm/opcodes.def promises, where `size` is that of features far from the origin, and by 2^-24
+// of the point where the shape was moved; together by 22 units of 2^-24, of 32 here.
+HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value, Batch size, BatchMask& known) {
+  const Batch reach = max(Batch::broadcast(1.0f), max(taxicab(centre), abs(value))) + (size + radius);
+  const Batch slack = radius + reach * Batch::broadcast(0x1p-19f);
   known = reach < Batch::broadcast(kBallReach);
   return {value - slack, value + slack};
 }
@@ -132,28 +131,27 @@ struct PointTraits<Enclosure> {
   }
 
   template <class Op, int Count>
-  static HWY_INLINE Enclosure shape(const Place& p, const Batch* k, const std::uint32_t* w) {
-    if constexpr (is_ranged(Op::kOpcode)) return formula<Op>(p, k, w);
-    Batch size = Batch::broadcast(0.0f);
-    if constexpr (has_far_features(Op::kOpcode)) {
-      constexpr int kSizes = Op::kOpcode == Opcode::Star ? Count - 1 : Count;  // a star's last is none
-      for (int i = 0; i < kSizes; ++i) size = max(size, abs(k[i]));
+  static HWY_INLINE Enclosure shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
+    if constexpr (is_ranged(Op::kOpcode)) {
+      return Op::apply(TranslateOp::apply<Enclosure>(p, by), k, w);
+    } else {
+      Batch size = Batch::broadcast(0.0f);
+      if constexpr (has_far_features(Op::kOpcode)) {
+        constexpr int kSizes = Op::kOpcode == Opcode::Star ? Count - 1 : Count;  // a star's last is none
+        for (int i = 0; i < kSizes; ++i) size = max(size, abs(k[i]));
+      }
+      const Vec3<Batch> centre = TranslateOp::apply(p.ball.centre, by);
+      BatchMask known;
+      const Enclosure value = around(centre, p.ball.radius, Op::apply(centre, k, w), size, known);
+      if (!any(!known)) return value;
+      return select(known, value, formula<Op>(p, by, k, w));
     }
-    BatchMask known;
-    const Enclosure value = around(p.ball, Op::apply(p.ball.centre, k, w), size, known);
-    if (!any(!known)) return value;
-    return select(known, value, formula_apart<Op>(p, k, w));
   }
-
-  template <class Op>
-  static HWY_INLINE Enclosure formula(const Vec3<Enclosure>& box, const Batch* k, const std::uint32_t* w) {
-    return Op::apply(box, k, w);
-  }
-
   // For the boxes without an end, which are few.
   template <class Op>
-  static HWY_NOINLINE Enclosure formula_apart(const Vec3<Enclosure>& box, const Batch* k, const std::uint32_t* w) {
-    return Op::apply(box, k, w);
+  static HWY_NOINLINE Enclosure formula(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
+                                        const std::uint32_t* w) {
+    return Op::apply(TranslateOp::apply(box, by), k, w);
   }
 
   template <class Op, class Groups>
@@ -163,7 +161,8 @@ struct PointTraits<Enclosure> {
       size = std::max(size, std::fabs(groups(i, 0)) + std::fabs(groups(i, 1)));
     }
     BatchMask known;
-    const Enclosure value = around(p.ball, Op::apply(p.ball.centre, groups), Batch::broadcast(size), known);
+    const Batch middle = Op::apply(p.ball.centre, groups);
+    const Enclosure value = around(p.ball.centre, p.ball.radius, middle, Batch::broadcast(size), known);
     return whole_where(!known, value);
   }
 
@@ -186,6 +185,8 @@ struct PointTraits<Enclosure> {
 // Eight registers a block measured best for Batch; here a slot is what enclose() takes at once.
 template <>
 inline constexpr std::size_t kSlot<Enclosure> = kEnclosedBoxes / kLanes;
+template <>
+inline constexpr bool kAlwaysFull<Enclosure> = true;
 
 template <>
 struct ChoiceObserver<Enclosure> {

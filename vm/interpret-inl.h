@@ -100,7 +100,8 @@ struct ValueTraits<Tagged<T>> {
   }
 };
 
-// What the point stack holds for numbers of type P, and how a point's or a shape's meaning is applied to that.
+// What the point stack holds for numbers of type P, and how a point's or a shape's meaning is applied to that. Of a
+// shape that is not moved, `by` is 0.
 template <class P>
 struct PointTraits {
   using Place = Vec3<P>;
@@ -109,8 +110,9 @@ struct PointTraits {
     return Op::apply(p, k);
   }
   template <class Op, int Count>
-  static HWY_INLINE P shape(const Place& p, const Constant<P>* k, const std::uint32_t* w) {
-    return Op::apply(p, k, w);
+  static HWY_INLINE P shape(const Place& p, bool moved, const Constant<P>* by, const Constant<P>* k,
+                            const std::uint32_t* w) {
+    return Op::apply(moved ? TranslateOp::apply(p, by) : p, k, w);
   }
   template <class Op, class Groups>
   static HWY_INLINE P outline(const Place& p, const Groups& groups) {
@@ -133,6 +135,10 @@ template <>
 inline constexpr std::size_t kSlot<Batch> = kLanes >= 8 ? 8 : 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
+
+// Whether all numbers of a slot always matter.
+template <class T>
+inline constexpr bool kAlwaysFull = kSlot<T> == 1;
 
 HWY_INLINE Batch immediate(const Program& program, std::size_t word, Batch*) {
   return Batch::broadcast(std::bit_cast<float>(program.words[word]));
@@ -275,8 +281,8 @@ class Machine {
     const Place* from = point_;
     T* to = joined ? top_ : top_ += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
-      const Place p = moved ? Places::template map<TranslateOp>(from[i], by.k) : from[i];
-      const T value = Traits::lift(Places::template shape<Op, Count>(p, immediates.k, immediates.words));
+      const T value =
+          Traits::lift(Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words));
       if (joined) observer_.see(i, to[i], value);
       to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
     });
@@ -359,7 +365,7 @@ class Machine {
   // Calls body(i) for the numbers of a slot that matter. A full block, the common case, has a constant length.
   template <class Body>
   HWY_INLINE void for_used(const Body& body) {
-    if (const std::size_t used = used_; used == kBlock) {
+    if (const std::size_t used = used_; kAlwaysFull<T> || used == kBlock) {
       for (std::size_t i = 0; i < kBlock; ++i) body(i);
     } else {
       for (std::size_t i = 0; i < used; ++i) body(i);
