@@ -9,7 +9,7 @@
 // Boxes may be unbounded and flat, not empty. Same bits on every instruction set. Source: Moore, "Interval Analysis",
 // 1966.
 //
-// Tested by: tests/vm/enclosure_test.cpp
+// Tested by: tests/vm/enclosure_test.cpp, tests/vm/choices_test.cpp, tests/vm/nonexpansive_test.cpp
 #pragma once
 
 #include <cstddef>

@@ -93,10 +93,36 @@ HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value
   return {value - slack, value + slack};
 }
 
-// Shapes whose range over a box their formula gives as well as a ball does, or better.
-constexpr bool is_ranged(Opcode opcode) {
-  return opcode == Opcode::X || opcode == Opcode::Y || opcode == Opcode::Z || opcode == Opcode::Constant ||
-         opcode == Opcode::Plane || opcode == Opcode::Slab || !is_nonexpansive(opcode);
+// How a shape's range over a box and a ball is found. Formula: over the box alone, of what a ball says nothing of or
+// less. Both: the formula is exact over a box, which holds more than the ball once it has been turned. Against the
+// ball alone that is twice the time, and of 1000 spheres and boxes a fifth to a third fewer are left in a cell.
+enum class Method { Formula, Ball, Both };
+constexpr Method method_of(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::X:
+    case Opcode::Y:
+    case Opcode::Z:
+    case Opcode::Constant:
+    case Opcode::Plane:
+    case Opcode::Slab:
+      return Method::Formula;
+    case Opcode::Sphere:
+    case Opcode::Box:
+    case Opcode::RoundBox:
+    case Opcode::BoxBetween:
+    case Opcode::Core:
+    case Opcode::Torus:
+    case Opcode::Cylinder:
+    case Opcode::RoundedCylinder:
+    case Opcode::InfiniteCylinder:
+    case Opcode::Capsule:
+    case Opcode::Circle:
+    case Opcode::Rectangle:
+    case Opcode::RoundedRectangle:
+      return Method::Both;
+    default:
+      return is_nonexpansive(opcode) ? Method::Ball : Method::Formula;
+  }
 }
 // Shapes whose error grows with features far from the origin while the surface passes it, those to which the node
 // table gives a magnitude (compiler/knowledge.h).
@@ -132,8 +158,9 @@ struct PointTraits<Enclosure> {
 
   template <class Op, int Count>
   static HWY_INLINE Enclosure shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
-    if constexpr (is_ranged(Op::kOpcode)) {
-      return Op::apply(TranslateOp::apply<Enclosure>(p, by), k, w);
+    constexpr Method kMethod = method_of(Op::kOpcode);
+    if constexpr (kMethod == Method::Formula) {
+      return formula<Op>(p, by, k, w);
     } else {
       Batch size = Batch::broadcast(0.0f);
       if constexpr (has_far_features(Op::kOpcode)) {
@@ -143,15 +170,24 @@ struct PointTraits<Enclosure> {
       const Vec3<Batch> centre = TranslateOp::apply(p.ball.centre, by);
       BatchMask known;
       const Enclosure value = around(centre, p.ball.radius, Op::apply(centre, k, w), size, known);
+      if constexpr (kMethod == Method::Both) {
+        const Enclosure range = formula<Op>(p, by, k, w);
+        return select(known, Enclosure{max(value.lo, range.lo), min(value.hi, range.hi)}, range);
+      }
       if (!any(!known)) return value;
-      return select(known, value, formula<Op>(p, by, k, w));
+      return select(known, value, formula_apart<Op>(p, by, k, w));
     }
+  }
+  template <class Op>
+  static HWY_INLINE Enclosure formula(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
+                                      const std::uint32_t* w) {
+    return Op::apply(TranslateOp::apply(box, by), k, w);
   }
   // For the boxes without an end, which are few.
   template <class Op>
-  static HWY_NOINLINE Enclosure formula(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
-                                        const std::uint32_t* w) {
-    return Op::apply(TranslateOp::apply(box, by), k, w);
+  static HWY_NOINLINE Enclosure formula_apart(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
+                                              const std::uint32_t* w) {
+    return formula<Op>(box, by, k, w);
   }
 
   template <class Op, class Groups>
