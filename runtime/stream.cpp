@@ -69,15 +69,15 @@ void Stream<S>::begin(const Course& course, int side, float slope) {
 template <>
 void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
-  vm::evaluate_distance(*field_.distance, {row[kX], row[kY], row[kZ]}, static_cast<std::size_t>(live_),
-                        distance_.data(), workspace_);
+  field_.evaluate({row[kX], row[kY], row[kZ]}, static_cast<std::size_t>(live_), distance_.data(), scratch_,
+                  workspace_);
 }
 
 template <>
 void Stream<double>::evaluate() {
   const auto& row = lanes_->row;
   for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
-    distance_[i] = vm::evaluate_distance(*field_.distance, {row[kX][i], row[kY][i], row[kZ][i]}, workspace_);
+    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, workspace_);
   }
 }
 

@@ -31,6 +31,7 @@ class Stream final : public Marcher {
   alignas(64) std::array<S, kCapacity> distance_;  // [lane]
   std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
   std::size_t lanes_used_ = 0;      // with the holes
+  RegionScratch scratch_;
 };
 
 }  // namespace fathom::runtime
