@@ -4,7 +4,7 @@
 //
 // Values are means over the pixel's samples: evaluations of the field by all rays of a path, and the instructions the
 // machine ran in them. Both are the same for any number of threads and tile size. Tested by:
-// tests/runtime/cost_map_test.cpp
+// tests/runtime/cli_profile_test.cpp
 #pragma once
 
 #include <optional>
