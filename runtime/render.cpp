@@ -105,7 +105,9 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings)
 }
 
 Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
-  Tiles tiles(world.settings.width, world.settings.height, world.settings.tile);
+  const Settings& settings = world.settings;
+  Tiles tiles(settings.width, settings.height,
+              tile_side(settings.width, settings.height, settings.tile, settings.threads));
   ProgressReport report(options, world.settings);
   std::vector<std::unique_ptr<Worker>> workers;
   for (int i = 0; i < world.settings.threads; ++i) {

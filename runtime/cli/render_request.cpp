@@ -50,7 +50,7 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    whole(options.bounces, 0, compiler::kMaxBounces));
   arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
                    into(read_angle, request.fov));
-  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels (16); never changes the picture",
+  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels, at most (16); never changes the picture",
                    whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
