@@ -109,17 +109,20 @@ Stats render_tiles(const World& world, Film& film, const RenderOptions& options)
   Tiles tiles(settings.width, settings.height,
               tile_side(settings.width, settings.height, settings.tile, settings.threads));
   ProgressReport report(options, world.settings);
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int i = 0; i < world.settings.threads; ++i) {
-    workers.push_back(std::make_unique<Worker>(world, tiles, film, report, options.cancel));
-  }
+  std::vector<Stats> stats(static_cast<std::size_t>(settings.threads));
+  // Each thread makes its worker itself, so that what it writes to lies in memory of its own.
+  const auto work = [&](Stats& counted) {
+    const auto worker = std::make_unique<Worker>(world, tiles, film, report, options.cancel);
+    worker->run();
+    counted = worker->stats();
+  };
   std::vector<std::thread> threads;
-  for (std::size_t i = 1; i < workers.size(); ++i) threads.emplace_back([&, i] { workers[i]->run(); });
-  workers[0]->run();
+  for (std::size_t i = 1; i < stats.size(); ++i) threads.emplace_back([&, i] { work(stats[i]); });
+  work(stats[0]);
   for (std::thread& thread : threads) thread.join();
-  Stats stats;
-  for (const auto& worker : workers) stats.merge(worker->stats());
-  return stats;
+  Stats sum;
+  for (const Stats& counted : stats) sum.merge(counted);
+  return sum;
 }
 
 }  // namespace
