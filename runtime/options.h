@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/film.h"
 #include "runtime/method.h"
 
 namespace fathom::runtime {
@@ -27,6 +28,8 @@ struct RenderOptions {
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
   Marching marching;
+  FilmLayers layers;
+  bool profile = false;  // measure the stages' times (Stats::stages)
 
   // Called now and then, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;
@@ -43,6 +46,8 @@ struct Settings {
   std::uint64_t seed;
   std::optional<double> far;
   Marching marching;
+  FilmLayers layers;
+  bool profile;
 };
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);
