@@ -131,6 +131,7 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.bounces = options.bounces.value_or(scene.settings.bounces);
   settings.tile = options.tile.value_or(scene.settings.tile);
   settings.seed = options.seed.value_or(scene.settings.seed);
+  settings.cut_after = options.cut_after;
   settings.marching = options.marching;
   settings.far = options.far ? options.far : scene.settings.far;
   settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
