@@ -46,6 +46,7 @@ void advance_f32(Lanes<float>& lanes, std::size_t count, const float* f, const L
 void advance_f64(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules) {
   advance<Real>(lanes, count, f, rules);
 }
+std::size_t batch_lanes() { return sizeof(Batch) / sizeof(float); }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -54,6 +55,9 @@ HWY_AFTER_NAMESPACE();
 namespace fathom::runtime {
 
 HWY_EXPORT(advance_f32);
+HWY_EXPORT(batch_lanes);
+
+std::size_t register_lanes() { return HWY_DYNAMIC_DISPATCH(batch_lanes)(); }
 
 void advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules) {
   HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, f, rules);

@@ -80,6 +80,9 @@ struct LaneRules {
   S epsilon, steps, relaxation;  // of the methods that have them
 };
 
+// Floats in a register of the instruction set in use.
+std::size_t register_lanes();
+
 // Moves `count` lanes on, given f at their x, y, z, and writes their verdicts. Reads f, and may write to lanes, past
 // `count` up to a whole register.
 void advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules);

@@ -68,6 +68,8 @@ void Marcher::arrive(Arrival arrival) {
       ++counters_.invalid;
       break;
   }
+  arrival.instructions = std::uint64_t{arrival.evaluations} * field_.distance->instructions();
+  counters_.instructions += arrival.instructions;
   arrivals_.push_back(arrival);
 }
 
@@ -88,7 +90,9 @@ void Marcher::add(std::uint32_t id, const Ray& ray) {
 }
 
 void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations) {
+  const Stage before = clock_.enter(Stage::Resolve);
   const Certified found = certify(field_, course.origin, course.direction, side, stretch, workspace_);
+  clock_.enter(before);
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;

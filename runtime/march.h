@@ -31,6 +31,7 @@
 #include "runtime/field.h"
 #include "runtime/method.h"
 #include "runtime/ray.h"
+#include "runtime/stage_clock.h"
 #include "runtime/stats.h"
 #include "vm/evaluate.h"
 
@@ -60,6 +61,7 @@ class Marcher {
   }
   const MarchCounters& counters() const { return counters_; }
   vm::Workspace& workspace() { return workspace_; }
+  StageClock& clock() { return clock_; }  // tells Resolve from what its owner does
 
  protected:
   // A ray within the scene's bound.
@@ -82,6 +84,7 @@ class Marcher {
   int live_ = 0;
   MarchCounters counters_;
   vm::Workspace workspace_;
+  StageClock clock_;
 
  private:
   std::vector<Arrival> arrivals_;

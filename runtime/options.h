@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/film.h"
 #include "runtime/method.h"
 
 namespace fathom::runtime {
@@ -29,6 +30,8 @@ struct RenderOptions {
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
   Marching marching;
+  FilmLayers layers;
+  bool profile = false;  // measure the stages' times (Stats::stages)
 
   // Called now and then, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;
@@ -46,6 +49,8 @@ struct Settings {
   std::optional<double> far;
   std::optional<int> cut_after;
   Marching marching;
+  FilmLayers layers;
+  bool profile;
 };
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);

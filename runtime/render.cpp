@@ -133,6 +133,8 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.seed = options.seed.value_or(scene.settings.seed);
   settings.cut_after = options.cut_after;
   settings.marching = options.marching;
+  settings.layers = options.layers;
+  settings.profile = options.profile;
   settings.far = options.far ? options.far : scene.settings.far;
   settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
   return settings;
@@ -143,7 +145,7 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
   const Settings settings = resolve(scene, options);
   CHECK(settings.width > 0 && settings.height > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
   const World world = make_world(scene, settings);
-  RenderResult result{Film(settings.width, settings.height), settings, {}};
+  RenderResult result{Film(settings.width, settings.height, settings.layers), settings, {}};
   result.stats = render_tiles(world, result.film, options);
   result.stats.seconds = seconds_since(start);
   result.stats.threads = settings.threads;

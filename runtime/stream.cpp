@@ -41,7 +41,10 @@ constexpr double kVagueness = 0x1p-14;
 
 template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching)
-    : Marcher(field), rules_(make_rules<S>(field, marching)), lanes_(new Lanes<S>()) {}
+    : Marcher(field),
+      rules_(make_rules<S>(field, marching)),
+      lanes_(new Lanes<S>()),
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
 void Stream<S>::begin(const Course& course, int side, float slope) {
@@ -98,6 +101,7 @@ void Stream<S>::advance() {
   evaluate();
   const std::size_t count = static_cast<std::size_t>(live_);
   counters_.evaluations += count;
+  counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
   runtime::advance(*lanes_, count, distance_.data(), rules_);
   const auto& verdict = lanes_->row[kVerdict];
   for (std::size_t i = count; i-- > 0;) {

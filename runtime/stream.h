@@ -27,6 +27,7 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
+  const std::size_t register_lanes_;               // points the field is evaluated for at once, at least
   std::array<Course, kCapacity> courses_;          // [lane]
   alignas(64) std::array<S, kCapacity> distance_;  // [lane]
   std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them

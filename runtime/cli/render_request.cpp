@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/cli/cost_map.h"
 #include "runtime/cli/output_file.h"
 
 namespace fathom::cli {
@@ -13,7 +14,8 @@ namespace {
 constexpr const char* kExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
-    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...";
+    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
+    "fathom render scene.json -o out.png --profile --cost-map cost.png";
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
@@ -28,8 +30,15 @@ void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.flag("-a,--albedo", "Write FILE-albedo beside each picture: the surfaces' own colours", request.albedo);
   arguments.flag("-d,--depth", "Write FILE-depth beside each picture: near is white, far is dark", request.depth);
   arguments.flag("-n,--normal", "Write FILE-normal beside each picture: the surfaces' directions", request.normal);
+  arguments.option("--cost-map", "FILE",
+                   "Write FILE-evaluations and FILE-instructions: what each pixel cost, in colours (png, jpg, jpeg, "
+                   "bmp) or numbers (pfm)",
+                   into(read_map_name, request.cost_map));
   arguments.option("--stats-json", "FILE", "Write the closing numbers as JSON; - is standard output",
                    any_text(request.stats_json));
+  arguments.flag("--profile",
+                 "Add to the closing numbers where the time went: march, resolve, normals, shading, film",
+                 request.options.profile);
 }
 
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
@@ -128,6 +137,11 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
   }
   if (request.quiet && request.verbosity > 0) return fail(streams, kUsage, "--quiet does not go with --verbose");
+  if (request.quiet && request.options.profile && !request.stats_json) {
+    return fail(streams, kUsage, "--quiet leaves out the numbers that --profile adds to",
+                {"leave out --quiet, or ask for --stats-json FILE"});
+  }
+  request.options.layers = {request.albedo || request.depth || request.normal, request.cost_map.has_value()};
   if (request.outputs.empty()) {
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;

@@ -27,7 +27,7 @@ struct RenderRequest {
   std::optional<int> steps;
   int precision = -1;  // a runtime::Precision; -1: not given
   bool reference = false;
-  std::optional<std::string> stats_json;
+  std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
   bool quiet = false, no_denoise = false;
 };
