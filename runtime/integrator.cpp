@@ -149,6 +149,7 @@ void Integrator::record_first_hit(Path& path, const Arrival& arrival, const Surf
 
 // Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
 bool Integrator::survives_roulette(Path& path) {
+  if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
   if (path.bounces < world_.settings.bounces) return true;
   const float q = std::min(kMostSurvival, max_component(path.throughput));
   if (path.sampler.next() >= q) return false;

@@ -27,6 +27,8 @@ struct RenderOptions {
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
+  // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
+  std::optional<int> cut_after;
   Marching marching;
   FilmLayers layers;
   bool profile = false;  // measure the stages' times (Stats::stages)
@@ -45,6 +47,7 @@ struct Settings {
   int threads;
   std::uint64_t seed;
   std::optional<double> far;
+  std::optional<int> cut_after;
   Marching marching;
   FilmLayers layers;
   bool profile;

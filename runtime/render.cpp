@@ -136,6 +136,7 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.bounces = options.bounces.value_or(scene.settings.bounces);
   settings.tile = options.tile.value_or(scene.settings.tile);
   settings.seed = options.seed.value_or(scene.settings.seed);
+  settings.cut_after = options.cut_after;
   settings.marching = options.marching;
   settings.layers = options.layers;
   settings.profile = options.profile;
