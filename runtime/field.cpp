@@ -60,18 +60,21 @@ void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScr
   vm::evaluate_distance(*distance, points, count, out, workspace);
 }
 
-double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace) const {
-  return regions ? regions->evaluate(point, workspace) : vm::evaluate_distance(*distance, point, workspace);
+double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const {
+  if (regions) return regions->evaluate(point, workspace, instructions);
+  instructions += distance->instructions();
+  return vm::evaluate_distance(*distance, point, workspace);
 }
 
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                          vm::Workspace& workspace) const {
+                                          vm::Workspace& workspace, std::uint64_t& instructions) const {
   // Multiply-adds: of more than this, cutting the stretch until it is within a cell is cheaper.
   constexpr std::uint32_t kAffordable = 4000;
   if (regions) {
-    if (auto found = regions->along(origin, direction, begin, end, workspace)) return found;
+    if (auto found = regions->along(origin, direction, begin, end, workspace, instructions)) return found;
     if (distance->cost() > kAffordable) return std::nullopt;
   }
+  instructions += distance->instructions();
   return vm::evaluate_along(*distance, origin, direction, begin, end, workspace);
 }
 

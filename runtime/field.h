@@ -23,13 +23,14 @@ struct Field {
   float magnitude;                         // scene units (compiler/bounds.h)
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
 
-  // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near.
+  // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near. Regions
+  // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
-  double evaluate(glm::dvec3 point, vm::Workspace& workspace) const;
+  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
   // What the field does along a stretch of a line; nothing where that would take a large scene's whole program.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                     vm::Workspace& workspace) const;
+                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
 };
 
 // `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least

@@ -28,8 +28,8 @@ class QuadtreeWorker {
   QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
       : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {}
 
-  // The sixteen tiles of a level that start at `first`, as far as the picture goes.
-  void run(const vm::Part& part, Tile first, int level) {
+  // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
+  void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
     const int edge = kEdges[level];
     set_boxes(first, edge);
     vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
@@ -38,7 +38,7 @@ class QuadtreeWorker {
     specialiser.decide(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       const Tile tile = tile_of(first, edge, i);
-      if (tile.x >= slice_.width || tile.y >= slice_.height) continue;
+      if (tile.x >= slice_.width || tile.y >= slice_.height || (only < vm::kEnclosedBoxes && i != only)) continue;
       if (sign_ && (specialiser.lo(i) > 0 || specialiser.hi(i) < 0)) {
         fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
         continue;
@@ -119,13 +119,19 @@ bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceVal
   const int step = kEdges[0] * kSide;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   std::atomic<int> next{0};
+  // The largest tiles are handed out one by one; what is known of sixteen costs as much as of one.
+  constexpr int kTiles = kSide * kSide;
   const auto work = [&] {
     QuadtreeWorker worker(slice, wanted, field);
-    for (int i = next++; i < columns * rows; i = next++)
-      worker.run(part, {i % columns * step, i / columns * step}, 0);
+    for (int i = next++; i < columns * rows * kTiles; i = next++) {
+      const int block = i / kTiles;
+      worker.run(part, {block % columns * step, block / columns * step}, 0,
+                 threads > 1 ? static_cast<std::size_t>(i % kTiles) : vm::kEnclosedBoxes);
+      if (threads <= 1) next += kTiles - 1;
+    }
   };
   std::vector<std::thread> others;
-  for (int i = 1; i < std::min(threads, columns * rows); ++i) others.emplace_back(work);
+  for (int i = 1; i < std::min(threads, columns * rows * kTiles); ++i) others.emplace_back(work);
   work();
   for (std::thread& thread : others) thread.join();
   return true;

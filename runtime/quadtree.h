@@ -13,10 +13,7 @@
 
 namespace fathom::runtime {
 
-// What is wanted of the field: its values, or numbers of the same sign.
-enum class SliceValues { Exact, Sign };
-
-// [y][x], as evaluate_slice(); nothing when the program has too few choices to gain by it.
+// As evaluate_slice(), into `field`; false, and nothing done, when the program has too few choices to gain by it.
 bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
                           std::vector<float>& field);
 

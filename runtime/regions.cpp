@@ -87,11 +87,14 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
         __builtin_prefetch(bundles_.data() + node.payload());
         __builtin_prefetch(bundles_.data() + node.payload() + 16);
         s.jobs.push_back({node.payload(), i});
+        s.instructions[i] = vm::shapes_in(bundles_[node.payload()]);
         break;
       case Kind::Program:
         group(node.payload(), i, s);
+        s.instructions[i] = static_cast<std::uint32_t>(programs_[node.payload()].sources.size());
         break;
       default:
+        s.instructions[i] = 0;
         s.far.push_back(i);
         break;
     }
@@ -122,21 +125,19 @@ void Regions::part_of(const Node& node, vm::Part& part) const {
   vm::unpack_bundle(whole_, surfaces_, bundles_.data(), node.payload(), shapes, part);
 }
 
-double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace) const {
+double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace, std::uint64_t& instructions) const {
   const glm::vec3 f(p);
   const Found found = find(f.x, f.y, f.z);
   if (found.node.kind() == Kind::Far) return static_cast<double>(far_value(found, f.x, f.y, f.z));
-  if (found.node.kind() == Kind::Program) {
-    return std::min(vm::evaluate_distance(programs_[found.node.payload()], p, workspace),
-                    static_cast<double>(found.node.value));
-  }
-  vm::Part part;
-  part_of(found.node, part);
+  vm::Part unpacked;
+  if (found.node.kind() == Kind::Bundle) part_of(found.node, unpacked);
+  const vm::Part& part = found.node.kind() == Kind::Bundle ? unpacked : programs_[found.node.payload()];
+  instructions += part.sources.size();
   return std::min(vm::evaluate_distance(part, p, workspace), static_cast<double>(found.node.value));
 }
 
 std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                            vm::Workspace& workspace) const {
+                                            vm::Workspace& workspace, std::uint64_t& instructions) const {
   const glm::vec3 a(origin + begin * direction), b(origin + end * direction);
   const Found first = find(a.x, a.y, a.z), last = find(b.x, b.y, b.z);
   if (first.level < 0 || first.level != last.level) return std::nullopt;
@@ -148,6 +149,7 @@ std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direct
   if (first.node.kind() == Kind::Far) return vm::AlongLine{{-infinity, infinity}, {-infinity, infinity}};
   vm::Part part;
   part_of(first.node, part);
+  instructions += part.sources.size();
   vm::AlongLine line = vm::evaluate_along(part, origin, direction, begin, end, workspace);
   const double limit = static_cast<double>(first.node.value);
   line.value = {std::min(line.value.lo, limit), std::min(line.value.hi, limit)};

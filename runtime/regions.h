@@ -55,6 +55,7 @@ struct RegionScratch {
   std::vector<std::uint32_t> heads;          // [program] its first point, or kNone
   PerPoint<float> x, y, z, distance;         // a program's points, gathered
   std::vector<std::uint32_t> chosen;         // which they are
+  PerPoint<std::uint32_t> instructions;      // [point] evaluated for it
   RegionCounters counters;
 };
 
@@ -68,12 +69,12 @@ class Regions {
   // distance[i] <= f(points[i]), and equal to it where it is at most the leaf's limit.
   void evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
-  // The same of one point in double, with the program's unrounded constants.
-  double evaluate(glm::dvec3 point, vm::Workspace& workspace) const;
+  // The same of one point in double, with the program's unrounded constants; adds to `instructions`.
+  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
 
   // What min(f, limit) does along a stretch of a line that lies in one cell; nothing when it does not.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                     vm::Workspace& workspace) const;
+                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
 
   // The part of the program that holds at a point, near the surface: where its value is at most `limit`.
   struct Region {

@@ -100,8 +100,12 @@ class Worker {
 };
 
 World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
-  return {scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
-          to_materials(scene)};
+  World world{scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
+              to_materials(scene)};
+  if (settings.regions) {
+    add_regions(world.field, scene, {.threads = settings.threads, .memory = settings.region_memory});
+  }
+  return world;
 }
 
 Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
@@ -138,6 +142,8 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.seed = options.seed.value_or(scene.settings.seed);
   settings.cut_after = options.cut_after;
   settings.marching = options.marching;
+  settings.regions = options.regions;
+  settings.region_memory = options.region_memory;
   settings.layers = options.layers;
   settings.profile = options.profile;
   settings.far = options.far ? options.far : scene.settings.far;
@@ -152,6 +158,10 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
   const World world = make_world(scene, settings);
   RenderResult result{Film(settings.width, settings.height, settings.layers), settings, {}};
   result.stats = render_tiles(world, result.film, options);
+  if (world.field.regions) {
+    result.stats.region_bytes = world.field.regions->facts().bytes;
+    result.stats.region_seconds = world.field.regions->facts().seconds;
+  }
   result.stats.seconds = seconds_since(start);
   result.stats.threads = settings.threads;
   result.stats.cancelled = options.cancel && options.cancel->load();

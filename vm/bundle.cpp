@@ -35,7 +35,7 @@ HWY_INLINE void for_group(const Vec3<Batch>& p, const std::uint32_t* rows, std::
 // Calls use(end of the group, its count, first, size, distances) for all shapes of the bundle at `at`.
 template <class Use>
 HWY_INLINE void for_bundle(const std::uint32_t* at, const Vec3<Batch>& p, const Use& use) {
-  at += 1 + 2 * at[0];
+  at += 1 + 2 * offsets_in(at[0]);
   for (std::uint32_t groups = *at++; groups > 0; --groups) {
     const std::uint32_t word = at[0];
     const std::size_t count = at[1];
@@ -85,7 +85,8 @@ void distances(const std::uint32_t* pool, std::span<const BundleJob> jobs, Point
                });
     float least = hn::GetLane(hn::MinOfLanes(FloatLanes(), nearest.v));
     const std::uint32_t* offsets = pool + job.bundle;
-    for (std::uint32_t o = 0; o < offsets[0]; ++o) least = least - std::bit_cast<float>(offsets[1 + 2 * o]);
+    for (std::uint32_t o = 0; o < offsets_in(offsets[0]); ++o)
+      least = least - std::bit_cast<float>(offsets[1 + 2 * o]);
     distance[i] = least;
   }
 }
@@ -129,7 +130,7 @@ void nearest_in_bundle(const std::uint32_t* pool, std::uint32_t bundle, const fl
 
 void shapes_of_bundle(const std::uint32_t* pool, std::uint32_t bundle, std::vector<std::uint32_t>& shapes) {
   shapes.clear();
-  const std::uint32_t* at = pool + bundle + 1 + 2 * pool[bundle];
+  const std::uint32_t* at = pool + bundle + 1 + 2 * offsets_in(pool[bundle]);
   for (std::uint32_t groups = *at++; groups > 0; --groups) {
     const std::size_t count = at[1];
     at += at[2];
@@ -160,7 +161,8 @@ void unpack_bundle(const Code& whole, std::span<const std::uint32_t> surfaces, c
     if (surface != kNone) append(opcode_word(Opcode::Tag, surface), shape, 0);
     if (joins && !fused) append(opcode_word(Opcode::Min), shape, 0);
   }
-  for (std::uint32_t o = 0; o < pool[bundle]; ++o) append(opcode_word(Opcode::Offset), pool[bundle + 2 + 2 * o], 1);
+  for (std::uint32_t o = 0; o < offsets_in(pool[bundle]); ++o)
+    append(opcode_word(Opcode::Offset), pool[bundle + 2 + 2 * o], 1);
 }
 
 namespace {
@@ -206,9 +208,9 @@ bool shapes_of(const Part& part, std::vector<PackedShape>& shapes, std::vector<s
 bool pack_bundle(const Part& part, std::vector<std::uint32_t>& pool) {
   std::vector<PackedShape> shapes;
   std::vector<std::uint32_t> offsets;
-  if (!shapes_of(part, shapes, offsets)) return false;
+  if (!shapes_of(part, shapes, offsets) || offsets.size() / 2 > 0xff) return false;
   std::stable_sort(shapes.begin(), shapes.end(), [](const auto& a, const auto& b) { return a.word < b.word; });
-  pool.push_back(static_cast<std::uint32_t>(offsets.size() / 2));
+  pool.push_back(static_cast<std::uint32_t>(shapes.size() << 8 | offsets.size() / 2));
   pool.insert(pool.end(), offsets.begin(), offsets.end());
   const std::size_t groups = pool.size();
   pool.push_back(0);

@@ -25,10 +25,15 @@ namespace fathom::vm {
 inline constexpr std::size_t kBundlePadding = 16;
 
 // Appends the bundle of a program that is a union of shapes (moved or not, tagged or not), offset or not; false, and
-// nothing appended, when it is anything else. Layout: the number of offsets, and of each its radius and its place in
-// the whole program; the number of groups, and of each its opcode word (moved or not), how many shapes, how many
-// words, the immediates by rows, [immediate][shape], and a row of the shapes' places in the whole program.
+// nothing appended, when it is anything else. Layout: the number of shapes << 8 | that of offsets, of each offset its
+// radius and its place in the whole program; the number of groups, and of each its opcode word (moved or not), how
+// many shapes, how many words, the immediates by rows, [immediate][shape], and a row of the shapes' places in the
+// whole program.
 bool pack_bundle(const Part& part, std::vector<std::uint32_t>& pool);
+
+// From a bundle's first word.
+inline constexpr std::uint32_t shapes_in(std::uint32_t word) { return word >> 8; }
+inline constexpr std::uint32_t offsets_in(std::uint32_t word) { return word & 0xff; }
 
 struct BundleJob {
   std::uint32_t bundle, point;
