@@ -44,14 +44,17 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
 }
 
 void add_regions(Field& field, const compiler::CompiledScene& scene, const RegionOptions& options) {
-  // A ray may go far from the bounded parts of an unbounded scene, and should find cells there.
-  constexpr double kRoom = 8;
-  compiler::Box root = field.bound;
-  if (!root.finite()) {
-    const glm::dvec3 middle = (scene.contents.lo + scene.contents.hi) / 2.0;
-    root = {middle + kRoom * (scene.contents.lo - middle), middle + kRoom * (scene.contents.hi - middle)};
+  // A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a
+  // float tells apart would be of no use (kCellMargin in region_builder.cpp).
+  constexpr double kLeastRoom = 3, kMostRoom = 6;
+  const bool bounded = field.bound.finite();
+  RegionOptions chosen = options;
+  if (!bounded && !scene.contents.empty()) {
+    const glm::dvec3 extents = scene.contents.hi - scene.contents.lo;
+    const double wanted = std::log2(2 * field.far / std::max({extents.x, extents.y, extents.z}));
+    chosen.room = static_cast<int>(std::clamp(std::ceil(wanted), kLeastRoom, kMostRoom));
   }
-  field.regions = Regions::build(scene.surface, root, scene.lipschitz, options);
+  field.regions = Regions::build(scene.surface, bounded ? field.bound : scene.contents, scene.lipschitz, chosen);
 }
 
 void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
@@ -69,7 +72,7 @@ double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                           vm::Workspace& workspace, std::uint64_t& instructions) const {
   // Multiply-adds: of more than this, cutting the stretch until it is within a cell is cheaper.
-  constexpr std::uint32_t kAffordable = 4000;
+  constexpr std::uint32_t kAffordable = 20'000;
   if (regions) {
     if (auto found = regions->along(origin, direction, begin, end, workspace, instructions)) return found;
     if (distance->cost() > kAffordable) return std::nullopt;

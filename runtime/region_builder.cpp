@@ -279,6 +279,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
     bytes_ = 0;
     split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), whole_, 0}});
     if (bytes_ <= options_.memory) break;
+    if (longer_ > choices_) return nullptr;
   }
   close_outside();
   make_grid();
@@ -287,19 +288,19 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   return regions_;
 }
 
-// A cube round what there is.
+// A cube round the contents, with room about them; cells are as small as the contents alone warrant.
 bool RegionBuilder::choose_root(const compiler::Box& contents) {
   if (contents.empty() || !contents.finite()) return false;
   const glm::dvec3 middle = (contents.lo + contents.hi) / 2.0, extents = contents.hi - contents.lo;
   const double edge = std::max({extents.x, extents.y, extents.z});
   if (!(edge > 0)) return false;
-  regions_->tree_.size = static_cast<float>(edge * 1.001);
+  regions_->tree_.size = static_cast<float>(edge * 1.001 * (1 << options_.room));
   for (int axis = 0; axis < 3; ++axis) {
     regions_->tree_.lo[static_cast<std::size_t>(axis)] =
         static_cast<float>(middle[axis] - static_cast<double>(regions_->tree_.size) / 2);
   }
   const int levels = kExtraLevels + static_cast<int>(std::ceil(std::log2(std::cbrt(static_cast<double>(choices_)))));
-  regions_->tree_.levels = std::min(levels, kMostLevels);
+  regions_->tree_.levels = std::min(levels, kMostLevels) + options_.room;
   return true;
 }
 
@@ -348,9 +349,16 @@ std::uint32_t RegionBuilder::append(Piece& piece) {
   return first;
 }
 
-// What matters outside the root, beyond each of its faces: a ray there may step by half the root's edge at a time.
+// What matters outside the root, beyond each of its faces: a ray there may step by a tenth of the root's edge at a
+// time.
 void RegionBuilder::close_outside() {
   Regions& r = *regions_;
+  r.whole_length_ = static_cast<std::uint32_t>(whole_.sources.size());
+  if (options_.room == 0) {  // no ray goes there
+    const auto whole = static_cast<std::uint32_t>(r.programs_.size());
+    r.outside_.fill(make_node(Kind::Program, whole, std::numeric_limits<float>::infinity()));
+    return;
+  }
   BoxArrays boxes;
   const float infinity = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
@@ -363,7 +371,7 @@ void RegionBuilder::close_outside() {
   vm::Specialiser specialiser;
   vm::Workspace workspace;
   specialiser.look(whole_, boxes.view(), workspace);
-  const float limit = r.tree_.size / 2 * r.tree_.lipschitz;
+  const float limit = r.tree_.size / 10 * r.tree_.lipschitz;
   specialiser.decide(-infinity, limit);
   for (std::size_t i = 0; i < 6; ++i) {
     vm::Part part;

@@ -20,8 +20,9 @@ Regions::Found Regions::find(float x, float y, float z) const {
   const float most = static_cast<float>(1u << tree_.levels);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float at = (p[axis] - tree_.lo[axis]) * tree_.scale;
-    if (!(at >= 0)) return {outside_[2 * axis], -1, {}};
-    if (!(at < most)) return {outside_[2 * axis + 1], -1, {}};
+    const std::uint32_t below = static_cast<std::uint32_t>(2 * axis);
+    if (!(at >= 0)) return {outside_[below], -1, {below, 0, 0}};
+    if (!(at < most)) return {outside_[below + 1], -1, {below + 1, 0, 0}};
     cell[axis] = static_cast<std::uint32_t>(at);
   }
   int level = tree_.grid_level, shift = tree_.levels - tree_.grid_level;
@@ -73,7 +74,7 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
                        vm::Workspace& workspace) const {
   CHECK(count <= kMostPoints, "a batch of points is too large");
   s.jobs.clear(), s.programs.clear(), s.far.clear();
-  s.heads.resize(programs_.size(), vm::kNone);
+  s.heads.resize(programs_.size() + 1, vm::kNone);
   find_regions(tree_, points, count, s.refs.data(), s.limits.data(), s.bounds.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t ref = s.refs[i];
@@ -91,7 +92,7 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
         break;
       case Kind::Program:
         group(node.payload(), i, s);
-        s.instructions[i] = static_cast<std::uint32_t>(programs_[node.payload()].sources.size());
+        s.instructions[i] = length_of(node.payload());
         break;
       default:
         s.instructions[i] = 0;
@@ -106,7 +107,7 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
   for (const std::uint32_t program : s.programs) {
     while (const std::size_t size = gather(program, points, s)) {
       specialised += size;
-      vm::evaluate_distance(programs_[program], {s.x.data(), s.y.data(), s.z.data()}, size, s.distance.data(),
+      vm::evaluate_distance(code_of(program), {s.x.data(), s.y.data(), s.z.data()}, size, s.distance.data(),
                             workspace);
       for (std::size_t j = 0; j < size; ++j) {
         distance[s.chosen[j]] = std::min(s.distance[j], s.limits[s.chosen[j]]);
@@ -118,7 +119,8 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
 
 void Regions::part_of(const Node& node, vm::Part& part) const {
   part = {};
-  if (node.kind() == Kind::Program) part = programs_[node.payload()];
+  if (node.kind() == Kind::Program)
+    part = node.payload() < programs_.size() ? programs_[node.payload()] : vm::whole(whole_);
   if (node.kind() != Kind::Bundle) return;
   std::vector<std::uint32_t> shapes;
   vm::shapes_of_bundle(bundles_.data(), node.payload(), shapes);
@@ -129,22 +131,22 @@ double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace, std::uint64_t& 
   const glm::vec3 f(p);
   const Found found = find(f.x, f.y, f.z);
   if (found.node.kind() == Kind::Far) return static_cast<double>(far_value(found, f.x, f.y, f.z));
-  vm::Part unpacked;
-  if (found.node.kind() == Kind::Bundle) part_of(found.node, unpacked);
-  const vm::Part& part = found.node.kind() == Kind::Bundle ? unpacked : programs_[found.node.payload()];
+  const double limit = static_cast<double>(found.node.value);
+  if (found.node.kind() == Kind::Program) {
+    instructions += length_of(found.node.payload());
+    return std::min(vm::evaluate_distance(code_of(found.node.payload()), p, workspace), limit);
+  }
+  vm::Part part;
+  part_of(found.node, part);
   instructions += part.sources.size();
-  return std::min(vm::evaluate_distance(part, p, workspace), static_cast<double>(found.node.value));
+  return std::min(vm::evaluate_distance(part, p, workspace), limit);
 }
 
 std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                             vm::Workspace& workspace, std::uint64_t& instructions) const {
   const glm::vec3 a(origin + begin * direction), b(origin + end * direction);
   const Found first = find(a.x, a.y, a.z), last = find(b.x, b.y, b.z);
-  if (first.level < 0 || first.level != last.level) return std::nullopt;
-  const int shift = tree_.levels - first.level;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (first.cell[axis] >> shift != last.cell[axis] >> shift) return std::nullopt;
-  }
+  if (first.level != last.level || first.cell_at(tree_.levels) != last.cell_at(tree_.levels)) return std::nullopt;
   const double infinity = std::numeric_limits<double>::infinity();
   if (first.node.kind() == Kind::Far) return vm::AlongLine{{-infinity, infinity}, {-infinity, infinity}};
   vm::Part part;
@@ -223,7 +225,7 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];
   }
-  vm::evaluate_surface(programs_[same[0].first], {x.data(), y.data(), z.data()}, same.size(),
+  vm::evaluate_surface(code_of(same[0].first), {x.data(), y.data(), z.data()}, same.size(),
                        {d.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;

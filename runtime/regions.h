@@ -33,7 +33,8 @@ namespace fathom::runtime {
 
 struct RegionOptions {
   int threads = 1;
-  std::size_t memory = 64u << 20;  // bytes; the octree is as deep as this allows
+  std::size_t memory = 64u << 20;  // bytes; where they would take more, leaves are longer, or there are none
+  int room = 0;                    // the root is 2^room times as long as the scene's bounded parts
 };
 
 // Points evaluated together at most; more than the rays a thread has under way.
@@ -114,8 +115,14 @@ class Regions {
   friend class RegionBuilder;
   struct Found {
     Node node;
-    int level;  // of the cell; -1 outside the root
-    std::array<std::uint32_t, 3> cell;
+    int level;                          // of the cell; -1 outside the root
+    std::array<std::uint32_t, 3> cell;  // in the finest cells; outside the root the face's number first
+
+    // In cells of its level.
+    std::array<std::uint32_t, 3> cell_at(int levels) const {
+      const int shift = level < 0 ? 0 : levels - level;
+      return {cell[0] >> shift, cell[1] >> shift, cell[2] >> shift};
+    }
   };
   Found find(float x, float y, float z) const;
   float far_value(const Found& found, float x, float y, float z) const;
@@ -123,9 +130,15 @@ class Regions {
   std::size_t gather(std::uint32_t program, vm::Points points, RegionScratch& scratch) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
+  // Of a program by its number; the one after the last is the whole program.
+  vm::Code code_of(std::uint32_t program) const { return program < programs_.size() ? programs_[program] : whole_; }
+  std::uint32_t length_of(std::uint32_t program) const {
+    return program < programs_.size() ? static_cast<std::uint32_t>(programs_[program].sources.size()) : whole_length_;
+  }
   void part_of(const Node& node, vm::Part& part) const;
 
   vm::Code whole_;
+  std::uint32_t whole_length_ = 0;       // instructions
   std::vector<std::uint32_t> surfaces_;  // [word of whole_] of a shape the surface it belongs to, or kNone
   RegionTree tree_{};
   std::vector<std::uint32_t> grid_;  // node of each cell of the grid's level, or of the leaf it is in
