@@ -40,7 +40,7 @@ HWY_INLINE Enclosure smooth_max(const Enclosure& a, const Enclosure& b, Batch k,
   return blend(a, b, k, [&](Batch x, Batch y) HWY_ATTR { return smooth_max(x, y, k, inv4k); });
 }
 
-// As the one of Interval: the nearest and the farthest corner, each with its rounding errors.
+// As for Interval: of the nearest and the farthest corner, each with its rounding errors.
 HWY_INLINE Enclosure ellipse(const Vec3<Enclosure>& p, const Batch* k) {
   const Enclosure x = abs(p.x), y = abs(p.y);
   const Batch reach = max(Batch::broadcast(1.0f), x.hi + y.hi + k[0]);
@@ -55,14 +55,21 @@ struct Ball {
   Batch radius;
 };
 HWY_INLINE Batch taxicab(const Vec3<Batch>& p) { return abs(p.x) + abs(p.y) + abs(p.z); }
-// The least one about a box; its radius is NaN or infinite where the box has no end.
+// The least one about a box; its radius is NaN or infinite where the box has no end, and never so small that squares
+// that vanish in float could matter.
 HWY_INLINE Ball ball_around(const Vec3<Enclosure>& box) {
   const Batch half = Batch::broadcast(0.5f);
   const auto middle = [&](const Enclosure& a) HWY_ATTR { return a.lo * half + a.hi * half; };
   const auto reach = [](const Enclosure& a, Batch from) HWY_ATTR { return max(a.hi - from, from - a.lo); };
   const Vec3<Batch> c{middle(box.x), middle(box.y), middle(box.z)};
   const Batch diagonal = length(reach(box.x, c.x), reach(box.y, c.y), reach(box.z, c.z));
-  return {c, diagonal * Batch::broadcast(1 + 0x1p-20f)};
+  return {c, diagonal * Batch::broadcast(1 + 0x1p-20f) + Batch::broadcast(0x1p-59f)};
+}
+HWY_INLINE Ball smaller(const Ball& a, const Ball& b) {
+  const BatchMask first = a.radius <= b.radius;
+  const auto pick = [&](Batch x, Batch y) HWY_ATTR { return select(first, x, y); };
+  return {{pick(a.centre.x, b.centre.x), pick(a.centre.y, b.centre.y), pick(a.centre.z, b.centre.z)},
+          pick(a.radius, b.radius)};
 }
 
 // How much an affine map can lengthen, and how much its terms add up to: the largest singular value is no more than
@@ -144,16 +151,13 @@ struct PointTraits<Enclosure> {
   template <class Op>
   static HWY_INLINE Place map(const Place& p, const Batch* k) {
     const Vec3<Enclosure> box = Op::apply(p, k);
-    if constexpr (Op::kOpcode != Opcode::Affine && !is_nonexpansive(Op::kOpcode)) return place(box);
-    const Ball moved = image<Op>(p.ball, k);
-    if constexpr (Op::kOpcode == Opcode::Translate) return {box, moved};
-    const Ball around_box = ball_around(box);
-    const BatchMask keep = moved.radius <= around_box.radius;
-    const auto smaller = [&](Batch a, Batch b) HWY_ATTR { return select(keep, a, b); };
-    return {box,
-            {{smaller(moved.centre.x, around_box.centre.x), smaller(moved.centre.y, around_box.centre.y),
-              smaller(moved.centre.z, around_box.centre.z)},
-             smaller(moved.radius, around_box.radius)}};
+    if constexpr (Op::kOpcode == Opcode::Translate) {
+      return {box, image<Op>(p.ball, k)};
+    } else if constexpr (Op::kOpcode == Opcode::Affine || is_nonexpansive(Op::kOpcode)) {
+      return {box, smaller(image<Op>(p.ball, k), ball_around(box))};
+    } else {
+      return place(box);
+    }
   }
 
   template <class Op, int Count>
@@ -218,7 +222,7 @@ struct PointTraits<Enclosure> {
   }
 };
 
-// Eight registers a block measured best for Batch; here a slot is what enclose() takes at once.
+// What enclose() takes at once.
 template <>
 inline constexpr std::size_t kSlot<Enclosure> = kEnclosedBoxes / kLanes;
 template <>

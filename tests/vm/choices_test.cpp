@@ -77,7 +77,7 @@ TEST_CASE("enclosures of fused programs are those of plain ones, choice for choi
   Random random(5);
   const std::string objects = R"({"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 0.5, 2]},
     {"type": "sphere", "radius": 0.5, "translate": [2, 0, 1]},
-    {"type": "subtraction", "children": [{"type": "torus", "major": 2, "minor": 0.3}, {"type": "sphere", "radius": 2}]})";
+    {"type": "subtraction", "of": [{"type": "torus", "major_radius": 2, "minor_radius": 0.3}, {"type": "sphere", "radius": 2}]})";
   compiler::CompileOptions plain;
   plain.stop_after = std::string(compiler::pass_names()[compiler::pass_names().size() - 2]);
   const auto a = tests::compiled_objects(objects).distance, b = tests::compiled_objects(objects, plain).distance;
