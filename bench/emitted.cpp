@@ -5,9 +5,10 @@
 #endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/emitted.cpp"
+// clang-format off
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-
-#include "bench/emitted_lanes.h"  // after the line above
+#include "bench/emitted_lanes.h"
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::bench::HWY_NAMESPACE {
