@@ -17,11 +17,9 @@ namespace fathom::bench::HWY_NAMESPACE {
 #undef SCENE_B_DISTANCE_H
 #undef SCENE_C_DISTANCE_H
 #undef SCENE_E_DISTANCE_H
-#undef SCENE_D1000_DISTANCE_H
 #include "scene_a.h"
 #include "scene_b.h"
 #include "scene_c.h"
-#include "scene_d1000.h"
 #include "scene_e.h"
 
 // One function for each scene.
@@ -38,7 +36,6 @@ FATHOM_FIELD(emitted_primitives, scene_a)
 FATHOM_FIELD(emitted_csg, scene_b)
 FATHOM_FIELD(emitted_mandelbulb, scene_c)
 FATHOM_FIELD(emitted_gyroid, scene_e)
-FATHOM_FIELD(emitted_thousand, scene_d1000)
 #undef FATHOM_FIELD
 
 }  // namespace fathom::bench::HWY_NAMESPACE
@@ -56,7 +53,6 @@ FATHOM_FIELD(primitives_emitted, emitted_primitives)
 FATHOM_FIELD(csg_emitted, emitted_csg)
 FATHOM_FIELD(mandelbulb_emitted, emitted_mandelbulb)
 FATHOM_FIELD(gyroid_emitted, emitted_gyroid)
-FATHOM_FIELD(thousand_emitted, emitted_thousand)
 #undef FATHOM_FIELD
 
 }  // namespace fathom::bench

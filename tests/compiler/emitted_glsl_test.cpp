@@ -3,13 +3,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <glm/glm.hpp>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "compiler/emit.h"
 #include "emitted_programs_glsl.h"
+#include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/temporary_folder.h"
@@ -30,6 +33,14 @@ std::string shader(const std::string& version) {
   for (const EmittedProgram& program : emitted_programs()) {
     text += compiler::emit_glsl(program.scene, program.name);
     sum += "  d += " + program.name + "_distance(colour.xyz);\n";
+  }
+  for (const char* path : {"scenes/showcase.json", "scenes/bench/b-csg.json", "scenes/bench/e-gyroid.json",
+                           "scenes/bench/h-composite.json", "scenes/mandelbulb.json", "tests/data/molecule.json"}) {
+    std::stringstream file;
+    file << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
+    const std::string name = std::filesystem::path(path).stem().string().substr(2);
+    text += compiler::emit_glsl(tests::compiled(file.str()), name);
+    sum += "  d += " + name + "_distance(colour.xyz);\n";
   }
   return text + "void main() {\n  colour = gl_FragCoord;\n  float d = 0.0;\n" + sum + "  colour = vec4(d);\n}\n";
 }
