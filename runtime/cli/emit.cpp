@@ -47,7 +47,7 @@ Setter identifier(std::string (*problem_with)(std::string_view), std::optional<s
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EmitRequest& request) {
   Arguments arguments("emit", "Writes the scene's distance function as source code of another language.", kExamples);
   std::string language;
-  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language);
+  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language, true, "LANGUAGE");
   add_scene_arguments(arguments, request.scene);
   arguments.option("-o,--output", "FILE", "File to write (standard output)", any_text(request.output));
   arguments.option("--namespace", "NAME", "cpp: the namespace the function is in (fathom_scene)",
