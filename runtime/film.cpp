@@ -27,49 +27,80 @@ bool accumulate(std::int64_t& sum, double value) {
   return false;
 }
 
+bool accumulate(std::int64_t (&sums)[3], glm::vec3 values) {
+  bool room = true;
+  for (int i = 0; i < 3; ++i) room &= accumulate(sums[i], static_cast<double>(values[i]));
+  return room;
+}
+
+double mean(std::int64_t sum, std::uint32_t count) { return static_cast<double>(sum) * kUnit / count; }
+
+glm::dvec3 mean(const std::int64_t (&sums)[3], std::uint32_t count) {
+  return {mean(sums[0], count), mean(sums[1], count), mean(sums[2], count)};
+}
+
 }  // namespace
 
-Film::Film(int width, int height)
-    : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+Film::Film(int width, int height, FilmLayers layers) : width_(width), height_(height), layers_(layers) {
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  pixels_.resize(count);
+  if (layers.first_hit) first_hits_.resize(count);
+  if (layers.cost) costs_.resize(count);
+}
 
 bool Film::add(int x, int y, const PathSample& sample) {
-  Pixel& pixel =
-      pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  const std::size_t at = index(x, y);
+  Pixel& pixel = pixels_[at];
   ++pixel.samples;
-  bool room = true;
-  for (int i = 0; i < 3; ++i) room &= accumulate(pixel.sums[Red + i], sample.radiance[i]);
+  bool room = accumulate(pixel.radiance, sample.radiance);
+  if (layers_.cost) {
+    costs_[at].evaluations += sample.evaluations;
+    costs_[at].instructions += sample.instructions;
+  }
   if (!sample.hit) return room;
   ++pixel.hits;
-  for (int i = 0; i < 3; ++i) room &= accumulate(pixel.sums[AlbedoR + i], sample.albedo[i]);
-  for (int i = 0; i < 3; ++i) room &= accumulate(pixel.sums[NormalX + i], sample.normal[i]);
-  return accumulate(pixel.sums[Depth], sample.depth) && room;
+  if (!layers_.first_hit) return room;
+  FirstHit& first = first_hits_[at];
+  room &= accumulate(first.albedo, sample.albedo);
+  room &= accumulate(first.normal, sample.normal);
+  return accumulate(first.depth, sample.depth) && room;
 }
 
 PixelMeans Film::means(int x, int y) const {
-  const Pixel& pixel =
-      pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  const std::size_t at = index(x, y);
+  const Pixel& pixel = pixels_[at];
   PixelMeans means;
   means.hits = pixel.hits;
   means.samples = pixel.samples;
   if (pixel.samples == 0) return means;
-  const auto mean = [&](int channel, std::uint32_t count) {
-    return static_cast<double>(pixel.sums[channel]) * kUnit / count;
-  };
-  for (int i = 0; i < 3; ++i) {
-    means.radiance[i] = mean(Red + i, pixel.samples);
-    means.albedo[i] = mean(AlbedoR + i, pixel.samples);
-    means.normal[i] = mean(NormalX + i, pixel.samples);
+  means.radiance = mean(pixel.radiance, pixel.samples);
+  if (layers_.first_hit) {
+    const FirstHit& first = first_hits_[at];
+    means.albedo = mean(first.albedo, pixel.samples);
+    means.normal = mean(first.normal, pixel.samples);
+    if (pixel.hits > 0) means.depth = mean(first.depth, pixel.hits);
   }
-  if (pixel.hits > 0) means.depth = mean(Depth, pixel.hits);
+  if (layers_.cost) {
+    means.evaluations = static_cast<double>(costs_[at].evaluations) / pixel.samples;
+    means.instructions = static_cast<double>(costs_[at].instructions) / pixel.samples;
+  }
   return means;
 }
 
 std::uint64_t Film::hash() const {
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto absorb = [&](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3u; };
+  const auto absorb_sums = [&](const std::int64_t(&sums)[3]) {
+    for (const std::int64_t sum : sums) absorb(static_cast<std::uint64_t>(sum));
+  };
   for (const Pixel& pixel : pixels_) {
-    for (const std::int64_t sum : pixel.sums) absorb(static_cast<std::uint64_t>(sum));
+    absorb_sums(pixel.radiance);
     absorb(static_cast<std::uint64_t>(pixel.hits) << 32 | pixel.samples);
+  }
+  for (const FirstHit& first : first_hits_) {
+    absorb_sums(first.albedo);
+    absorb_sums(first.normal);
+    absorb(static_cast<std::uint64_t>(first.depth));
   }
   return hash;
 }

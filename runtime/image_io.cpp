@@ -6,9 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+
+#include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
@@ -28,6 +31,17 @@ std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   if (slash == std::string::npos) return ".";
   return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+// What follows the name's last dot, in small letters; empty when there is no dot.
+std::string ending_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return "";
+  std::string ending = path.substr(dot + 1);
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return ending;
 }
 
 void append_bytes(void* context, void* data, int size) {
@@ -57,22 +71,23 @@ void grant_usual_access(int file) {
 }  // namespace
 
 std::optional<ImageFormat> image_format_of(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return std::nullopt;
-  std::string ending = path.substr(dot + 1);
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = ending_of(path);
   for (const Ending& known : kEndings) {
     if (ending == known.ending) return known.format;
   }
   return std::nullopt;
 }
 
+bool is_float_map(const std::string& path) { return ending_of(path) == "pfm"; }
+
 std::optional<std::string> check_image_path(const std::string& path) {
   if (!image_format_of(path)) {
     return fmt::format("cannot tell the format of `{}`: its name must end in .png, .jpg, .jpeg or .bmp", path);
   }
+  return check_file_path(path);
+}
+
+std::optional<std::string> check_file_path(const std::string& path) {
   struct stat status;
   if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return fmt::format("`{}` is a folder", path);
   const std::string folder = folder_of(path);
@@ -106,6 +121,21 @@ std::optional<std::string> write_image(const Picture& picture, const std::string
   if (std::optional<std::string> problem = check_image_path(path)) return problem;
   const std::vector<std::uint8_t> bytes = encode_image(picture, *image_format_of(path));
   if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", path);
+  return write_file(bytes, path);
+}
+
+std::optional<std::string> write_float_map(std::span<const float> values, int width, int height,
+                                           const std::string& path) {
+  const std::size_t row = static_cast<std::size_t>(width);
+  CHECK(values.size() == row * static_cast<std::size_t>(height), "a map of another size than its values");
+  const std::string header = fmt::format("Pf\n{} {}\n-1.0\n", width, height);  // below zero: little endian
+  std::vector<std::uint8_t> bytes(header.begin(), header.end());
+  for (std::size_t y = static_cast<std::size_t>(height); y-- > 0;) {
+    for (const float value : values.subspan(y * row, row)) {
+      const auto bits = std::bit_cast<std::uint32_t>(value);
+      for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
+    }
+  }
   return write_file(bytes, path);
 }
 

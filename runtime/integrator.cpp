@@ -33,8 +33,11 @@ Integrator::Integrator(const World& world, Film& film)
 }
 
 void Integrator::run(const NextPath& next) {
+  StageClock& clock = marcher_->clock();
+  if (world_.settings.profile) clock.start(Stage::Shading);
   bool more = true;
   while (true) {
+    if (more && !free_ids_.empty()) clock.enter(Stage::Shading);
     while (more && !free_ids_.empty()) {
       const std::optional<PathKey> key = next();
       more = key.has_value();
@@ -43,10 +46,12 @@ void Integrator::run(const NextPath& next) {
       free_ids_.pop_back();
       start(id, *key);
     }
-    if (marcher_->empty() && marcher_->arrivals().empty()) return;
+    if (marcher_->empty() && marcher_->arrivals().empty()) break;
+    clock.enter(Stage::March);
     marcher_->advance();
     if (marcher_->arrivals().size() >= kShadeBatch || marcher_->empty()) settle_arrivals();
   }
+  clock.stop();
 }
 
 void Integrator::start(std::uint32_t id, const PathKey& key) {
@@ -69,25 +74,35 @@ void Integrator::start(std::uint32_t id, const PathKey& key) {
 }
 
 void Integrator::settle_arrivals() {
-  hits_.clear();
   marcher_->take_arrivals(settled_);
   for (const Arrival& arrival : settled_) {
-    if (arrival.status == Arrival::Status::Hit) {
-      hits_.push_back(arrival);
-      continue;
-    }
-    Path& path = paths_[arrival.id];
-    if (arrival.status != Arrival::Status::Invalid) {
-      path.result.radiance += path.throughput * background_radiance(world_.scene.background, path.direction);
-    }
-    end(arrival.id);
+    paths_[arrival.id].result.evaluations += arrival.evaluations;
+    paths_[arrival.id].result.instructions += arrival.instructions;
   }
-  for (std::size_t first = 0; first < hits_.size(); first += kSurfaceBatch) {
-    shade(std::span(hits_).subspan(first, std::min(kSurfaceBatch, hits_.size() - first)));
+  const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
+  const auto hits_end = std::partition(settled_.begin(), settled_.end(), is_hit);
+  const std::span<const Arrival> hits(settled_.begin(), hits_end);
+  for (std::size_t first = 0; first < hits.size(); first += kSurfaceBatch) {
+    shade(hits.subspan(first, std::min(kSurfaceBatch, hits.size() - first)));
   }
+  marcher_->clock().enter(Stage::Shading);
+  for (const Arrival& arrival : std::span<const Arrival>(hits_end, settled_.end())) leave_scene(arrival);
+  marcher_->clock().enter(Stage::Film);
+  for (const std::uint32_t id : ended_) add_to_film(id);
+  ended_.clear();
+}
+
+// A path that met nothing more sees the background.
+void Integrator::leave_scene(const Arrival& arrival) {
+  Path& path = paths_[arrival.id];
+  if (arrival.status != Arrival::Status::Invalid) {
+    path.result.radiance += path.throughput * background_radiance(world_.scene.background, path.direction);
+  }
+  ended_.push_back(arrival.id);
 }
 
 void Integrator::shade(std::span<const Arrival> arrivals) {
+  marcher_->clock().enter(Stage::Normals);
   std::array<Hit, kSurfaceBatch> hits;
   std::array<SurfacePoint, kSurfaceBatch> points;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
@@ -96,6 +111,7 @@ void Integrator::shade(std::span<const Arrival> arrivals) {
                arrivals[i].width};
   }
   find_surfaces(world_.scene, world_.field, std::span(hits).first(arrivals.size()), points, marcher_->workspace());
+  marcher_->clock().enter(Stage::Shading);
   for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
 }
 
@@ -111,7 +127,10 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   const BsdfSample next = sample_bsdf(material, hit.wo, point.normal, inside, path.sampler);
   path.throughput *= next.weight;
   ++path.bounces;
-  if (!(max_component(path.throughput) > 0) || !survives_roulette(path)) return end(arrival.id);
+  if (!(max_component(path.throughput) > 0) || !survives_roulette(path)) {
+    ended_.push_back(arrival.id);
+    return;
+  }
   path.direction = next.wi;
   if (next.through) path.absorption = inside ? glm::vec3(0) : material.absorption;
   go_on(arrival.id, arrival, hit, point, next.through);
@@ -130,6 +149,7 @@ void Integrator::record_first_hit(Path& path, const Arrival& arrival, const Surf
 
 // Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
 bool Integrator::survives_roulette(Path& path) {
+  if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
   if (path.bounces < world_.settings.bounces) return true;
   const float q = std::min(kMostSurvival, max_component(path.throughput));
   if (path.sampler.next() >= q) return false;
@@ -147,7 +167,7 @@ void Integrator::go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit,
   marcher_->add(id, ray);
 }
 
-void Integrator::end(std::uint32_t id) {
+void Integrator::add_to_film(std::uint32_t id) {
   Path& path = paths_[id];
   if (!finite(path.result.radiance)) {
     ++stats_.dropped_samples;
@@ -160,6 +180,7 @@ void Integrator::end(std::uint32_t id) {
 Stats Integrator::stats() const {
   Stats stats = stats_;
   stats.march = marcher_->counters();
+  if (world_.settings.profile) stats.stages = marcher_->clock().seconds();
   return stats;
 }
 

@@ -75,14 +75,15 @@ class Integrator {
   void record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point, const Material& material);
   bool survives_roulette(Path& path);
   void go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit, const SurfacePoint& point, bool through);
-  void end(std::uint32_t id);
+  void leave_scene(const Arrival& arrival);
+  void add_to_film(std::uint32_t id);  // and frees the id
 
   const World& world_;
   Film& film_;
   std::unique_ptr<Marcher> marcher_;
   std::array<Path, Marcher::kCapacity> paths_;  // [id]
-  std::vector<std::uint32_t> free_ids_;
-  std::vector<Arrival> settled_, hits_;  // scratch
+  std::vector<std::uint32_t> free_ids_, ended_;
+  std::vector<Arrival> settled_;  // scratch
   Stats stats_;
 };
 

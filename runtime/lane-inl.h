@@ -7,6 +7,7 @@
 #endif
 
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "runtime/lanes.h"
@@ -27,6 +28,14 @@ HWY_INLINE Batch load(const float* from, Batch*) { return Batch::load(from); }
 HWY_INLINE Real load(const double* from, Real*) { return {*from}; }
 HWY_INLINE void store(Batch a, float* to) { a.store(to); }
 HWY_INLINE void store(Real a, double* to) { *to = a.v; }
+
+// Bit i: lane i of the mask.
+HWY_INLINE std::uint32_t lanes_of(vm::HWY_NAMESPACE::BatchMask mask) {
+  std::conditional_t<(sizeof(Batch) > 32), std::uint16_t, std::uint8_t> bits = 0;
+  hwy::HWY_NAMESPACE::StoreMaskBits(vm::HWY_NAMESPACE::FloatLanes(), mask.m, reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
+}
+HWY_INLINE std::uint32_t lanes_of(bool mask) { return mask; }
 
 template <class N>
 HWY_INLINE N number(double value) {

@@ -1,6 +1,8 @@
 // The lanes' two ways on, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
 #include "runtime/lanes.h"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/lanes.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
@@ -10,42 +12,60 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-template <class N, class S>
-void tiered(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules) {
+// Moves one register of lanes after another on.
+template <class N, class S, class Move>
+HWY_INLINE std::size_t for_each_register(Lanes<S>& lanes, std::size_t count, const S* f, LaneNumbers& ended,
+                                         const Move& move) {
   constexpr std::size_t kStep = sizeof(N) / sizeof(S);
+  std::size_t total = 0;
   for (std::size_t i = 0; i < count; i += kStep) {
-    Tiered<N, S> step(lanes, i, rules);
-    step.run(load(f + i, static_cast<N*>(nullptr)), rules);
+    move(i, load(f + i, static_cast<N*>(nullptr)));
+    std::uint32_t bits = lanes_of(load(&lanes.row[kVerdict][i], static_cast<N*>(nullptr)) > number<N>(0));
+    for (; bits != 0; bits &= bits - 1) {
+      const std::size_t lane = i + static_cast<std::size_t>(std::countr_zero(bits));
+      if (lane < count) ended[total++] = static_cast<std::uint16_t>(lane);
+    }
   }
+  return total;
+}
+
+template <class N, class S>
+std::size_t tiered(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
+  return for_each_register<N>(lanes, count, f, ended, [&](std::size_t i, N value) HWY_ATTR {
+    Tiered<N, S> step(lanes, i, rules);
+    step.run(value, rules);
+  });
 }
 
 template <class Step, class N, class S>
-void traced(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules) {
-  constexpr std::size_t kStep = sizeof(N) / sizeof(S);
-  for (std::size_t i = 0; i < count; i += kStep)
-    trace<Step, N>(lanes, i, rules, load(f + i, static_cast<N*>(nullptr)));
+std::size_t traced(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
+  return for_each_register<N>(lanes, count, f, ended,
+                              [&](std::size_t i, N value) HWY_ATTR { trace<Step, N>(lanes, i, rules, value); });
 }
 
 template <class N, class S>
-void advance(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules) {
+std::size_t advance(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
   switch (rules.method) {
     case Method::Sphere:
-      return traced<PlainStep, N>(lanes, count, f, rules);
+      return traced<PlainStep, N>(lanes, count, f, rules, ended);
     case Method::Relaxed:
-      return traced<FixedStep, N>(lanes, count, f, rules);
+      return traced<FixedStep, N>(lanes, count, f, rules, ended);
     case Method::Automatic:
-      return traced<AutomaticStep, N>(lanes, count, f, rules);
+      return traced<AutomaticStep, N>(lanes, count, f, rules, ended);
     default:
-      return tiered<N>(lanes, count, f, rules);
+      return tiered<N>(lanes, count, f, rules, ended);
   }
 }
 
-void advance_f32(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules) {
-  advance<Batch>(lanes, count, f, rules);
+std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+                        LaneNumbers& ended) {
+  return advance<Batch>(lanes, count, f, rules, ended);
 }
-void advance_f64(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules) {
-  advance<Real>(lanes, count, f, rules);
+std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+                        LaneNumbers& ended) {
+  return advance<Real>(lanes, count, f, rules, ended);
 }
+std::size_t batch_lanes() { return sizeof(Batch) / sizeof(float); }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -54,12 +74,17 @@ HWY_AFTER_NAMESPACE();
 namespace fathom::runtime {
 
 HWY_EXPORT(advance_f32);
+HWY_EXPORT(batch_lanes);
 
-void advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules) {
-  HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, f, rules);
+std::size_t register_lanes() { return HWY_DYNAMIC_DISPATCH(batch_lanes)(); }
+
+std::size_t advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+                    LaneNumbers& ended) {
+  return HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, f, rules, ended);
 }
-void advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules) {
-  HWY_STATIC_DISPATCH(advance_f64)(lanes, count, f, rules);
+std::size_t advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+                    LaneNumbers& ended) {
+  return HWY_STATIC_DISPATCH(advance_f64)(lanes, count, f, rules, ended);
 }
 
 }  // namespace fathom::runtime

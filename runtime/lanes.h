@@ -11,6 +11,7 @@
 // Not a public header: march.h is. Tested by: tests/runtime/march_test.cpp
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -62,7 +63,7 @@ enum LaneRow : std::uint8_t {
 // S: float or double. Counts and flags are numbers of that type, too: a register holds as many of each.
 template <class S>
 struct Lanes {
-  static constexpr std::size_t kCapacity = 256;  // two blocks of the machine
+  static constexpr std::size_t kCapacity = 128;  // a block of the machine
   // A line of the cache longer than need be: rows a power of two apart would all compete for the same few lines.
   static constexpr std::size_t kStride = kCapacity + 64 / sizeof(S);
   alignas(64) S row[kLaneRows][kStride];
@@ -80,9 +81,17 @@ struct LaneRules {
   S epsilon, steps, relaxation;  // of the methods that have them
 };
 
-// Moves `count` lanes on, given f at their x, y, z, and writes their verdicts. Reads f, and may write to lanes, past
-// `count` up to a whole register.
-void advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules);
-void advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules);
+// Floats in a register of the instruction set in use.
+std::size_t register_lanes();
+
+using LaneNumbers = std::array<std::uint16_t, Lanes<float>::kCapacity>;
+
+// Moves `count` lanes on, given f at their x, y, z. Writes their verdicts, and to `ended` the numbers of those that
+// go no further, upwards; how many these are is what it returns. Reads f, and may write to lanes, past `count` up to
+// a whole register.
+std::size_t advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+                    LaneNumbers& ended);
+std::size_t advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+                    LaneNumbers& ended);
 
 }  // namespace fathom::runtime

@@ -1,9 +1,5 @@
 #include "runtime/march.h"
 
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <optional>
-
 #include "runtime/certify.h"
 #include "runtime/stream.h"
 #include "vm/check.h"
@@ -11,49 +7,22 @@
 namespace fathom::runtime {
 namespace {
 
-// The direction at unit length; nothing when it has none. One that is a unit vector to float precision stays as it
-// is.
-std::optional<glm::dvec3> unit(glm::dvec3 direction) {
-  const double squared = glm::dot(direction, direction);
-  if (!(squared > 1e-60 && squared < 1e60)) return std::nullopt;
-  if (std::abs(squared - 1) < 1e-6) return direction;
-  return direction / std::sqrt(squared);
-}
-
-bool finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-// The part of the ray within [0, t_max] and the box, by slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986);
-// nothing when there is none.
-std::optional<Stretch> clip(const compiler::Box& box, glm::dvec3 origin, glm::dvec3 direction, double t_max) {
-  if (box.empty()) return std::nullopt;
-  Stretch part{0, t_max, 0};
-  for (int i = 0; i < 3; ++i) {
-    if (direction[i] == 0) {
-      if (!(origin[i] >= box.lo[i] && origin[i] <= box.hi[i])) return std::nullopt;
-      continue;
-    }
-    const double inverse = 1 / direction[i];
-    const double a = (box.lo[i] - origin[i]) * inverse, b = (box.hi[i] - origin[i]) * inverse;
-    part.begin = std::max(part.begin, std::min(a, b));
-    part.end = std::min(part.end, std::max(a, b));
-  }
-  if (!(part.begin <= part.end)) return std::nullopt;
-  return part;
-}
-
 // Every ray searched in double from its start.
 class Certifier final : public Marcher {
  public:
   using Marcher::Marcher;
-  void advance() override {}
 
  private:
-  void begin(const Course& course, int side, float) override { certify_from(course, side, {0, course.length, 0}, 0); }
+  void begin(const RayBlock& rays, std::size_t i) override {
+    certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0, 0);
+  }
+  bool has_room() const override { return true; }
+  void step() override {}
 };
 
 }  // namespace
 
-void Marcher::arrive(Arrival arrival) {
+void Marcher::arrive(const Arrival& arrival) {
   switch (arrival.status) {
     case Arrival::Status::Hit:
       ++counters_.hits;
@@ -68,32 +37,51 @@ void Marcher::arrive(Arrival arrival) {
       ++counters_.invalid;
       break;
   }
+  counters_.instructions += arrival.instructions;
   arrivals_.push_back(arrival);
 }
 
 void Marcher::add(std::uint32_t id, const Ray& ray) {
-  CHECK(live_ < kCapacity, "a ray was added to a full marcher");
+  CHECK(room() > 0, "a ray was added to a full marcher");
   ++counters_.rays;
-  Arrival arrival{id, Arrival::Status::Invalid, 1, 0, 0, 0, 0};
-  const std::optional<glm::dvec3> direction = unit(ray.direction);
-  if (!direction || !finite(ray.origin) || std::isnan(ray.t_max)) return arrive(arrival);
-  const std::optional<Stretch> part = clip(field_.bound, ray.origin, *direction, std::min(ray.t_max, field_.far));
-  if (!part) {
-    ++counters_.clipped;
-    arrival.status = Arrival::Status::Miss;
-    return arrive(arrival);
-  }
-  begin({ray.origin + part->begin * *direction, *direction, part->begin, part->end - part->begin, id},
-        part->begin > 0 ? 1 : ray.side, ray.slope);
+  waiting_.push(id, ray);
 }
 
-void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations) {
+void Marcher::advance() {
+  if (waiting_.count > 0) begin_waiting();
+  if (live_ > 0) step();
+}
+
+void Marcher::begin_waiting() {
+  clip(waiting_, clipped_, field_.bound, field_.far);
+  for (; waiting_.count > 0 && has_room(); --waiting_.count) begin_last();
+  clipped_ = waiting_.count;
+}
+
+void Marcher::begin_last() {
+  const std::size_t i = waiting_.count - 1;
+  switch (waiting_.what_became_of(i)) {
+    case Clip::Within:
+      return begin(waiting_, i);
+    case Clip::Past:
+      ++counters_.clipped;
+      return arrive({waiting_.id[i], Arrival::Status::Miss, 1, 0, 0, 0, 0});
+    case Clip::Invalid:
+      return arrive({waiting_.id[i], Arrival::Status::Invalid, 1, 0, 0, 0, 0});
+  }
+}
+
+void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+                           std::uint64_t instructions) {
+  const Stage before = clock_.enter(Stage::Resolve);
   const Certified found = certify(field_, course.origin, course.direction, side, stretch, workspace_);
+  clock_.enter(before);
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
   arrive({course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations,
-          found.evaluations, static_cast<float>(found.width), course.entry + found.t});
+          found.evaluations, static_cast<float>(found.width), course.entry + found.t,
+          instructions + found.instructions});
 }
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {

@@ -4,7 +4,7 @@
 // (side is -1 inside a solid). A hit is a change of sign bracketed to float resolution, never "f is small". Three
 // tiers:
 //
-//   clip    in double: the ray restarts where it enters the scene's bound, so that float t stays small
+//   clip    in double: the ray restarts where it enters the scene's bound, so that float t stays small (clip.h)
 //   stream  in float, many rays at once: certified steps, then brackets that shrink (tiered-inl.h)
 //   certify in double, one ray at a time: the few that float cannot decide (certify.h)
 //
@@ -12,7 +12,7 @@
 //
 //     const auto marcher = make_marcher(field);
 //     marcher->add(id, ray);            // as long as there is room()
-//     marcher->advance();               // one evaluation of the field for every ray
+//     marcher->advance();               // one evaluation of the field for every ray within the bound
 //     marcher->take_arrivals(arrivals);  // those that ended since the last time
 //
 // What becomes of a ray depends on nothing but the ray, the field and the method. Tested by:
@@ -28,9 +28,11 @@
 #include <vector>
 
 #include "runtime/certify.h"
+#include "runtime/clip.h"
 #include "runtime/field.h"
 #include "runtime/method.h"
 #include "runtime/ray.h"
+#include "runtime/stage_clock.h"
 #include "runtime/stats.h"
 #include "vm/evaluate.h"
 
@@ -45,12 +47,12 @@ class Marcher {
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  int room() const { return kCapacity - live_; }
-  bool empty() const { return live_ == 0; }
+  int room() const { return kCapacity - live_ - static_cast<int>(waiting_.count); }
+  bool empty() const { return live_ == 0 && waiting_.count == 0; }
 
-  // Needs room. The arrival may be there at once (a ray past the bound, or an invalid one).
+  // Needs room.
   void add(std::uint32_t id, const Ray& ray);
-  virtual void advance() = 0;
+  void advance();
 
   const std::vector<Arrival>& arrivals() const { return arrivals_; }
   // Moves them into `out`, in place of what it held.
@@ -60,6 +62,7 @@ class Marcher {
   }
   const MarchCounters& counters() const { return counters_; }
   vm::Workspace& workspace() { return workspace_; }
+  StageClock& clock() { return clock_; }  // tells Resolve from what its owner does
 
  protected:
   // A ray within the scene's bound.
@@ -71,19 +74,37 @@ class Marcher {
     std::uint32_t id;
   };
 
-  // Takes up a ray that starts on `side` (0: not known); `slope` as in Ray. live_ counts it when it is under way.
-  virtual void begin(const Course& course, int side, float slope) = 0;
+  // Takes up the i-th of `rays`, which are clipped. live_ counts it when it is under way.
+  virtual void begin(const RayBlock& rays, std::size_t i) = 0;
+  virtual bool has_room() const = 0;
+  // Moves the rays under way on by one evaluation.
+  virtual void step() = 0;
 
-  void arrive(Arrival arrival);
+  static Course course_of(const RayBlock& rays, std::size_t i) {
+    return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
+            {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
+            rays.entry[i],
+            rays.length[i],
+            rays.id[i]};
+  }
+  void arrive(const Arrival& arrival);
   // Ends the ray by certify(), which goes on from `evaluations` in float.
-  void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations);
+  void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+                    std::uint64_t instructions);
 
   const Field& field_;
-  int live_ = 0;
+  int live_ = 0;  // rays under way; those that were added since the last advance() wait
   MarchCounters counters_;
   vm::Workspace workspace_;
+  StageClock clock_;
 
  private:
+  void begin_waiting();
+  void begin_last();
+
+  static_assert(RayBlock::kCapacity == kCapacity);
+  RayBlock waiting_;         // the last one is the next to begin
+  std::size_t clipped_ = 0;  // of those waiting, the first
   std::vector<Arrival> arrivals_;
 };
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/film.h"
 #include "runtime/method.h"
 
 namespace fathom::runtime {
@@ -26,7 +27,13 @@ struct RenderOptions {
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
+  // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
+  std::optional<int> cut_after;
   Marching marching;
+  bool regions = true;                    // build them where the scene gains by them (runtime/regions.h)
+  std::size_t region_memory = 64u << 20;  // bytes they may take
+  FilmLayers layers;
+  bool profile = false;  // measure the stages' times (Stats::stages)
 
   // Called now and then, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;
@@ -42,7 +49,12 @@ struct Settings {
   int threads;
   std::uint64_t seed;
   std::optional<double> far;
+  std::optional<int> cut_after;
   Marching marching;
+  bool regions;
+  std::size_t region_memory;  // bytes
+  FilmLayers layers;
+  bool profile;
 };
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);

@@ -41,43 +41,55 @@ constexpr double kVagueness = 0x1p-14;
 
 template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching)
-    : Marcher(field), rules_(make_rules<S>(field, marching)), lanes_(new Lanes<S>()) {}
+    : Marcher(field),
+      rules_(make_rules<S>(field, marching)),
+      lanes_(new Lanes<S>()),
+      seeded_(!info(rules_.method).uses_epsilon),
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
-void Stream<S>::begin(const Course& course, int side, float slope) {
+void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
   ++live_;
-  std::size_t i = lanes_used_;
+  std::size_t lane = lanes_used_;
   if (holes_.empty()) {
     ++lanes_used_;
   } else {
-    i = holes_.back();
+    lane = holes_.back();
     holes_.pop_back();
   }
-  courses_[i] = course;
-  const auto put = [&](LaneRow row, double value) { lanes_->row[row][i] = static_cast<S>(value); };
+  S* const first = &lanes_->row[0][lane];
+  const auto put = [&](int row, double value) { first[row * Lanes<S>::kStride] = static_cast<S>(value); };
   for (const LaneRow zero : {kTNext, kEvaluations, kWidth, kT, kG, kR, kPhase, kCrossing, kPatience}) put(zero, 0);
-  put(kX, course.origin.x), put(kY, course.origin.y), put(kZ, course.origin.z);
-  put(kOx, course.origin.x), put(kOy, course.origin.y), put(kOz, course.origin.z);
-  put(kDx, course.direction.x), put(kDy, course.direction.y), put(kDz, course.direction.z);
-  lanes_->row[kTMax][i] = round_down<S>(course.length);
-  put(kSide, side);
-  const bool seeded = !info(rules_.method).uses_epsilon;  // that is not what others do
-  put(kM, seeded ? std::clamp(static_cast<double>(slope), -1.0, 0.9) : -1);
-  put(kPenalty, seeded ? kFirstPenalty : 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    put(kX + axis, rays.origin[axis][i]);
+    put(kOx + axis, rays.origin[axis][i]);
+    put(kDx + axis, rays.direction[axis][i]);
+  }
+  put(kTMax, static_cast<double>(round_down<S>(rays.length[i])));
+  put(kSide, rays.side[i]);
+  put(kM, seeded_ ? std::clamp(static_cast<double>(rays.slope[i]), -1.0, 0.9) : -1);
+  put(kPenalty, seeded_ ? kFirstPenalty : 1);
+  courses_[lane] = course_of(rays, i);
+  instructions_[lane] = 0;
 }
 
 template <>
 void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
-  vm::evaluate_distance(*field_.distance, {row[kX], row[kY], row[kZ]}, static_cast<std::size_t>(live_),
-                        distance_.data(), workspace_);
+  const auto count = static_cast<std::size_t>(live_);
+  field_.evaluate({row[kX], row[kY], row[kZ]}, count, distance_.data(), scratch_, workspace_);
+  if (field_.regions) {
+    for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
+  } else {
+    for (std::size_t i = 0; i < count; ++i) instructions_[i] += field_.distance->instructions();
+  }
 }
 
 template <>
 void Stream<double>::evaluate() {
   const auto& row = lanes_->row;
   for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
-    distance_[i] = vm::evaluate_distance(*field_.distance, {row[kX][i], row[kY][i], row[kZ][i]}, workspace_);
+    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, workspace_, instructions_[i]);
   }
 }
 
@@ -88,21 +100,22 @@ void Stream<S>::close_holes() {
     if (hole == last) continue;
     for (auto& row : lanes_->row) row[hole] = row[last];
     courses_[hole] = courses_[last];
+    instructions_[hole] = instructions_[last];
   }
   holes_.clear();
 }
 
 template <class S>
-void Stream<S>::advance() {
+void Stream<S>::step() {
   close_holes();
   evaluate();
   const std::size_t count = static_cast<std::size_t>(live_);
   counters_.evaluations += count;
-  runtime::advance(*lanes_, count, distance_.data(), rules_);
-  const auto& verdict = lanes_->row[kVerdict];
-  for (std::size_t i = count; i-- > 0;) {
-    if (verdict[i] != 0) finish(i);
-  }
+  counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
+  counters_.region_far = scratch_.counters.far, counters_.region_bundles = scratch_.counters.bundled;
+  counters_.region_programs = scratch_.counters.specialised;
+  LaneNumbers ended;
+  for (std::size_t i = runtime::advance(*lanes_, count, distance_.data(), rules_, ended); i-- > 0;) finish(ended[i]);
 }
 
 template <class S>
@@ -111,27 +124,25 @@ void Stream<S>::finish(std::size_t i) {
   const Course& course = courses_[i];
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
-  Arrival arrival{course.id, Arrival::Status::Invalid, static_cast<std::int8_t>(side), evaluations, 0, 0, 0};
+  const auto arrive_as = [&](Arrival::Status status, float width, double t) {
+    arrive({course.id, status, static_cast<std::int8_t>(side), evaluations, 0, width, t, instructions_[i]});
+  };
   --live_;
   holes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Certify:
-      return certify_from(course, side, what_is_left(i), evaluations);
+      return certify_from(course, side, what_is_left(i), evaluations, instructions_[i]);
     case LaneVerdict::Hit:
-      arrival.status = Arrival::Status::Hit;
-      arrival.t = course.entry + static_cast<double>(number(kT));
-      arrival.width = static_cast<float>(number(kWidth));
-      break;
+      return arrive_as(Arrival::Status::Hit, static_cast<float>(number(kWidth)),
+                       course.entry + static_cast<double>(number(kT)));
     case LaneVerdict::OutOfSteps:
       ++counters_.exhausted;
-      [[fallthrough]];
+      return arrive_as(Arrival::Status::Miss, 0, 0);
     case LaneVerdict::Miss:
-      arrival.status = Arrival::Status::Miss;
-      break;
+      return arrive_as(Arrival::Status::Miss, 0, 0);
     default:
-      break;
+      return arrive_as(Arrival::Status::Invalid, 0, 0);
   }
-  arrive(arrival);
 }
 
 // What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first, grown by

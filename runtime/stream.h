@@ -14,12 +14,13 @@ template <class S>
 class Stream final : public Marcher {
  public:
   Stream(const Field& field, const Marching& marching);
-  void advance() override;
 
  private:
-  static_assert(Lanes<S>::kCapacity == kCapacity);
+  static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
 
-  void begin(const Course& course, int side, float slope) override;
+  void begin(const RayBlock& rays, std::size_t i) override;
+  bool has_room() const override { return live_ < static_cast<int>(kLanes); }
+  void step() override;
   void close_holes();
   void evaluate();
   void finish(std::size_t lane);
@@ -27,10 +28,14 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
-  std::array<Course, kCapacity> courses_;          // [lane]
-  alignas(64) std::array<S, kCapacity> distance_;  // [lane]
+  const bool seeded_;                           // rays begin with the slope they are given; not what others do
+  const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
+  std::array<Course, kLanes> courses_;          // [lane]
+  alignas(64) std::array<S, kLanes> distance_;  // [lane]
   std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
   std::size_t lanes_used_ = 0;      // with the holes
+  RegionScratch scratch_;
+  std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
 };
 
 }  // namespace fathom::runtime

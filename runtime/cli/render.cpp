@@ -3,14 +3,13 @@
 #include "runtime/render.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <system_error>
 
+#include "runtime/cli/cost_map.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
@@ -43,11 +42,7 @@ bool is_special(const std::string& path) {
 std::optional<std::string> check_stats_path(const std::string& path) {
   std::error_code ignored;
   if (path == "-" || (is_special(path) && !std::filesystem::is_directory(path, ignored))) return std::nullopt;
-  if (std::filesystem::is_directory(path, ignored)) return fmt::format("`{}` is a folder", path);
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  const std::string folder = parent.empty() ? "." : parent.string();
-  if (::access(folder.c_str(), W_OK | X_OK) == 0) return std::nullopt;
-  return fmt::format("cannot write to the folder `{}`: {}", folder, std::generic_category().message(errno));
+  return runtime::check_file_path(path);
 }
 
 // Every file the run will write, but for streams.
@@ -58,6 +53,9 @@ std::vector<std::string> output_files(const RenderRequest& request) {
     for (const Layer& layer : kLayers) {
       if (request.*layer.wanted) files.push_back(beside(path, layer.suffix));
     }
+  }
+  if (request.cost_map) {
+    for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
   }
   if (request.stats_json && *request.stats_json != "-" && !is_special(*request.stats_json)) {
     files.push_back(*request.stats_json);
@@ -75,6 +73,11 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
         return fail(streams, kIo, *problem);
     }
   }
+  if (request.cost_map) {
+    for (const std::string& map : cost_map_files(*request.cost_map)) {
+      if (const auto problem = runtime::check_file_path(map)) return fail(streams, kIo, *problem);
+    }
+  }
   if (request.stats_json) {
     if (const auto problem = check_stats_path(*request.stats_json)) return fail(streams, kIo, *problem);
   }
@@ -89,16 +92,20 @@ runtime::RenderResult render_with_progress(const RenderRequest& request, const c
   return runtime::render(scene, options);
 }
 
-// The pictures for one -o. `written` collects the names.
+std::string written(const std::string& path, const runtime::Film& film) {
+  return fmt::format("wrote {} ({}x{})", path, film.width(), film.height());
+}
+
+// The pictures for one -o. `lines` collects what was written.
 std::optional<std::string> write_pictures(const RenderRequest& request, const std::string& path, double exposure,
-                                          const runtime::Film& film, std::vector<std::string>& written) {
+                                          const runtime::Film& film, std::vector<std::string>& lines) {
   if (auto problem = runtime::write_image(runtime::beauty_picture(film, exposure), path)) return problem;
-  written.push_back(path);
+  lines.push_back(written(path, film));
   for (const Layer& layer : kLayers) {
     if (!(request.*layer.wanted)) continue;
     const std::string name = beside(path, layer.suffix);
     if (auto problem = runtime::write_image(layer.picture(film), name)) return problem;
-    written.push_back(name);
+    lines.push_back(written(name, film));
   }
   return std::nullopt;
 }
@@ -115,18 +122,20 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
+// Writes everything and prints the closing numbers, whose memory is that of writing, too.
 std::optional<ExitCode> write_all(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                  const runtime::RenderResult& result, const Streams& streams) {
-  std::vector<std::string> written;
+                                  runtime::RenderResult& result, const Streams& streams) {
+  std::vector<std::string> lines;
   std::optional<std::string> problem;
   for (const std::string& path : request.outputs) {
-    if (!problem) problem = write_pictures(request, path, scene.film.exposure, result.film, written);
+    if (!problem) problem = write_pictures(request, path, scene.film.exposure, result.film, lines);
   }
+  if (request.cost_map && !problem) problem = write_cost_maps(*request.cost_map, result.film, lines);
+  result.stats.peak_memory = runtime::peak_memory();
   if (request.stats_json && !problem) problem = write_stats(*request.stats_json, result.stats, streams);
   if (!request.quiet) {
-    for (const std::string& name : written) {
-      streams.err << fmt::format("wrote {} ({}x{})\n", name, result.film.width(), result.film.height());
-    }
+    streams.err << runtime::to_table(result.stats);
+    for (const std::string& line : lines) streams.err << line << '\n';
   }
   if (problem) return fail(streams, kIo, *problem);
   return std::nullopt;
@@ -156,8 +165,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
   }
 
-  const runtime::RenderResult result = render_with_progress(request, scene, streams);
-  if (!request.quiet) streams.err << runtime::to_table(result.stats);
+  runtime::RenderResult result = render_with_progress(request, scene, streams);
   if (const auto code = write_all(request, scene, result, streams)) return *code;
   return kDone;
 }

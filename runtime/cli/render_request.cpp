@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/cli/cost_map.h"
 #include "runtime/cli/output_file.h"
 
 namespace fathom::cli {
@@ -13,7 +14,8 @@ namespace {
 constexpr const char* kExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
-    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...";
+    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
+    "fathom render scene.json -o out.png --profile --cost-map cost.png";
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
@@ -28,8 +30,15 @@ void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.flag("-a,--albedo", "Write FILE-albedo beside each picture: the surfaces' own colours", request.albedo);
   arguments.flag("-d,--depth", "Write FILE-depth beside each picture: near is white, far is dark", request.depth);
   arguments.flag("-n,--normal", "Write FILE-normal beside each picture: the surfaces' directions", request.normal);
+  arguments.option("--cost-map", "FILE",
+                   "Write FILE-evaluations and FILE-instructions: what each pixel cost, in colours (png, jpg, jpeg, "
+                   "bmp) or numbers (pfm)",
+                   into(read_map_name, request.cost_map));
   arguments.option("--stats-json", "FILE", "Write the closing numbers as JSON; - is standard output",
                    any_text(request.stats_json));
+  arguments.flag("--profile",
+                 "Add to the closing numbers where the time went: march, resolve, normals, shading, film",
+                 request.options.profile);
 }
 
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
@@ -41,7 +50,7 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    whole(options.bounces, 0, compiler::kMaxBounces));
   arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
                    into(read_angle, request.fov));
-  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels (16); never changes the picture",
+  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels, at most (16); never changes the picture",
                    whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
@@ -73,6 +82,10 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
   arguments.flag("--reference", "Search every ray in double; the same as --march certified", request.reference);
   arguments.option("--epsilon", "DISTANCE", "What counts as a hit, scene units (1e-4); sphere, relaxed, automatic",
                    into(read_positive, request.epsilon));
+  arguments.flag("--no-regions", "Evaluate the whole program everywhere, however large the scene",
+                 request.no_regions);
+  arguments.option("--region-memory", "MB", "The most memory regions may take (64)",
+                   whole(request.region_memory, 1, 1 << 20));
   arguments.option("--max-steps", "N", "Evaluations before a ray is given up (512); sphere, relaxed, automatic",
                    whole(request.steps, 1, 1 << 20));
   arguments.option("--relaxation", "FACTOR", "Steps of so many safe radii, in [1, 2) (1.6); relaxed",
@@ -128,6 +141,11 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
   }
   if (request.quiet && request.verbosity > 0) return fail(streams, kUsage, "--quiet does not go with --verbose");
+  if (request.quiet && request.options.profile && !request.stats_json) {
+    return fail(streams, kUsage, "--quiet leaves out the numbers that --profile adds to",
+                {"leave out --quiet, or ask for --stats-json FILE"});
+  }
+  request.options.layers = {request.albedo || request.depth || request.normal, request.cost_map.has_value()};
   if (request.outputs.empty()) {
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;
@@ -136,6 +154,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
   request.options.marching = std::get<runtime::Marching>(marching);
+  request.options.regions = !request.no_regions;
+  if (request.region_memory) request.options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
   return request;
 }
 

@@ -28,6 +28,29 @@ TEST_CASE("film: means over all samples, depth over those that hit", "[runtime]"
   CHECK(film.means(0, 0).samples == 0);
 }
 
+TEST_CASE("film: layers that are not kept are zero and change nothing of the others", "[runtime]") {
+  PathSample sample = sample_of(1, 4);
+  sample.evaluations = 30;
+  sample.instructions = 600;
+  Film bare(1, 1, {.first_hit = false, .cost = false}), usual(1, 1), full(1, 1, {.first_hit = true, .cost = true});
+  for (Film* film : {&bare, &usual, &full}) {
+    CHECK(film->add(0, 0, sample));
+    sample.evaluations = 10;
+    CHECK(film->add(0, 0, sample));
+    sample.evaluations = 30;
+    CHECK(film->means(0, 0).radiance == glm::dvec3(1, 2, 0));
+    CHECK(film->means(0, 0).hits == 2);
+  }
+  CHECK(bare.means(0, 0).albedo == glm::dvec3(0));
+  CHECK(bare.means(0, 0).depth == 0);
+  CHECK(usual.means(0, 0).depth == 4);
+  CHECK(usual.means(0, 0).evaluations == 0);
+  CHECK(full.means(0, 0).evaluations == 20);
+  CHECK(full.means(0, 0).instructions == 600);
+  CHECK(full.hash() == usual.hash());  // the cost is no part of the picture
+  CHECK(bare.hash() != usual.hash());
+}
+
 TEST_CASE("film: the order of samples leaves no trace", "[runtime]") {
   Film forwards(1, 1), backwards(1, 1);
   for (int i = 0; i < 1000; ++i) {

@@ -1,7 +1,9 @@
 #include "runtime/image_io.h"
 
 #include <catch2/catch.hpp>
+#include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "tests/support/temporary_folder.h"
 
@@ -60,6 +62,26 @@ TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
   REQUIRE(write_image(gradient(4, 4), folder.file("a.bmp")) == std::nullopt);
   CHECK(folder.files() == 1);
   CHECK(read(folder.file("a.bmp"))[18] == 4);
+}
+
+TEST_CASE("image_io: a float map holds the values, the lowest row first", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  const std::vector<float> values = {1, -2.5f, 0, 1e-3f, 1e9f, std::numeric_limits<float>::infinity()};
+  REQUIRE(write_float_map(values, 3, 2, folder.file("a.PFM")) == std::nullopt);
+  const std::string bytes = read(folder.file("a.PFM")), header = "Pf\n3 2\n-1.0\n";
+  REQUIRE(bytes.size() == header.size() + 6 * 4);
+  CHECK(bytes.substr(0, header.size()) == header);
+  CHECK(bytes.substr(header.size() + 3 * 4, 4) == std::string("\0\0\x80\x3f", 4));  // 1, the upper left
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    float value;
+    std::memcpy(&value, bytes.data() + header.size() + 4 * ((i + 3) % 6), 4);
+    CHECK(value == values[i]);
+  }
+  CHECK(is_float_map("a.b/c.pfm"));
+  CHECK_FALSE(is_float_map("a.pfm/c"));
+  CHECK_FALSE(is_float_map("pfm"));
+  CHECK(write_float_map(values, 3, 2, folder.file("none/a.pfm")).has_value());
+  CHECK(folder.files() == 1);
 }
 
 TEST_CASE("image_io: a path is refused before rendering, with the reason", "[runtime]") {

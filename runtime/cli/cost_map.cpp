@@ -1,0 +1,78 @@
+#include "runtime/cli/cost_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/chart/colormap.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/image_io.h"
+
+namespace fathom::cli {
+namespace {
+
+struct Map {
+  const char* name;  // of the file, and of what is counted
+  double runtime::PixelMeans::*value;
+};
+constexpr Map kMaps[] = {
+    {"evaluations", &runtime::PixelMeans::evaluations},
+    {"instructions", &runtime::PixelMeans::instructions},
+};
+
+std::vector<float> values_of(const runtime::Film& film, const Map& map) {
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()));
+  for (int y = 0; y < film.height(); ++y) {
+    for (int x = 0; x < film.width(); ++x) values.push_back(static_cast<float>(film.means(x, y).*map.value));
+  }
+  return values;
+}
+
+std::string describe_values(const std::vector<float>& values, const Map& map) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  double sum = 0;
+  for (const float value : values) sum += static_cast<double>(value);
+  return fmt::format("{} a sample, least {:.6g}, mean {:.6g}, most {:.6g}", map.name, *least,
+                     sum / static_cast<double>(values.size()), *most);
+}
+
+}  // namespace
+
+Verdict read_map_name(std::string_view text, std::string& path) {
+  path = text;
+  if (runtime::image_format_of(path) || runtime::is_float_map(path)) return std::nullopt;
+  return Complaint{fmt::format("`{}` does not end in the name of a format for maps", text),
+                   "valid endings: .png, .jpg, .jpeg, .bmp for colours, .pfm for numbers"};
+}
+
+std::vector<std::string> cost_map_files(const std::string& path) {
+  std::vector<std::string> files;
+  for (const Map& map : kMaps) files.push_back(beside(path, map.name));
+  return files;
+}
+
+std::optional<std::string> write_cost_maps(const std::string& path, const runtime::Film& film,
+                                           std::vector<std::string>& lines) {
+  for (const Map& map : kMaps) {
+    const std::string file = beside(path, map.name);
+    const std::vector<float> values = values_of(film, map);
+    int height = film.height();
+    std::string meaning = describe_values(values, map);
+    std::optional<std::string> problem;
+    if (runtime::is_float_map(file)) {
+      problem = runtime::write_float_map(values, film.width(), film.height(), file);
+    } else {
+      const runtime::ColorScale scale = runtime::scale_for(values, true);
+      const runtime::Picture picture = runtime::draw_map(values, film.width(), film.height(), scale);
+      problem = runtime::write_image(picture, file);
+      height = picture.height;
+      meaning += fmt::format("; dark violet is {:.6g}, yellow {:.6g}, logarithmic, black none", scale.lo, scale.hi);
+    }
+    if (problem) return problem;
+    lines.push_back(fmt::format("wrote {} ({}x{}): {}", file, film.width(), height, meaning));
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::cli
