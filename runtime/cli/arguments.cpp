@@ -51,8 +51,9 @@ Arguments::Arguments(const std::string& verb, const std::string& description, co
   app_.get_formatter()->label("REQUIRED", "");
 }
 
-void Arguments::positional(const std::string& name, const std::string& doc, std::string& target, bool required) {
-  app_.add_option(name, target, doc)->required(required)->type_name("FILE");
+void Arguments::positional(const std::string& name, const std::string& doc, std::string& target, bool required,
+                           const std::string& value) {
+  app_.add_option(name, target, doc)->required(required)->type_name(value);
 }
 
 void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {

@@ -17,6 +17,7 @@
 // Along (value and derivative along a line, along-inl.h), Slope (value, gradient and float error over a box,
 // slope-inl.h), Enclosure (what f32 computes over boxes, enclosure-inl.h), and over the first two Dual (derivatives,
 // dual-inl.h) and Tagged (which surface won, tagged-inl.h).
+// Recorded (recorded-inl.h) holds no number: it writes down what is done to it.
 //
 // These headers are compiled once for each instruction set, hence "-inl" and the namespace HWY_NAMESPACE.
 #if defined(FATHOM_VM_NUMBER_INL) == defined(HWY_TARGET_TOGGLE)
