@@ -20,7 +20,6 @@
 #define FATHOM_VM_ELEMENTARY_INL
 #endif
 
-#include <concepts>
 #include <cstddef>
 #include <limits>
 
@@ -30,12 +29,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// The types the kernels are written for; the others build on these.
-template <class N>
-concept Plain = std::same_as<N, Batch> || std::same_as<N, Real>;
-
+// What differs from type to type. The kernels are written for the types that have it, the Plain ones; the others build
+// on these.
 template <class N>
 struct Precision;
+template <class N>
+concept Plain = requires { Precision<N>::kNoAngle; };
 
 template <>
 struct Precision<Batch> {

@@ -1,0 +1,50 @@
+// The functions an emitted file needs, each printed once and after those it calls.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/emit/language.h"
+#include "vm/opcode.h"
+
+namespace fathom::compiler {
+
+// An instruction's immediates, without those that belong to its operand.
+struct Immediates {
+  std::span<const std::uint32_t> words;
+  std::span<const double> wide;
+};
+
+class FunctionLibrary {
+ public:
+  explicit FunctionLibrary(const Language& language) : language_(language) {}
+
+  // The instruction's result as an expression: a call, or the operation itself where there is only one. `operands`: a
+  // point, or one or two numbers.
+  Expression apply(vm::Opcode opcode, const std::vector<Expression>& operands, const Immediates& immediates);
+
+  // All functions so far.
+  const std::string& text() const { return text_; }
+
+ private:
+  struct Function {
+    std::string name;
+    vm::RecordedFunction recorded;
+    bool printed = false;
+  };
+
+  Function& function_of(const vm::OpcodeInfo& row, const Immediates& immediates);
+  void print(Function& function, const vm::OpcodeInfo& row);
+  void print_called(const vm::RecordedFunction& function);
+  void print_operation(vm::Operation operation);
+
+  const Language& language_;
+  std::map<std::vector<double>, Function> functions_;  // by opcode and what shapes the function
+  std::map<vm::Opcode, int> outlines_;                 // how many of them there are
+  std::map<vm::Operation, bool> operations_;           // that are printed
+  std::string text_;
+};
+
+}  // namespace fathom::compiler

@@ -1,0 +1,59 @@
+#include "compiler/emit/language.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::compiler {
+namespace {
+
+// Names that the machine's rows have and that mean something else in these languages, or within an emitted file.
+constexpr std::string_view kCppTaken[] = {"and", "or",     "not",    "xor",    "abs",   "any",      "ceil",
+                                          "cos", "exp",    "floor",  "length", "log",   "mantissa", "max",
+                                          "min", "number", "select", "sin",    "sqrt",  "exponent", "square",
+                                          "tan", "asin",   "acos",   "atan",   "atan2", "pow",      "distance"};
+constexpr std::string_view kGlslTaken[] = {"abs",  "ceil", "cos", "exp",  "floor", "length",  "log",
+                                           "max",  "min",  "sin", "sqrt", "tan",   "step",    "inverse",
+                                           "sign", "atan", "mix", "mod",  "exp2",  "distance"};
+
+std::string cpp_literal(double value) {
+  if (std::isinf(value)) return value > 0 ? "kInfinity" : "-kInfinity";
+  return fmt::format("{}", value);
+}
+Expression cpp_number(std::string_view literal) { return {fmt::format("number({})", literal)}; }
+
+// The fewest digits that give the float, with a point: an integer is no float in GLSL.
+std::string glsl_literal(double value) {
+  const float rounded = static_cast<float>(value);
+  if (std::isinf(rounded)) return rounded > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
+  const std::string text = fmt::format("{}", rounded);
+  return text.find_first_of(".e") == text.npos ? text + ".0" : text;
+}
+Expression glsl_number(std::string_view literal) {
+  return {std::string(literal), literal.starts_with('-') ? vm::Binding::Sign : vm::Binding::Call};
+}
+
+}  // namespace
+
+const Language kCpp{&vm::OperationInfo::cpp,
+                    "",
+                    "static FATHOM_SCENE_INLINE ",
+                    "T",
+                    "auto",
+                    "double",
+                    true,
+                    "vec3{{{0}, {1}, {2}}}",
+                    cpp_literal,
+                    cpp_number,
+                    kCppTaken};
+const Language kGlsl{&vm::OperationInfo::glsl, "scene_",     "",          "float",   "bool", "float", false,
+                     "vec3({0}, {1}, {2})",    glsl_literal, glsl_number, kGlslTaken};
+
+std::string Language::free_name(std::string_view name) const {
+  std::string result(name);
+  if (std::find(taken.begin(), taken.end(), name) != taken.end()) result += '_';
+  return result;
+}
+
+}  // namespace fathom::compiler

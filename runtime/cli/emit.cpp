@@ -1,0 +1,96 @@
+// fathom emit: the scene's distance function as C++ or GLSL.
+// Tested by: tests/runtime/cli_emit_test.cpp
+#include "compiler/emit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/verbs.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom emit cpp scene.json -o scene.h           # template <class T> T fathom_scene::distance(T x, T y, T z)\n"
+    "fathom emit cpp scene.json --namespace wall     # in a namespace of that name\n"
+    "fathom emit glsl scene.json > scene.glsl        # float scene_distance(vec3 p)\n"
+    "fathom emit glsl scene.json --name wall         # float wall_distance(vec3 p)\n"
+    "\n"
+    "The head of the C++ says what other types than float and double T can be. The text is as long as the listing "
+    "that\n"
+    "`fathom dump` prints: of ten thousand objects a compiler takes minutes, and a graphics driver may not take it.";
+
+enum Language { kCpp, kGlsl };
+
+struct EmitRequest {
+  int language = kCpp;
+  SceneArguments scene;
+  std::optional<std::string> output, name_space, name;
+};
+
+// A Setter for names that `problem_with` has nothing against.
+Setter identifier(std::string (*problem_with)(std::string_view), std::optional<std::string>& target) {
+  return [problem_with, &target](std::string_view text) -> Verdict {
+    if (std::string problem = problem_with(text); !problem.empty()) {
+      return Complaint{fmt::format("`{}` cannot be a name there", text), std::move(problem)};
+    }
+    target = text;
+    return std::nullopt;
+  };
+}
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EmitRequest& request) {
+  Arguments arguments("emit", "Writes the scene's distance function as source code of another language.", kExamples);
+  std::string language;
+  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language);
+  add_scene_arguments(arguments, request.scene);
+  arguments.option("-o,--output", "FILE", "File to write (standard output)", any_text(request.output));
+  arguments.option("--namespace", "NAME", "cpp: the namespace the function is in (fathom_scene)",
+                   identifier(compiler::problem_with_namespace, request.name_space));
+  arguments.option("--name", "NAME", "glsl: what all names begin with (scene)",
+                   identifier(compiler::problem_with_glsl_name, request.name));
+  if (const auto code = arguments.parse(args, streams)) return code;
+  if (const Verdict wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
+    return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem), {wrong->help});
+  }
+  if (request.language == kGlsl && request.name_space) {
+    return fail(streams, kUsage, "GLSL has no namespaces", {"use --name"});
+  }
+  if (request.language == kCpp && request.name) {
+    return fail(streams, kUsage, "--name is about GLSL", {"use --namespace"});
+  }
+  if (!request.output) return std::nullopt;
+  return check_collisions(request.scene.path, {*request.output}, streams);
+}
+
+}  // namespace
+
+int run_emit(std::span<const std::string> args, const Streams& streams) {
+  EmitRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  auto source = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+  const std::string text = request.language == kGlsl
+                               ? compiler::emit_glsl(scene, request.name.value_or("scene"))
+                               : compiler::emit_cpp(scene, request.name_space.value_or("fathom_scene"));
+  if (!request.output) {
+    streams.out << text;
+    return kDone;
+  }
+  std::ofstream file(*request.output, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) return fail(streams, kIo, fmt::format("cannot write `{}`", *request.output));
+  streams.err << fmt::format("wrote {}\n", *request.output);
+  return kDone;
+}
+
+}  // namespace fathom::cli
