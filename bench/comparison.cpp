@@ -81,14 +81,15 @@ class Table : public benchmark::BenchmarkReporter {
     const bool compared = run.counters.count("ratio") > 0;
     const double judged = value(compared ? "ratio" : "ours");
     const char* const verdict = std::isinf(most) ? "" : judged <= most && judged >= least ? "holds" : "missed";
-    const std::string bar = std::isinf(most) ? "" : least > 0 ? fmt::format("{:.4g}..{:.4g}", least, most) : fmt::format("<= {:.4g}", most);
+    const std::string bar = std::isinf(most) ? ""
+                            : least > 0      ? fmt::format("{:.4g}..{:.4g}", least, most)
+                                             : fmt::format("<= {:.4g}", most);
     if (compared) {
       fmt::print("{:<44} {:>10.4g} {:>10.4g} {:<12} {:>7.3f} ({:.3f}..{:.3f})   {:<10} {}\n", name, value("ours"),
-                 value("theirs"), unit, judged, value("ratio_least"), value("ratio_most"), bar,
-                 verdict);
+                 value("theirs"), unit, judged, value("ratio_least"), value("ratio_most"), bar, verdict);
     } else {
-      fmt::print("{:<44} {:>10.4g} {:>10} {:<12} {:>7} {:<16} {:<10} {}\n", name, judged, "", unit, "", "",
-                 bar, verdict);
+      fmt::print("{:<44} {:>10.4g} {:>10} {:<12} {:>7} {:<16} {:<10} {}\n", name, judged, "", unit, "", "", bar,
+                 verdict);
     }
     if (cut != std::string::npos) fmt::print("    {}\n", run.report_label.substr(cut + kNote.size()));
   }

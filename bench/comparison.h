@@ -3,7 +3,8 @@
 //
 // A row is a Google Benchmark with manual time, and has its filters, repetitions and JSON (--benchmark_filter=REGEX,
 // --benchmark_out=FILE). An iteration is a round: it times "ours", then "theirs", in thread CPU time on one pinned
-// processor, or on the wall where threads are the question. The row shows the median of each and of the rounds' ratios ours/theirs, with the least and the most.
+// processor, or on the wall where threads are the question. The row shows the median of each and of the rounds'
+// ratios ours/theirs, with the least and the most.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -14,10 +15,10 @@
 namespace fathom::bench {
 
 struct Comparison {
-  std::string name;         // question/scene
-  const char* unit;         // of what is printed
-  double per_unit;          // seconds times this are in that unit
-  double most, least = 0;   // what the ratio should be at most, and at least
+  std::string name;        // question/scene
+  const char* unit;        // of what is printed
+  double per_unit;         // seconds times this are in that unit
+  double most, least = 0;  // what the ratio should be at most, and at least
   int rounds;
   std::function<void()> ours, theirs;
   std::function<std::string()> note = {};  // printed below the row

@@ -28,8 +28,8 @@ namespace {
 #include "scene_e.h"
 #include "scene_f.h"
 
-#define FATHOM_SCENE(Name, scene, inlining) \
-  struct Name {                             \
+#define FATHOM_SCENE(Name, scene, inlining)                                                        \
+  struct Name {                                                                                    \
     static inlining Batch distance(Batch x, Batch y, Batch z) { return scene::distance(x, y, z); } \
   };
 FATHOM_SCENE(Primitives, scene_a, HWY_INLINE)

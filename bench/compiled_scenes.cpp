@@ -9,9 +9,10 @@
 #endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/compiled_scenes.cpp"
+// clang-format off
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-
-#include "bench/compiled_scenes-inl.h"
+#include "bench/compiled_scenes-inl.h"  // after the line above
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::bench::HWY_NAMESPACE {

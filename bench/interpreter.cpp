@@ -1,7 +1,7 @@
 // What does interpretation cost? Time per point of the block machine against the same scene as C++ compiled ahead of
 // time with the same lanes and floating-point flags (`fathom emit cpp`), against that with -O3 -march=native
-// -ffast-math, and against the machine's own scalar interpreter: the same loop over registers of one float, a point at
-// a time.
+// -ffast-math, and against the machine's own scalar interpreter: the same loop over registers of one float, a point
+// at a time.
 //
 //     build/release/bench_interpreter
 #include <cmath>
@@ -56,8 +56,8 @@ struct Bars {
   const char* scene;
   double ahead, scalar;  // the ratio at most
 };
-constexpr Bars kBars[] = {{"A", 1.15, 0.1}, {"B", 1.15, 0.1}, {"D1000", 1.15, 0.1}, {"C", 1.25, 1 / 7.0},
-                          {"E", 1.25, 0.1}, {"F", 4, 0.1}};
+constexpr Bars kBars[] = {{"A", 1.15, 0.1},     {"B", 1.15, 0.1}, {"D1000", 1.15, 0.1},
+                          {"C", 1.25, 1 / 7.0}, {"E", 1.25, 0.1}, {"F", 4, 0.1}};
 
 }  // namespace
 
@@ -70,11 +70,13 @@ int main(int argc, char** argv) {
     const int repeats = scene.repeats();
     const double nanoseconds = 1e9 / kPoints / repeats;
     const auto interpret = [&scene, repeats] { scene.interpret(repeats); };
-    const auto against = [&scene, repeats](DistanceOf run) { return [&scene, repeats, run] { scene.run(run, repeats); }; };
+    const auto against = [&scene, repeats](DistanceOf run) {
+      return [&scene, repeats, run] { scene.run(run, repeats); };
+    };
     add({name + ": machine / emitted C++", "ns a point", nanoseconds, bars.ahead, 0, kRounds, interpret,
          against(ahead.distance)});
-    add({name + ": machine / emitted C++ with -ffast-math", "ns a point", nanoseconds, INFINITY, 0, kRounds, interpret,
-         against(fast.distance)});
+    add({name + ": machine / emitted C++ with -ffast-math", "ns a point", nanoseconds, INFINITY, 0, kRounds,
+         interpret, against(fast.distance)});
     add({name + ": machine / its scalar interpreter", "ns a point", 1e9 / kPoints, bars.scalar, 0, kRounds,
          [&scene] { scene.interpret(1); }, [&scene] { scene.interpret_scalar(); }});
   }

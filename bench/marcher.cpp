@@ -1,6 +1,6 @@
 // What does interpretation cost a ray? The whole marcher, with its clipping, steps, brackets and search in double,
-// against the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera rays and
-// on the diffuse rays that leave their hits.
+// against the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera rays
+// and on the diffuse rays that leave their hits.
 //
 //     build/release/bench_marcher
 #include <glm/geometric.hpp>

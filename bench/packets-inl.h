@@ -144,6 +144,7 @@ class Random {
   using Ints = hn::RebindToUnsigned<FloatLanes>;
   using Int = hn::Vec<Ints>;
 
+  HWY_INLINE Random() : state_(hn::Zero(Ints())) {}
   HWY_INLINE void seed(Mask where, Int seed) {
     state_ = hn::IfThenElse(hn::RebindMask(Ints(), where.m), output(step(seed)), state_);
   }
@@ -162,7 +163,7 @@ class Random {
     return hn::Xor(hn::ShiftRight<22>(w), w);
   }
 
-  Int state_ = hn::Zero(Ints());
+  Int state_;
 };
 
 // Ended lanes wait until so many share the price of four evaluations for their normals; the fastest of 1 to 16.

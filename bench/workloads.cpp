@@ -1,6 +1,7 @@
-// Is Fathom faster than what one would write by hand? Workloads S and P (workload.h): its whole march-and-shade time, at
-// its own accuracy, against the usual hand-written renderer around the scene compiled ahead of time (packets-inl.h).
-// Before they are timed both pictures are compared: their counts and means stand in the second table.
+// Is Fathom faster than what one would write by hand? Workloads S and P (workload.h): its whole march-and-shade time,
+// at its own accuracy, against the usual hand-written renderer around the scene compiled ahead of time
+// (packets-inl.h). Before they are timed both pictures are compared: their counts and means stand in the second
+// table.
 //
 //     build/release/bench_workloads
 #include "bench/clouds.h"
@@ -19,8 +20,8 @@ struct Row {
   int rounds;
   int spp;  // of P; the published 64 where that takes seconds
 };
-constexpr Row kRows[] = {{"A", 1, 0.8, 5, 64},          {"B", 1, 0.8, 5, 64},        {"C", 1, 0.8, 3, 64},
-                         {"E", 1, 0.8, 5, 64},          {"D1000", 0.1, 0.1, 3, 2},   {"D10000", 1 / 60.0, 1 / 60.0, 1, 1}};
+constexpr Row kRows[] = {{"A", 1, 0.8, 5, 64}, {"B", 1, 0.8, 5, 64},      {"C", 1, 0.8, 3, 64},
+                         {"E", 1, 0.8, 5, 64}, {"D1000", 0.1, 0.1, 3, 2}, {"D10000", 1 / 60.0, 1 / 60.0, 1, 1}};
 
 struct Scene {
   explicit Scene(const CompiledAhead& compiled) : ahead(compiled), scene(compile_file(compiled.path)) {
@@ -49,8 +50,8 @@ int main(int argc, char** argv) {
     Scene& scene = *scenes.emplace_back(std::make_unique<Scene>(find(compiled_scenes(), row.scene)));
     Frame frame = kPathFrame;
     frame.spp = row.spp;
-    compare(fmt::format("{}: S, Fathom / by hand", row.scene), scene, kShadowFrame, scene.ahead.shadow, row.shadow_bar,
-            row.rounds, fathom_shadow);
+    compare(fmt::format("{}: S, Fathom / by hand", row.scene), scene, kShadowFrame, scene.ahead.shadow,
+            row.shadow_bar, row.rounds, fathom_shadow);
     compare(fmt::format("{}: P at {} spp, Fathom / by hand", row.scene, row.spp), scene, frame, scene.ahead.paths,
             row.path_bar, row.rounds, fathom_paths);
   }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "vm/evaluate.h"
 #include "vm/opcode.h"
 
 namespace fathom::runtime {
@@ -19,6 +20,9 @@ struct Field {
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;  // scene units (compiler/bounds.h)
+  // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
+  // same scene. May read and write past `count` up to a whole register.
+  void (*evaluator)(vm::Points points, std::size_t count, float* distance);
 };
 
 // `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least

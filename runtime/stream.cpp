@@ -75,8 +75,10 @@ void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
 template <>
 void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
-  vm::evaluate_distance(*field_.distance, {row[kX], row[kY], row[kZ]}, static_cast<std::size_t>(live_),
-                        distance_.data(), workspace_);
+  const vm::Points points{row[kX], row[kY], row[kZ]};
+  const auto count = static_cast<std::size_t>(live_);
+  if (field_.evaluator) return field_.evaluator(points, count, distance_.data());
+  vm::evaluate_distance(*field_.distance, points, count, distance_.data(), workspace_);
 }
 
 template <>
