@@ -28,20 +28,23 @@ namespace {
 #include "scene_e.h"
 #include "scene_f.h"
 
-#define FATHOM_SCENE(Name, scene, inlining)                                                        \
+// kLevel: what the scene file takes off the distance, so that its surface is where classic tracing has its hits.
+#define FATHOM_SCENE(Name, scene, level, inlining)                                                 \
   struct Name {                                                                                    \
+    static constexpr double kLevel = level;                                                        \
     static inlining Batch distance(Batch x, Batch y, Batch z) { return scene::distance(x, y, z); } \
   };
-FATHOM_SCENE(Primitives, scene_a, HWY_INLINE)
-FATHOM_SCENE(Csg, scene_b, HWY_INLINE)
-FATHOM_SCENE(Bulb, scene_c, HWY_INLINE)
-FATHOM_SCENE(Gyroid, scene_e, HWY_INLINE)
-FATHOM_SCENE(Formula, scene_f, HWY_INLINE)
-FATHOM_SCENE(Thousand, scene_d1000, HWY_NOINLINE)  // a thousand lines, in a dozen places
+FATHOM_SCENE(Primitives, scene_a, 0, HWY_INLINE)
+FATHOM_SCENE(Csg, scene_b, 0, HWY_INLINE)
+FATHOM_SCENE(Bulb, scene_c, 5e-4, HWY_INLINE)
+FATHOM_SCENE(Gyroid, scene_e, 1e-3, HWY_INLINE)
+FATHOM_SCENE(Formula, scene_f, 0, HWY_INLINE)
+FATHOM_SCENE(Thousand, scene_d1000, 2e-4, HWY_NOINLINE)  // a thousand lines, in a dozen places
 #undef FATHOM_SCENE
 
 // Of ten thousand objects no one writes a line each.
 struct TenThousand {
+  static constexpr double kLevel = 0;
   static HWY_NOINLINE Batch distance(Batch x, Batch y, Batch z) {
     static const ManyObjects objects = make_many_objects(10000);
     Batch nearest = c(std::numeric_limits<float>::infinity());

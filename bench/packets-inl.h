@@ -5,6 +5,7 @@
 //
 // Compiled once for each instruction set. A scene is a type with
 //     static Batch distance(Batch x, Batch y, Batch z);
+//     static constexpr double kLevel;                    // to be added to it
 #if defined(FATHOM_BENCH_PACKETS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_PACKETS_INL
 #undef FATHOM_BENCH_PACKETS_INL
@@ -46,7 +47,8 @@ constexpr int kMostSteps = 256;
 
 template <class Scene>
 HWY_INLINE B field(V p) {
-  return Scene::distance(p.x, p.y, p.z);
+  const B distance = Scene::distance(p.x, p.y, p.z);
+  return Scene::kLevel > 0 ? distance + c(Scene::kLevel) : distance;
 }
 
 template <class Scene>

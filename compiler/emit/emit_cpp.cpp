@@ -27,7 +27,7 @@ std::string emit_cpp(const CompiledScene& scene, const std::string& name_space) 
   std::string text = fmt::format(fmt::runtime(kCppHead), describe(scene), name_space, guard_of(name_space));
   text += fmt::format("namespace {} {{\n\n{}", name_space, kCppPrimitives);
   for (const char* type : {"float", "double"}) text += '\n' + fmt::format(fmt::runtime(kCppScalar), type);
-  text += fmt::format("{}{}\nstatic FATHOM_SCENE_INLINE T distance(vec3 p) {{\n{}}}\n}};\n", kCppOpen,
+  text += fmt::format("{}{}\nstatic FATHOM_SCENE_INLINE T distance([[maybe_unused]] vec3 p) {{\n{}}}\n}};\n", kCppOpen,
                       functions.text(), body);
   text +=
       "\ntemplate <class T>\nFATHOM_SCENE_INLINE T distance(T x, T y, T z) {\n  return Scene<T>::distance({x, y, "

@@ -36,19 +36,35 @@ Expression glsl_number(std::string_view literal) {
 
 }  // namespace
 
-const Language kCpp{&vm::OperationInfo::cpp,
-                    "",
-                    "static FATHOM_SCENE_INLINE ",
-                    "T",
-                    "auto",
-                    "double",
-                    true,
-                    "vec3{{{0}, {1}, {2}}}",
-                    cpp_literal,
-                    cpp_number,
-                    kCppTaken};
-const Language kGlsl{&vm::OperationInfo::glsl, "scene_",     "",          "float",   "bool", "float", false,
-                     "vec3({0}, {1}, {2})",    glsl_literal, glsl_number, kGlslTaken};
+const Language kCpp{
+    .spelling = &vm::OperationInfo::cpp,
+    .prefix = "",
+    .function_head = "static FATHOM_SCENE_INLINE ",
+    .constant = "const ",
+    .number_type = "T",
+    .mask_type = "auto",
+    .immediate_type = "double",
+    .has_double = true,
+    .point = "vec3{{{0}, {1}, {2}}}",
+    .literal = cpp_literal,
+    .number = cpp_number,
+    .taken = kCppTaken,
+};
+// In GLSL `const` is for what the compiler can compute.
+const Language kGlsl{
+    .spelling = &vm::OperationInfo::glsl,
+    .prefix = "scene_",
+    .function_head = "",
+    .constant = "",
+    .number_type = "float",
+    .mask_type = "bool",
+    .immediate_type = "float",
+    .has_double = false,
+    .point = "vec3({0}, {1}, {2})",
+    .literal = glsl_literal,
+    .number = glsl_number,
+    .taken = kGlslTaken,
+};
 
 std::string Language::free_name(std::string_view name) const {
   std::string result(name);

@@ -19,6 +19,7 @@ struct Language {
   std::string_view vm::OperationInfo::*spelling;
   std::string prefix;              // of the names of functions
   std::string_view function_head;  // before a function's type
+  std::string_view constant;       // before the type of a value that does not change
   std::string_view number_type, mask_type;
   std::string_view immediate_type;          // of a function's parameters that are numbers of the scene
   bool has_double;                          // beside float

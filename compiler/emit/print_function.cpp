@@ -151,7 +151,8 @@ class BodyPrinter {
     if (uses_.statements[i] > 1 || users_[i] != region(i) || long_text) {
       const bool mask = vm::info(statement.operation).result == vm::ResultType::Mask;
       const std::string name = fmt::format("t{}", ++names_);
-      line(fmt::format("const {} {} = {};", mask ? language_.mask_type : language_.number_type, name, text.text));
+      line(fmt::format("{}{} {} = {};", language_.constant, mask ? language_.mask_type : language_.number_type, name,
+                       text.text));
       text = {name};
     }
     texts_[i] = std::move(text);

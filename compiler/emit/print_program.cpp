@@ -13,11 +13,11 @@ using vm::Opcode;
 using vm::OpcodeInfo;
 using vm::Source;
 
-// Text for the rest of a line: what could end a comment, or lengthen it, is replaced.
+// Text for the rest of a line: what could end a comment, or lengthen it as \ and the trigraph ??/ do, is replaced.
 std::string comment_text(std::string_view text) {
   std::string result(text);
   for (char& c : result) {
-    if (c < ' ' || c > '~' || c == '\\') c = '?';
+    if (c < ' ' || c > '~' || c == '\\' || c == '?') c = '.';
   }
   return result;
 }
@@ -35,8 +35,8 @@ class ProgramPrinter {
       points_ = {line("vec3", "q", functions_.apply(Opcode::Translate, points_, {{}, by}), "the scene's origin")};
     }
     for (std::size_t i = 0; at_ < program_.words.size(); ++i) {
-      comment_ = i < program_.debug.size() ? program_.debug[i].symbol : "";
-      if (comment_ == vm::info(static_cast<Opcode>(program_.words[at_] & 0xff)).mnemonic) comment_.clear();
+      const bool known = i < program_.debug.size();
+      comment_ = known && program_.debug[i].symbol.ends_with('"') ? program_.debug[i].symbol : "";
       instruction();
     }
     out_ += fmt::format("  return {};\n", values_.back().text);
@@ -132,7 +132,7 @@ class ProgramPrinter {
     return line("vec3", fmt::format("p{}", ++point_names_), value, comment_);
   }
   Expression line(std::string_view type, std::string name, const Expression& value, const std::string& comment) {
-    out_ += fmt::format("  const {} {} = {};", type, name, value.text);
+    out_ += fmt::format("  {}{} {} = {};", language_.constant, type, name, value.text);
     if (!comment.empty()) out_ += "  // " + comment_text(comment);
     out_ += '\n';
     return {std::move(name)};
@@ -143,7 +143,8 @@ class ProgramPrinter {
   FunctionLibrary& functions_;
   std::vector<Expression> points_, values_, locals_;
   std::size_t at_ = 0, leading_ = 0;
-  std::string out_, comment_;
+  std::string out_;
+  std::string comment_;  // the instruction's symbol, when someone gave it a name
   int value_names_ = 0, point_names_ = 0;
 };
 

@@ -1,0 +1,142 @@
+#include "tests/support/emitted_programs.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "compiler/fuse.h"
+#include "compiler/lower.h"
+#include "tests/support/plain_lowering.h"
+#include "tests/support/random_scene.h"
+
+namespace fathom::test {
+namespace {
+
+using vm::Form;
+using vm::Opcode;
+using vm::Source;
+
+constexpr int kRandomScenes = 8;
+
+EmittedProgram named(std::string name, vm::Program program, glm::dvec3 origin = glm::dvec3(0)) {
+  vm::VerifiedProgram distance = verified(std::move(program));
+  return {name,
+          {{}, compiler::Source(name, ""), origin, distance, distance, compiler::Box{}, 1, 0, true, 0, "a test's"}};
+}
+
+// Numbers that no float is, so that the unrounded ones are seen to be kept.
+std::vector<double> random_immediates(const vm::OpcodeInfo& row, std::uint32_t word, Random& random) {
+  std::vector<double> immediates;
+  for (int i = 0; i < vm::leading_immediates(word); ++i) immediates.push_back(random.uniform(-1.5, 1.5));
+  const int groups = row.form == Form::Outline ? 5 : 1;
+  for (int i = 0; i < groups * row.immediates; ++i) {
+    const bool integer = vm::is_integer_immediate(row, i % row.immediates);
+    immediates.push_back(integer ? 2 + random.below(4) : random.uniform(-1.5, 1.5));
+  }
+  return immediates;
+}
+
+// The row with this operand, of random immediates, in the least program that has a use for it.
+vm::Program program_of(const vm::OpcodeInfo& row, std::uint32_t operand, Random& random) {
+  vm::Program program;
+  const bool joined = row.form == Form::Shape && (operand & vm::kJoined) != 0;
+  const vm::Sources sources = vm::sources_of(vm::opcode_word(row.opcode, operand));
+  const bool function = row.form == Form::Unary || row.form == Form::Binary;
+  if (joined || (function && sources.a == Source::Stack)) program.append(Opcode::X, 0, {}, {});
+  if (row.form == Form::Binary && sources.b == Source::Stack) program.append(Opcode::Y, 0, {}, {});
+  const std::uint32_t word = vm::opcode_word(row.opcode, row.form == Form::Outline ? 5 : operand);
+  program.append(row.opcode, operand, random_immediates(row, word, random), {});
+  if (row.form == Form::Point) {
+    program.append(Opcode::Plane, 0, {1, -2, 1, 0.25}, {});  // what the row did to each coordinate
+    program.append(Opcode::Drop, 0, {}, {});
+  }
+  return program;
+}
+
+std::string identifier(const vm::OpcodeInfo& row) { return "op_" + std::string(row.mnemonic); }
+
+void add_opcodes(std::vector<EmittedProgram>& programs, Random& random) {
+  for (int i = 0; i < vm::kOpcodeCount; ++i) {
+    const vm::OpcodeInfo& row = vm::info(static_cast<Opcode>(i));
+    if (row.form == Form::Machine) continue;
+    programs.push_back(named(identifier(row), program_of(row, 0, random)));
+  }
+}
+
+// Shapes that stand elsewhere and are joined, functions of what does not lie on the stack.
+void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
+  const vm::OpcodeInfo& box = vm::info(Opcode::Box);
+  for (std::uint32_t modes = 1; modes <= (vm::kMoved | vm::kJoined); ++modes) {
+    programs.push_back(named(fmt::format("box_{}", modes), program_of(box, modes, random)));
+  }
+  constexpr Source kSources[] = {Source::Stack, Source::X, Source::Y, Source::Z, Source::Constant};
+  for (const Source a : kSources) {
+    for (const Source b : kSources) {
+      const std::uint32_t operand = vm::operand_of(vm::Sources{a, b, 0});
+      programs.push_back(named(fmt::format("minus_{}{}", static_cast<int>(a), static_cast<int>(b)),
+                               program_of(vm::info(Opcode::Minus), operand, random)));
+    }
+    programs.push_back(named(fmt::format("exp_{}", static_cast<int>(a)),
+                             program_of(vm::info(Opcode::Exp), vm::operand_of(vm::Sources{a}), random)));
+  }
+}
+
+// Points that nest, locals, tags; the loops with immediates that keep them going; a scene far from zero.
+void add_others(std::vector<EmittedProgram>& programs) {
+  vm::Program stacks;
+  stacks.locals = 2;
+  stacks.append(Opcode::Sphere, 0, {0.7}, {});
+  stacks.append(Opcode::Tee, 1, {}, {});
+  stacks.append(Opcode::Tag, 3, {}, {});
+  stacks.append(Opcode::Translate, 0, {0.3, 0.1, -0.2}, {});
+  stacks.append(Opcode::Twist, 0, {1.7}, {});
+  stacks.append(Opcode::Box, 0, {0.4, 0.5, 0.6}, {});
+  stacks.append(Opcode::Drop, 0, {}, {});
+  stacks.append(Opcode::Torus, 0, {0.8, 0.2}, {});
+  stacks.append(Opcode::Drop, 0, {}, {});
+  stacks.append(Opcode::SmoothMin, 0, {0.2, 1.25}, {});
+  stacks.append(Opcode::Load, 1, {}, {});
+  stacks.append(Opcode::Subtract, 0, {}, {});
+  stacks.append(Opcode::Mix, 0, {0.3}, {});
+  stacks.append(Opcode::Add, vm::operand_of(vm::Sources{Source::Stack, Source::Local, 1}), {}, {});
+  programs.push_back(named("stacks", std::move(stacks)));
+
+  const auto shape = [&](const char* name, Opcode opcode, const std::vector<double>& immediates,
+                         glm::dvec3 origin = glm::dvec3(0)) {
+    vm::Program program;
+    program.append(opcode, 0, immediates, {});
+    programs.push_back(named(name, std::move(program), origin));
+  };
+  shape("mandelbulb", Opcode::Mandelbulb, {8, 12, 16, 1.104, 0.0005});
+  shape("mandelbulb_once", Opcode::Mandelbulb, {3, 1, 16, 1.104, 0.0005});
+  shape("julia", Opcode::Julia, {-0.2, 0.6, 0.1, 0.3, 11, 2.1, 40, 0.001});
+  shape("menger", Opcode::MengerSponge, {1, 4});
+  shape("ellipse", Opcode::Ellipse, {1.2, 0.4, 1.28, 1});
+  shape("clockwise", Opcode::Polygon, {0, 0, 0, 1.1, 0.9, 1, 0.5, 0.5, 0.9, 0});
+  shape("far", Opcode::Sphere, {0.6}, {1.5, -0.3, 0.7});
+}
+
+void add_random_scenes(std::vector<EmittedProgram>& programs) {
+  for (int i = 0; i < kRandomScenes; ++i) {
+    Random random(static_cast<std::uint64_t>(7000 + i));
+    GraphOptions options;
+    options.mandelbulbs = i % 4 == 0;
+    const compiler::Scene scene = random_scene(random, options);
+    const compiler::Source source("random", "");
+    programs.push_back(named(fmt::format("random_{}", i), compiler::fuse(*compiler::lower(scene, source, 100000))));
+  }
+}
+
+}  // namespace
+
+std::vector<EmittedProgram> emitted_programs() {
+  std::vector<EmittedProgram> programs;
+  Random random(41);
+  add_opcodes(programs, random);
+  add_operands(programs, random);
+  add_others(programs);
+  add_random_scenes(programs);
+  return programs;
+}
+
+}  // namespace fathom::test
