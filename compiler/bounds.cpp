@@ -40,6 +40,37 @@ std::vector<Knowledge> analyse(const Graph& graph) {
   return known;
 }
 
+Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
+  Box result;
+  std::vector<NodeId> pending = {id};
+  while (!pending.empty()) {
+    const NodeId node = pending.back();
+    pending.pop_back();
+    if (known[node].box.empty()) continue;
+    if (known[node].box.finite()) {
+      result = unite(result, known[node].box);
+      continue;
+    }
+    switch (graph.kind(node)) {
+      case Kind::Union:
+      case Kind::SmoothUnion:
+      case Kind::ChamferUnion:
+      case Kind::RoundUnion:
+      case Kind::StairsUnion:
+      case Kind::Paint:
+      case Kind::Scaled:
+        pending.insert(pending.end(), graph.children(node).begin(), graph.children(node).end());
+        break;
+      default:  // a ground alone, or something cut from it
+        if (!graph.children(node).empty() && known[graph.children(node)[0]].box.finite()) {
+          result = unite(result, known[graph.children(node)[0]].box);
+        }
+        break;
+    }
+  }
+  return result;
+}
+
 std::string_view name(Exactness exactness) {
   switch (exactness) {
     case Exactness::Exact:

@@ -15,4 +15,8 @@ Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& know
 // One entry per node id, children first.
 std::vector<Knowledge> analyse(const Graph& graph);
 
+// A box round every bounded part of a node: of a ground with things on it, round the things. Empty when there is
+// none.
+Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known);
+
 }  // namespace fathom::compiler

@@ -169,6 +169,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(*distance),
                        std::move(*surface),
                        known.box,
+                       contents(field.graph, field.root, all_known),
                        known.lipschitz,
                        known.magnitude,
                        known.certified,

@@ -94,6 +94,7 @@ struct CompiledScene : SceneTables {
   vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
 
   Box bound;                   // the field is positive outside
+  Box contents;                // a box round every bounded part of the scene; empty when it has none
   double lipschitz = 1;        // |f(p) - f(q)| <= lipschitz * |p - q|
   double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
   bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)

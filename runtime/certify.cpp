@@ -70,7 +70,7 @@ class Search {
 
   double value(double t) {
     ++result_.evaluations;
-    const double f = vm::evaluate_distance(*field_.distance, origin_ + t * direction_, workspace_);
+    const double f = field_.evaluate(origin_ + t * direction_, workspace_, result_.instructions);
     return side_ < 0 ? -f : f;
   }
 
@@ -130,7 +130,10 @@ class Search {
   // Takes what interval arithmetic knows of the segment; false when it excludes a root.
   bool narrow(Segment& s) {
     ++result_.evaluations;
-    vm::AlongLine line = vm::evaluate_along(*field_.distance, origin_, direction_, s.a, s.b, workspace_);
+    const std::optional<vm::AlongLine> known_line =
+        field_.along(origin_, direction_, s.a, s.b, workspace_, result_.instructions);
+    if (!known_line) return true;
+    vm::AlongLine line = *known_line;
     if (side_ < 0) {
       line.value = {-line.value.hi, -line.value.lo};
       line.derivative = {-line.derivative.hi, -line.derivative.lo};

@@ -24,6 +24,7 @@ struct Certified {
   double t = 0;      // of the hit, in units of |direction|
   double width = 0;  // of the bracket that holds it
   std::uint32_t evaluations = 0;
+  std::uint64_t instructions = 0;  // of the field's program, over them
 };
 
 // Where to search: [begin, end] of a ray, `end` finite.

@@ -43,4 +43,40 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   return field;
 }
 
+void add_regions(Field& field, const compiler::CompiledScene& scene, const RegionOptions& options) {
+  // A ray may go far from the bounded parts of an unbounded scene, and should find cells there.
+  constexpr double kRoom = 8;
+  compiler::Box root = field.bound;
+  if (!root.finite()) {
+    const glm::dvec3 middle = (scene.contents.lo + scene.contents.hi) / 2.0;
+    root = {middle + kRoom * (scene.contents.lo - middle), middle + kRoom * (scene.contents.hi - middle)};
+  }
+  field.regions = Regions::build(scene.surface, root, scene.lipschitz, options);
+}
+
+void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
+                     vm::Workspace& workspace) const {
+  if (evaluator) return evaluator(points, count, out);
+  if (regions) return regions->evaluate(points, count, out, scratch, workspace);
+  vm::evaluate_distance(*distance, points, count, out, workspace);
+}
+
+double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const {
+  if (regions) return regions->evaluate(point, workspace, instructions);
+  instructions += distance->instructions();
+  return vm::evaluate_distance(*distance, point, workspace);
+}
+
+std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                                          vm::Workspace& workspace, std::uint64_t& instructions) const {
+  // Multiply-adds: of more than this, cutting the stretch until it is within a cell is cheaper.
+  constexpr std::uint32_t kAffordable = 4000;
+  if (regions) {
+    if (auto found = regions->along(origin, direction, begin, end, workspace, instructions)) return found;
+    if (distance->cost() > kAffordable) return std::nullopt;
+  }
+  instructions += distance->instructions();
+  return vm::evaluate_along(*distance, origin, direction, begin, end, workspace);
+}
+
 }  // namespace fathom::runtime

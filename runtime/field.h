@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "compiler/compiled_scene.h"
-#include "vm/evaluate.h"
+#include "runtime/regions.h"
 #include "vm/opcode.h"
 
 namespace fathom::runtime {
@@ -19,10 +20,21 @@ struct Field {
   double far;           // rays end here, scene units; may be infinite when the bound is finite
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
-  float magnitude;  // scene units (compiler/bounds.h)
+  float magnitude;                         // scene units (compiler/bounds.h)
+  std::shared_ptr<const Regions> regions;  // of a scene that gains by them
+
   // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
   // same scene. May read and write past `count` up to a whole register.
-  void (*evaluator)(vm::Points points, std::size_t count, float* distance);
+  void (*evaluator)(vm::Points points, std::size_t count, float* out);
+
+  // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near. Regions
+  // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
+  void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
+                vm::Workspace& workspace) const;
+  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+  // What the field does along a stretch of a line; nothing where that would take a large scene's whole program.
+  std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
 };
 
 // `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least
@@ -30,6 +42,9 @@ struct Field {
 Field make_field(const compiler::CompiledScene& scene, std::optional<double> far = std::nullopt);
 
 inline constexpr double kDefaultFar = 1e4;  // scene units
+
+// Builds the scene's regions, if it gains by them, for `field` and what evaluates surfaces with it.
+void add_regions(Field& field, const compiler::CompiledScene& scene, const RegionOptions& options);
 
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6

@@ -14,7 +14,7 @@ class Certifier final : public Marcher {
 
  private:
   void begin(const RayBlock& rays, std::size_t i) override {
-    certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0);
+    certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0, 0);
   }
   bool has_room() const override { return true; }
   void step() override {}
@@ -37,10 +37,8 @@ void Marcher::arrive(const Arrival& arrival) {
       ++counters_.invalid;
       break;
   }
-  const std::uint64_t instructions = std::uint64_t{arrival.evaluations} * field_.distance->instructions();
-  counters_.instructions += instructions;
+  counters_.instructions += arrival.instructions;
   arrivals_.push_back(arrival);
-  arrivals_.back().instructions = instructions;
 }
 
 void Marcher::add(std::uint32_t id, const Ray& ray) {
@@ -73,7 +71,8 @@ void Marcher::begin_last() {
   }
 }
 
-void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations) {
+void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+                           std::uint64_t instructions) {
   const Stage before = clock_.enter(Stage::Resolve);
   const Certified found = certify(field_, course.origin, course.direction, side, stretch, workspace_);
   clock_.enter(before);
@@ -81,7 +80,8 @@ void Marcher::certify_from(const Course& course, int side, const Stretch& stretc
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
   arrive({course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations,
-          found.evaluations, static_cast<float>(found.width), course.entry + found.t});
+          found.evaluations, static_cast<float>(found.width), course.entry + found.t,
+          instructions + found.instructions});
 }
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {

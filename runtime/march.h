@@ -89,7 +89,8 @@ class Marcher {
   }
   void arrive(const Arrival& arrival);
   // Ends the ray by certify(), which goes on from `evaluations` in float.
-  void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations);
+  void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+                    std::uint64_t instructions);
 
   const Field& field_;
   int live_ = 0;  // rays under way; those that were added since the last advance() wait

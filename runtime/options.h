@@ -30,6 +30,8 @@ struct RenderOptions {
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
   Marching marching;
+  bool regions = true;                    // build them where the scene gains by them (runtime/regions.h)
+  std::size_t region_memory = 64u << 20;  // bytes they may take
   FilmLayers layers;
   bool profile = false;  // measure the stages' times (Stats::stages)
 
@@ -49,6 +51,8 @@ struct Settings {
   std::optional<double> far;
   std::optional<int> cut_after;
   Marching marching;
+  bool regions;
+  std::size_t region_memory;  // bytes
   FilmLayers layers;
   bool profile;
 };

@@ -100,24 +100,33 @@ class Worker {
 };
 
 World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
-  return {scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
-          to_materials(scene)};
+  World world{scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
+              to_materials(scene)};
+  if (settings.regions) {
+    add_regions(world.field, scene, {.threads = settings.threads, .memory = settings.region_memory});
+  }
+  return world;
 }
 
 Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
-  Tiles tiles(world.settings.width, world.settings.height, world.settings.tile);
+  const Settings& settings = world.settings;
+  Tiles tiles(settings.width, settings.height,
+              tile_side(settings.width, settings.height, settings.tile, settings.threads));
   ProgressReport report(options, world.settings);
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int i = 0; i < world.settings.threads; ++i) {
-    workers.push_back(std::make_unique<Worker>(world, tiles, film, report, options.cancel));
-  }
+  std::vector<Stats> stats(static_cast<std::size_t>(settings.threads));
+  // Each thread makes its worker itself, so that what it writes to lies in memory of its own.
+  const auto work = [&](Stats& counted) {
+    const auto worker = std::make_unique<Worker>(world, tiles, film, report, options.cancel);
+    worker->run();
+    counted = worker->stats();
+  };
   std::vector<std::thread> threads;
-  for (std::size_t i = 1; i < workers.size(); ++i) threads.emplace_back([&, i] { workers[i]->run(); });
-  workers[0]->run();
+  for (std::size_t i = 1; i < stats.size(); ++i) threads.emplace_back([&, i] { work(stats[i]); });
+  work(stats[0]);
   for (std::thread& thread : threads) thread.join();
-  Stats stats;
-  for (const auto& worker : workers) stats.merge(worker->stats());
-  return stats;
+  Stats sum;
+  for (const Stats& counted : stats) sum.merge(counted);
+  return sum;
 }
 
 }  // namespace
@@ -133,6 +142,8 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.seed = options.seed.value_or(scene.settings.seed);
   settings.cut_after = options.cut_after;
   settings.marching = options.marching;
+  settings.regions = options.regions;
+  settings.region_memory = options.region_memory;
   settings.layers = options.layers;
   settings.profile = options.profile;
   settings.far = options.far ? options.far : scene.settings.far;
@@ -147,6 +158,10 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
   const World world = make_world(scene, settings);
   RenderResult result{Film(settings.width, settings.height, settings.layers), settings, {}};
   result.stats = render_tiles(world, result.film, options);
+  if (world.field.regions) {
+    result.stats.region_bytes = world.field.regions->facts().bytes;
+    result.stats.region_seconds = world.field.regions->facts().seconds;
+  }
   result.stats.seconds = seconds_since(start);
   result.stats.threads = settings.threads;
   result.stats.cancelled = options.cancel && options.cancel->load();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "runtime/quadtree.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
@@ -165,8 +166,10 @@ Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int
   return slice;
 }
 
-std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads) {
+std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
+                                  SliceValues wanted) {
   std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
+  if (evaluate_by_quadtree(distance, slice, wanted, threads, field)) return field;
   Rows rows(distance, slice, field);
   std::vector<std::thread> others;
   for (int i = 1; i < std::min(threads, slice.height); ++i) others.emplace_back([&] { rows.work(); });

@@ -41,8 +41,13 @@ glm::dvec2 on_plane(Axis axis, glm::dvec3 point);
 // the origin, or to a length of 4.
 Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height);
 
-// f at the pixels' centres in float32, [y][x], the same for any number of threads. The picture is cut into rows.
-std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads);
+// What is wanted of the field: its values, or no more than numbers of the same sign.
+enum class SliceValues { Exact, Sign };
+
+// f at the pixels' centres in float32, [y][x], the same for any number of threads. Of programs that can be cut the
+// picture is a quadtree (runtime/quadtree.h), of others it is cut into rows.
+std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
+                                  SliceValues wanted = SliceValues::Exact);
 
 // White where the value is negative, black elsewhere, nothing between.
 Picture sign_picture(const std::vector<float>& field, int width, int height);

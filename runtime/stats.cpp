@@ -31,6 +31,9 @@ constexpr Row kRows[] = {
     {"certified_evaluations", "evaluations searching", nullptr, &MarchCounters::certified_evaluations},
     {"instructions", "instructions", nullptr, &MarchCounters::instructions},
     {"lanes", "lanes taken", nullptr, &MarchCounters::lanes},
+    {"region_far", "evaluations far off", nullptr, &MarchCounters::region_far},
+    {"region_bundles", "evaluations of bundles", nullptr, &MarchCounters::region_bundles},
+    {"region_programs", "evaluations of parts", nullptr, &MarchCounters::region_programs},
     {"dropped_samples", "samples dropped", &Stats::dropped_samples, nullptr},
     {"saturated_samples", "samples over full", &Stats::saturated, nullptr},
 };
@@ -122,6 +125,10 @@ std::string to_table(const Stats& stats) {
     text += fmt::format("{:<24}{:>16.3f}\n", rate.words, (stats.*rate.value)() * rate.scale);
   }
   if (stats.stages) text += stage_table(stats);
+  if (stats.region_bytes > 0) {
+    text += fmt::format("{:<24}{:>16.1f}\n", "memory of regions, MB", static_cast<double>(stats.region_bytes) * 1e-6);
+    text += fmt::format("{:<24}{:>16.3f}\n", "seconds of regions", stats.region_seconds);
+  }
   if (stats.peak_memory > 0) {
     text += fmt::format("{:<24}{:>16.1f}\n", "peak memory, MB", static_cast<double>(stats.peak_memory) * 1e-6);
   }
@@ -136,6 +143,8 @@ std::string to_json(const Stats& stats) {
   for (const Row& row : kRows) text += fmt::format("  \"{}\": {},\n", row.name, count_of(stats, row));
   for (const Rate& rate : kRates) text += fmt::format("  \"{}\": {:.6g},\n", rate.name, (stats.*rate.value)());
   if (stats.stages) text += fmt::format("  \"stage_seconds\": {},\n", stage_json(*stats.stages));
+  text += fmt::format("  \"region_bytes\": {},\n", stats.region_bytes);
+  text += fmt::format("  \"region_seconds\": {:.6g},\n", stats.region_seconds);
   text += fmt::format("  \"peak_memory\": {},\n", stats.peak_memory);
   text += fmt::format("  \"seconds\": {:.6g},\n", stats.seconds);
   text += fmt::format("  \"threads\": {},\n", stats.threads);

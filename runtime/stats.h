@@ -26,6 +26,8 @@ struct MarchCounters {
   std::uint64_t certified_evaluations = 0;  // those in double, part of `evaluations`
   std::uint64_t instructions = 0;           // of the field's program, over all evaluations
   std::uint64_t lanes = 0;                  // of the machine, taken by the other evaluations: whole registers
+  // Of the evaluations in float, those in each kind of region (runtime/regions.h).
+  std::uint64_t region_far = 0, region_bundles = 0, region_programs = 0;
 
   void merge(const MarchCounters& other);
 };
@@ -38,11 +40,13 @@ struct Stats {
   std::uint64_t saturated = 0;         // paths that overfilled a pixel's sum
   std::optional<StageSeconds> stages;  // of all threads together; when asked for (RenderOptions::profile)
   std::uint64_t peak_memory = 0;       // bytes, of the whole process until now; 0: not known
+  std::uint64_t region_bytes = 0;      // that the scene's regions take; 0: it has none
+  double region_seconds = 0;           // to build them, part of `seconds`
   double seconds = 0;                  // wall clock
   int threads = 0;
   bool cancelled = false;
 
-  void merge(const Stats& other);  // the counts and stages; not memory, seconds, threads
+  void merge(const Stats& other);  // the counts and stages; not memory, regions, seconds, threads
   double evaluations_per_ray() const;
   double instructions_per_evaluation() const;
   // The share of the machine's lanes that held a ray, in [0,1]; 1 when none was taken. The search in double, which

@@ -70,22 +70,26 @@ void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
   put(kM, seeded_ ? std::clamp(static_cast<double>(rays.slope[i]), -1.0, 0.9) : -1);
   put(kPenalty, seeded_ ? kFirstPenalty : 1);
   courses_[lane] = course_of(rays, i);
+  instructions_[lane] = 0;
 }
 
 template <>
 void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
-  const vm::Points points{row[kX], row[kY], row[kZ]};
   const auto count = static_cast<std::size_t>(live_);
-  if (field_.evaluator) return field_.evaluator(points, count, distance_.data());
-  vm::evaluate_distance(*field_.distance, points, count, distance_.data(), workspace_);
+  field_.evaluate({row[kX], row[kY], row[kZ]}, count, distance_.data(), scratch_, workspace_);
+  if (field_.regions) {
+    for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
+  } else {
+    for (std::size_t i = 0; i < count; ++i) instructions_[i] += field_.distance->instructions();
+  }
 }
 
 template <>
 void Stream<double>::evaluate() {
   const auto& row = lanes_->row;
   for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
-    distance_[i] = vm::evaluate_distance(*field_.distance, {row[kX][i], row[kY][i], row[kZ][i]}, workspace_);
+    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, workspace_, instructions_[i]);
   }
 }
 
@@ -96,6 +100,7 @@ void Stream<S>::close_holes() {
     if (hole == last) continue;
     for (auto& row : lanes_->row) row[hole] = row[last];
     courses_[hole] = courses_[last];
+    instructions_[hole] = instructions_[last];
   }
   holes_.clear();
 }
@@ -107,6 +112,8 @@ void Stream<S>::step() {
   const std::size_t count = static_cast<std::size_t>(live_);
   counters_.evaluations += count;
   counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
+  counters_.region_far = scratch_.counters.far, counters_.region_bundles = scratch_.counters.bundled;
+  counters_.region_programs = scratch_.counters.specialised;
   LaneNumbers ended;
   for (std::size_t i = runtime::advance(*lanes_, count, distance_.data(), rules_, ended); i-- > 0;) finish(ended[i]);
 }
@@ -118,13 +125,13 @@ void Stream<S>::finish(std::size_t i) {
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
   const auto arrive_as = [&](Arrival::Status status, float width, double t) {
-    arrive({course.id, status, static_cast<std::int8_t>(side), evaluations, 0, width, t});
+    arrive({course.id, status, static_cast<std::int8_t>(side), evaluations, 0, width, t, instructions_[i]});
   };
   --live_;
   holes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Certify:
-      return certify_from(course, side, what_is_left(i), evaluations);
+      return certify_from(course, side, what_is_left(i), evaluations, instructions_[i]);
     case LaneVerdict::Hit:
       return arrive_as(Arrival::Status::Hit, static_cast<float>(number(kWidth)),
                        course.entry + static_cast<double>(number(kT)));

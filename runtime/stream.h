@@ -34,6 +34,8 @@ class Stream final : public Marcher {
   alignas(64) std::array<S, kLanes> distance_;  // [lane]
   std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
   std::size_t lanes_used_ = 0;      // with the holes
+  RegionScratch scratch_;
+  std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
 };
 
 }  // namespace fathom::runtime

@@ -42,8 +42,13 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     y[i] = static_cast<float>(hits[i].position.y);
     z[i] = static_cast<float>(hits[i].position.z);
   }
-  vm::evaluate_surface(scene.surface, {x.data(), y.data(), z.data()}, hits.size(),
-                       {distance.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
+  const vm::Points places{x.data(), y.data(), z.data()};
+  const vm::SurfaceValues values{distance.data(), gx.data(), gy.data(), gz.data(), surface.data()};
+  if (field.regions) {
+    field.regions->evaluate_surface(places, hits.size(), values, workspace);
+  } else {
+    vm::evaluate_surface(scene.surface, places, hits.size(), values, workspace);
+  }
   for (std::size_t i = 0; i < hits.size(); ++i) {
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
@@ -51,7 +56,8 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     const float most = kMostOffset * field.band;
     if (clear > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
-      const vm::SurfaceValue exact = vm::evaluate_surface(scene.surface, hits[i].position, workspace);
+      const vm::SurfaceValue exact = field.regions ? field.regions->evaluate_surface(hits[i].position, workspace)
+                                                   : vm::evaluate_surface(scene.surface, hits[i].position, workspace);
       gradient = glm::vec3(exact.gradient);
       surface[i] = exact.surface;
     }

@@ -9,6 +9,19 @@
 
 namespace fathom::runtime {
 
+// The side that cuts a picture into enough tiles for `threads`: `most`, or less when the picture is small. The last
+// tiles keep some threads waiting for one tile's time.
+inline constexpr int kTilesPerThread = 64;
+inline int tile_side(int width, int height, int most, int threads) {
+  const auto pieces = [](int length, int side) { return (length + side - 1) / side; };
+  int side = most;
+  while (side > 1 &&
+         std::int64_t{pieces(width, side)} * pieces(height, side) < std::int64_t{kTilesPerThread} * threads) {
+    side = (side + 1) / 2;
+  }
+  return side;
+}
+
 // Pixels [x0, x1) x [y0, y1).
 struct Tile {
   int x0, y0, x1, y1;

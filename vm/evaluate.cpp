@@ -18,7 +18,7 @@ namespace fathom::vm::HWY_NAMESPACE {
 // Calls body(first point of the block, points in it) with the machine's points filled; lanes past the end repeat the
 // last point.
 template <class T, class Body>
-HWY_INLINE void for_each_block(const VerifiedProgram& program, Points points, std::size_t count, Workspace& workspace,
+HWY_INLINE void for_each_block(const Code& program, Points points, std::size_t count, Workspace& workspace,
                                const Body& body) {
   constexpr std::size_t kBlockPoints = kSlot<T> * kLanes;
   for (std::size_t begin = 0; begin < count; begin += kBlockPoints) {
@@ -72,7 +72,7 @@ HWY_INLINE Batch finite_or_zero(Batch a) {
   return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
 }
 
-void distance_batch(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+void distance_batch(const Code& program, Points points, std::size_t count, float* distance,
                     Workspace& workspace) {
   for_each_block<Batch>(program, points, count, workspace,
                         [&](std::size_t begin, std::size_t size, std::size_t used, const Batch* result) HWY_ATTR {
@@ -80,7 +80,7 @@ void distance_batch(const VerifiedProgram& program, Points points, std::size_t c
                         });
 }
 
-void surface_batch(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out,
                    Workspace& workspace) {
   using T = Tagged<Dual<Batch>>;
   for_each_block<T>(program, points, count, workspace,
@@ -108,12 +108,12 @@ namespace fathom::vm {
 HWY_EXPORT(distance_batch);
 HWY_EXPORT(surface_batch);
 
-void evaluate_distance(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance,
                        Workspace& workspace) {
   HWY_DYNAMIC_DISPATCH(distance_batch)(program, points, count, distance, workspace);
 }
 
-void evaluate_surface(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out,
                       Workspace& workspace) {
   HWY_DYNAMIC_DISPATCH(surface_batch)(program, points, count, out, workspace);
 }

@@ -41,7 +41,7 @@ class Workspace {
 };
 
 // distance[i] = f(points[i]), float32, for i in [0, count).
-void evaluate_distance(const VerifiedProgram& program, Points points, std::size_t count, float* distance,
+void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance,
                        Workspace& workspace);
 
 // What is known of a batch of points beside the distance; five arrays of at least `count` entries.
@@ -52,7 +52,7 @@ struct SurfaceValues {
   float* gradient_z;
   std::uint32_t* surface;  // the number of the `tag` that won, 0 in a program without tags
 };
-void evaluate_surface(const VerifiedProgram& program, Points points, std::size_t count, SurfaceValues out,
+void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out,
                       Workspace& workspace);
 
 struct SurfaceValue {
@@ -62,8 +62,8 @@ struct SurfaceValue {
 };
 
 // The same in double, one point at a time, with the program's unrounded constants.
-double evaluate_distance(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace);
-SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace);
+double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& workspace);
+SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct Range {
   double lo, hi;
@@ -71,14 +71,14 @@ struct Range {
 
 // An interval that contains f(p) for every p in the box [lo, hi], rounded outwards. Source: Moore, "Interval
 // Analysis", 1966.
-Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
+Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
 // What a program does along a stretch of a line: f(origin + t direction) and its derivative by t, for t in [begin,
 // end] (vm/number/along-inl.h). The derivative's range is infinite where the value may jump.
 struct AlongLine {
   Range value, derivative;
 };
-AlongLine evaluate_along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
+AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
                          double end, Workspace& workspace);
 
 // What a program can do over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite where nothing
@@ -88,7 +88,7 @@ struct SlopeBound {
   double lipschitz;    // |f(p) - f(q)| <= lipschitz |p - q| in the box
   double float_error;  // |f32 value - exact value| at f32 points of the box, scene units
 };
-SlopeBound evaluate_slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
+SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
 // Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best
 // first. The environment variable FATHOM_ISA forces one.

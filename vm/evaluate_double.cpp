@@ -7,18 +7,18 @@ namespace fathom::vm::HWY_NAMESPACE {
 namespace {
 
 template <class T, class P>
-T run_once(const VerifiedProgram& program, const Vec3<P>& point, Workspace& workspace) {
+T run_once(const Code& program, const Vec3<P>& point, Workspace& workspace) {
   Machine<T> machine(program, workspace, 1);
   *machine.first_point() = point;
   machine.interpret();
   return *machine.result();
 }
 
-double distance(const VerifiedProgram& program, glm::dvec3 p, Workspace& workspace) {
+double distance(const Code& program, glm::dvec3 p, Workspace& workspace) {
   return run_once<Real>(program, Vec3<Real>{{p.x}, {p.y}, {p.z}}, workspace).v;
 }
 
-SurfaceValue surface(const VerifiedProgram& program, glm::dvec3 p, Workspace& workspace) {
+SurfaceValue surface(const Code& program, glm::dvec3 p, Workspace& workspace) {
   using D = Dual<Real>;
   const Real zero{0}, one{1};
   const Vec3<D> point{{{p.x}, one, zero, zero}, {{p.y}, zero, one, zero}, {{p.z}, zero, zero, one}};
@@ -30,13 +30,13 @@ SurfaceValue surface(const VerifiedProgram& program, glm::dvec3 p, Workspace& wo
           result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v)};
 }
 
-Range range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+Range range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   const Vec3<Interval> box{{lo.x, hi.x}, {lo.y, hi.y}, {lo.z, hi.z}};
   const Interval result = run_once<Interval>(program, box, workspace);
   return {result.lo, result.hi};
 }
 
-AlongLine along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+AlongLine along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                 Workspace& workspace) {
   const auto coordinate = [&](int axis) {
     const double a = origin[axis] + begin * direction[axis], b = origin[axis] + end * direction[axis];
@@ -56,7 +56,7 @@ Slope coordinate(double lo, double hi, int axis) {
   return s;
 }
 
-SlopeBound slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   const Vec3<Slope> box{coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
   const Slope result = run_once<Slope>(program, box, workspace);
   return {{result.v.lo, result.v.hi}, result.norm, result.error * kUnit};
@@ -68,24 +68,24 @@ HWY_AFTER_NAMESPACE();
 
 namespace fathom::vm {
 
-double evaluate_distance(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace) {
+double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& workspace) {
   return HWY_NAMESPACE::distance(program, point, workspace);
 }
 
-SurfaceValue evaluate_surface(const VerifiedProgram& program, glm::dvec3 point, Workspace& workspace) {
+SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace) {
   return HWY_NAMESPACE::surface(program, point, workspace);
 }
 
-Range evaluate_range(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   return HWY_NAMESPACE::range(program, lo, hi, workspace);
 }
 
-AlongLine evaluate_along(const VerifiedProgram& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
+AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
                          double end, Workspace& workspace) {
   return HWY_NAMESPACE::along(program, origin, direction, begin, end, workspace);
 }
 
-SlopeBound evaluate_slope(const VerifiedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   return HWY_NAMESPACE::slope(program, lo, hi, workspace);
 }
 

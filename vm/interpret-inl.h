@@ -28,6 +28,7 @@ namespace fathom::vm::HWY_NAMESPACE {
 // One struct per opcode with its meaning as a function; the form decides what it may use.
 #define OP_Point(Name, meaning)                                                                \
   struct Name##Op {                                                                            \
+    static constexpr Opcode kOpcode = Opcode::Name;                                            \
     template <class T>                                                                         \
     static HWY_INLINE Vec3<T> apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k) { \
       return meaning;                                                                          \
@@ -35,6 +36,7 @@ namespace fathom::vm::HWY_NAMESPACE {
   };
 #define OP_Shape(Name, meaning)                                                        \
   struct Name##Op {                                                                    \
+    static constexpr Opcode kOpcode = Opcode::Name;                                    \
     template <class T>                                                                 \
     static HWY_INLINE T apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k, \
                               [[maybe_unused]] const std::uint32_t* w) {               \
@@ -43,6 +45,7 @@ namespace fathom::vm::HWY_NAMESPACE {
   };
 #define OP_Outline(Name, meaning)                                        \
   struct Name##Op {                                                      \
+    static constexpr Opcode kOpcode = Opcode::Name;                      \
     template <class T, class Groups>                                     \
     static HWY_INLINE T apply(const Vec3<T>& p, const Groups& outline) { \
       return meaning;                                                    \
@@ -97,6 +100,33 @@ struct ValueTraits<Tagged<T>> {
   }
 };
 
+// What the point stack holds for numbers of type P, and how a point's or a shape's meaning is applied to that. Of a
+// shape that is not moved, `by` is 0.
+template <class P>
+struct PointTraits {
+  using Place = Vec3<P>;
+  template <class Op>
+  static HWY_INLINE Place map(const Place& p, const Constant<P>* k) {
+    return Op::apply(p, k);
+  }
+  template <class Op, int Count>
+  static HWY_INLINE P shape(const Place& p, bool moved, const Constant<P>* by, const Constant<P>* k,
+                            const std::uint32_t* w) {
+    return Op::apply(moved ? TranslateOp::apply(p, by) : p, k, w);
+  }
+  template <class Op, class Groups>
+  static HWY_INLINE P outline(const Place& p, const Groups& groups) {
+    return Op::apply(p, groups);
+  }
+};
+
+// Who is told what is chosen from: the i-th numbers of a choice's operands, then that the choice is over. No one.
+template <class T>
+struct ChoiceObserver {
+  HWY_INLINE void see(std::size_t, const T&, const T&) {}
+  HWY_INLINE void next() {}
+};
+
 // Numbers per stack slot. Eight registers a block measured best or equal on 8 and 16 lanes; types that are many
 // registers wide take shorter blocks to stay in the cache.
 template <class T>
@@ -106,11 +136,15 @@ inline constexpr std::size_t kSlot<Batch> = kLanes >= 8 ? 8 : 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
 
-HWY_INLINE Batch immediate(const Program& program, std::size_t word, Batch*) {
+// Whether all numbers of a slot always matter.
+template <class T>
+inline constexpr bool kAlwaysFull = kSlot<T> == 1;
+
+HWY_INLINE Batch immediate(const Code& program, std::size_t word, Batch*) {
   return Batch::broadcast(std::bit_cast<float>(program.words[word]));
 }
 template <class C>
-HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
+HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
   return C::broadcast(program.wide[word]);
 }
 
@@ -119,7 +153,7 @@ HWY_INLINE C immediate(const Program& program, std::size_t word, C*) {
 template <class C, int kSize>
 class Outline {
  public:
-  Outline(const Program& program, std::size_t word, std::size_t count) : Outline(program.wide.data() + word, count) {}
+  Outline(const Code& program, std::size_t word, std::size_t count) : Outline(program.wide + word, count) {}
   Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
 
   std::size_t count() const { return count_; }
@@ -138,30 +172,32 @@ class Machine {
  public:
   using Traits = ValueTraits<T>;
   using P = typename Traits::Point;
+  using Places = PointTraits<P>;
+  using Place = typename Places::Place;
   using C = Constant<T>;
   static constexpr std::size_t kBlock = kSlot<T>;
   static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
 
   // `used` is how many of a slot's numbers matter.
-  Machine(const VerifiedProgram& verified, Workspace& workspace, std::size_t used)
-      : program_(verified.program()), used_(used) {
-    const std::size_t point_bytes = verified.max_points() * kBlock * sizeof(Vec3<P>);
-    const std::size_t value_slots = verified.max_values() + program_.locals + kSpares;
+  Machine(const Code& program, Workspace& workspace, std::size_t used) : program_(program), used_(used) {
+    const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Place);
+    const std::size_t value_slots = program_.max_values + program_.locals + kSpares;
     auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_slots * kBlock * sizeof(T)));
-    points_ = reinterpret_cast<Vec3<P>*>(memory);
+    points_ = reinterpret_cast<Place*>(memory);
     values_ = reinterpret_cast<T*>(memory + point_bytes);
-    locals_ = values_ + verified.max_values() * kBlock;
+    locals_ = values_ + program_.max_values * kBlock;
     spares_ = locals_ + program_.locals * kBlock;
   }
 
-  Vec3<P>* first_point() { return points_; }
+  Place* first_point() { return points_; }
   const T* result() const { return values_; }
+  ChoiceObserver<T>& observer() { return observer_; }
 
   // Runs the program on the block of points at first_point(); its values are at result() afterwards.
   void interpret() {
     point_ = points_;
     top_ = values_ - kBlock;
-    const std::size_t size = program_.words.size();
+    const std::size_t size = program_.size;
     for (at_ = 0; at_ != size;) {
       const std::uint32_t word = program_.words[at_];
       ++at_;
@@ -223,7 +259,7 @@ class Machine {
     for (int i = 0; i < Count; ++i) {
       result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
     }
-    result.words = program_.words.data() + at_;
+    result.words = program_.words + at_;
     at_ += Count;
     return result;
   }
@@ -231,9 +267,9 @@ class Machine {
   template <class Op, int Count>
   HWY_INLINE void apply_point() {
     const auto immediates = take<Count>();
-    const Vec3<P>* from = point_;
-    Vec3<P>* to = point_ += kBlock;
-    for_used([&](std::size_t i) HWY_ATTR { to[i] = Op::apply(from[i], immediates.k); });
+    const Place* from = point_;
+    Place* to = point_ += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Places::template map<Op>(from[i], immediates.k); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_shape() {
@@ -241,21 +277,23 @@ class Machine {
     const bool moved = modes & kMoved, joined = modes & kJoined;
     const auto by = moved ? take<3>() : Immediates<3>{};
     const auto immediates = take<Count>();
-    const Vec3<P>* from = point_;
+    const Place* from = point_;
     T* to = joined ? top_ : top_ += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
-      const Vec3<P> p = moved ? TranslateOp::apply(from[i], by.k) : from[i];
-      const T value = Traits::lift(Op::apply(p, immediates.k, immediates.words));
+      const T value =
+          Traits::lift(Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words));
+      if (joined) observer_.see(i, to[i], value);
       to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
     });
+    if (joined) observer_.next();
   }
   template <class Op, int Count>
   HWY_INLINE void apply_outline() {
     const Outline<C, Count> outline(program_, at_, operand_of(program_.words[at_ - 1]));
     at_ += outline.count() * Count;
-    const Vec3<P>* from = point_;
+    const Place* from = point_;
     T* to = top_ += kBlock;
-    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Op::apply(from[i], outline)); });
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Places::template outline<Op>(from[i], outline)); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_unary() {
@@ -285,9 +323,11 @@ class Machine {
         Traits::number(value) = Op::apply(Traits::number(value), Traits::number(b[i]), immediates.k);
         to[i] = value;
       } else {
+        observer_.see(i, a[i], b[i]);
         to[i] = Op::apply(a[i], b[i], immediates.k);
       }
     });
+    if constexpr (Op::kChoice != Choice::None) observer_.next();
   }
 
   // The numbers of an operand, wherever they lie.
@@ -309,9 +349,10 @@ class Machine {
     }
     const auto axis = static_cast<std::size_t>(source) - static_cast<std::size_t>(Source::X);
     if constexpr (std::is_same_v<T, P>) {
-      return {&point_->x + axis, 3};
+      static_assert(sizeof(Place) % sizeof(T) == 0, "a coordinate's neighbours are a whole number of numbers away");
+      return {&point_->x + axis, sizeof(Place) / sizeof(T)};
     } else {
-      const auto& coordinate = axis == 0 ? &Vec3<P>::x : axis == 1 ? &Vec3<P>::y : &Vec3<P>::z;
+      P Place::*const coordinate = axis == 0 ? &Place::x : axis == 1 ? &Place::y : &Place::z;
       for_used([&](std::size_t i) HWY_ATTR { spare[i] = Traits::lift(point_[i].*coordinate); });
       return {spare, 1};
     }
@@ -323,22 +364,23 @@ class Machine {
   // Calls body(i) for the numbers of a slot that matter. A full block, the common case, has a constant length.
   template <class Body>
   HWY_INLINE void for_used(const Body& body) {
-    if (const std::size_t used = used_; used == kBlock) {
+    if (const std::size_t used = used_; kAlwaysFull<T> || used == kBlock) {
       for (std::size_t i = 0; i < kBlock; ++i) body(i);
     } else {
       for (std::size_t i = 0; i < used; ++i) body(i);
     }
   }
 
-  const Program& program_;
+  const Code program_;
   std::size_t used_;
-  Vec3<P>* points_;
+  Place* points_;
   T* values_;
   T* locals_;
   T* spares_;
-  Vec3<P>* point_ = nullptr;  // top of the point stack
-  T* top_ = nullptr;          // top of the value stack
-  std::size_t at_ = 0;        // next word
+  Place* point_ = nullptr;  // top of the point stack
+  T* top_ = nullptr;        // top of the value stack
+  std::size_t at_ = 0;      // next word
+  [[no_unique_address]] ChoiceObserver<T> observer_;
 };
 
 }  // namespace fathom::vm::HWY_NAMESPACE

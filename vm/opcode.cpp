@@ -86,6 +86,11 @@ StackEffect effect_of(std::uint32_t word) {
   return {a + b, 1 - a - b, 0, 0};
 }
 
+bool is_choice(std::uint32_t word) {
+  const OpcodeInfo& row = kTable[word & 0xff];
+  return row.choice != Choice::None || (row.form == Form::Shape && (operand_of(word) & kJoined) != 0);
+}
+
 std::size_t instruction_length(std::uint32_t word) {
   const std::size_t own = std::size_t{group_count(word)} * static_cast<std::size_t>(kTable[word & 0xff].immediates);
   return 1 + static_cast<std::size_t>(leading_immediates(word)) + own;

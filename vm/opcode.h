@@ -74,6 +74,8 @@ std::uint32_t minimum_groups(Opcode opcode);
 // Immediates before the row's own: where a Shape is moved to, a Source::Constant of a and of b.
 int leading_immediates(std::uint32_t word);
 StackEffect effect_of(std::uint32_t word);
+// Whether the result can be exactly one of two operands: a row with a choice, or a joined Shape.
+bool is_choice(std::uint32_t word);
 // Words of an instruction, the opcode word included, and its cost. The low byte must name an opcode.
 std::size_t instruction_length(std::uint32_t word);
 std::uint64_t instruction_cost(std::uint32_t word);

@@ -120,6 +120,7 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
     at += instruction_length(word);
     ++result.instructions_;
+    result.choices_ += is_choice(word);
     result.cost_ += static_cast<std::uint32_t>(instruction_cost(word));
   }
   if (state.values != 1 || state.points != 1) {

@@ -8,6 +8,8 @@
 // ends. Tested by: tests/vm/verify_test.cpp
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <variant>
@@ -29,13 +31,27 @@ struct VerifyError {
   std::string reason;
 };
 
+// A program as the machine runs it: a view of words that are known to be sound, and the sizes they need. Valid as long
+// as what holds them, a VerifiedProgram or what vm/specialise.h made of one.
+struct Code {
+  const std::uint32_t* words;
+  const double* wide;  // [word]
+  std::size_t size;    // words
+  std::uint32_t locals, max_values, max_points, choices;
+};
+
 // A program that passed, and the stack heights it reaches.
 class VerifiedProgram {
  public:
+  operator Code() const {
+    return {program_.words.data(), program_.wide.data(), program_.words.size(), program_.locals,
+            max_values_,           max_points_,           choices_};
+  }
   const Program& program() const { return program_; }
   std::uint32_t max_values() const { return max_values_; }
   std::uint32_t max_points() const { return max_points_; }
   std::uint32_t instructions() const { return instructions_; }
+  std::uint32_t choices() const { return choices_; }  // instructions that can hand on one operand (vm/opcode.h)
   std::uint32_t cost() const { return cost_; }  // multiply-adds per point, by the table's estimate
 
  private:
@@ -43,7 +59,7 @@ class VerifiedProgram {
   VerifiedProgram() = default;
 
   Program program_;
-  std::uint32_t max_values_ = 0, max_points_ = 0, instructions_ = 0, cost_ = 0;
+  std::uint32_t max_values_ = 0, max_points_ = 0, instructions_ = 0, choices_ = 0, cost_ = 0;
 };
 
 [[nodiscard]] std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits& limits = {});

@@ -50,7 +50,7 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    whole(options.bounces, 0, compiler::kMaxBounces));
   arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
                    into(read_angle, request.fov));
-  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels (16); never changes the picture",
+  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels, at most (16); never changes the picture",
                    whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
@@ -82,6 +82,10 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
   arguments.flag("--reference", "Search every ray in double; the same as --march certified", request.reference);
   arguments.option("--epsilon", "DISTANCE", "What counts as a hit, scene units (1e-4); sphere, relaxed, automatic",
                    into(read_positive, request.epsilon));
+  arguments.flag("--no-regions", "Evaluate the whole program everywhere, however large the scene",
+                 request.no_regions);
+  arguments.option("--region-memory", "MB", "The most memory regions may take (64)",
+                   whole(request.region_memory, 1, 1 << 20));
   arguments.option("--max-steps", "N", "Evaluations before a ray is given up (512); sphere, relaxed, automatic",
                    whole(request.steps, 1, 1 << 20));
   arguments.option("--relaxation", "FACTOR", "Steps of so many safe radii, in [1, 2) (1.6); relaxed",
@@ -150,6 +154,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
   request.options.marching = std::get<runtime::Marching>(marching);
+  request.options.regions = !request.no_regions;
+  if (request.region_memory) request.options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
   return request;
 }
 

@@ -25,7 +25,9 @@ struct RenderRequest {
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
-  int precision = -1;  // a runtime::Precision; -1: not given
+  bool no_regions = false;
+  std::optional<int> region_memory;  // MB
+  int precision = -1;                // a runtime::Precision; -1: not given
   bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;

@@ -53,8 +53,8 @@ bool about_definitions(const compiler::Diagnostics& diagnostics) {
 }  // namespace
 
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required) {
-  arguments.positional("scene", "The scene, a JSON file or another format it knows; - reads standard input", scene.path,
-                       required);
+  arguments.positional("scene", "The scene, a JSON file or another format it knows; - reads standard input",
+                       scene.path, required);
   arguments.option("-D,--define", "NAME=VALUE", "A parameter's value: a number, or a formula such as pi/4",
                    append_to(read_definition, scene.definitions));
   arguments.option("--error-format", "FORMAT", "How to print what is wrong with the scene: text, short or json",

@@ -129,8 +129,9 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
 
   const runtime::Slice slice = place_slice(request, scene);
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto wanted = request.show == kSign ? runtime::SliceValues::Sign : runtime::SliceValues::Exact;
   const std::vector<float> field =
-      runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors));
+      runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors), wanted);
   note_invalid(field, streams);
   const Drawing drawing = draw(request, slice, field);
   if (const auto problem = runtime::write_image(drawing.picture, request.output)) return fail(streams, kIo, *problem);

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "runtime/elementary.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -28,6 +30,23 @@ TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[runtime]") {
   CHECK(beauty_picture(film, 2).rgb[0] == 255);  // 1
   CHECK(beauty_picture(film, 10).rgb[0] == 255);
   CHECK(beauty_picture(film, 10).rgb[6] == 0);
+}
+
+TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[runtime]") {
+  constexpr int kSide = 512;
+  Film film(kSide, kSide);
+  PathSample sample;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    sample.radiance = glm::vec3(static_cast<float>(i) / (kSide * kSide - 1));
+    film.add(i % kSide, i / kSide, sample);
+  }
+  const Picture picture = beauty_picture(film, 0);
+  int wrong = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double light = film.means(i % kSide, i / kSide).radiance.x;
+    wrong += picture.rgb[static_cast<std::size_t>(3 * i)] != static_cast<int>(srgb_encode(light) * 255 + 0.5);
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("image: what lies first along the ray", "[runtime]") {

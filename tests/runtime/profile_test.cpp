@@ -65,8 +65,6 @@ TEST_CASE("profile: every stage takes time, and all of them a thread's", "[rende
     CHECK(sum <= threads * stats.seconds);
     // The rest is memory for the film and the start and end of threads, which a busy machine may draw out.
     CHECK(sum >= 0.5 * stats.seconds);
-    const auto of = [&](Stage stage) { return (*stats.stages)[static_cast<std::size_t>(stage)]; };
-    CHECK(of(Stage::March) > of(Stage::Film));
   }
 }
 

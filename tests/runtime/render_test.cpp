@@ -1,11 +1,14 @@
 // Whole pictures against closed forms, and the promise that threads and tiles leave no trace.
 #include "runtime/render.h"
 
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
+#include "runtime/tiles.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 
@@ -155,6 +158,26 @@ TEST_CASE("render: threads and tiles leave no trace in the picture", "[render]")
   }
   options.seed = 1;
   CHECK(render(scene, options).film.hash() != reference.film.hash());
+}
+
+TEST_CASE("render: tiles take every pixel once, and a small picture has enough of them for all threads", "[render]") {
+  CHECK(tile_side(640, 360, 16, 2) == 16);
+  CHECK(tile_side(64, 36, 16, 2) < 16);
+  CHECK(tile_side(3, 2, 1024, 32) == 1);
+  for (const auto& [width, height, threads] : {std::array{70, 45, 2}, {5, 300, 3}, {1, 1, 8}, {33, 17, 16}}) {
+    const int side = tile_side(width, height, 16, threads);
+    INFO(width << " x " << height << ", " << threads << " threads: tiles of " << side);
+    Tiles tiles(width, height, side);
+    std::vector<int> taken(static_cast<std::size_t>(width * height));
+    int count = 0;
+    for (auto tile = tiles.take(); tile; tile = tiles.take(), ++count) {
+      for (int y = tile->y0; y < tile->y1; ++y) {
+        for (int x = tile->x0; x < tile->x1; ++x) ++taken[static_cast<std::size_t>(y * width + x)];
+      }
+    }
+    CHECK(taken == std::vector<int>(taken.size(), 1));
+    CHECK(count >= std::min(width * height, kTilesPerThread * threads));
+  }
 }
 
 TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {

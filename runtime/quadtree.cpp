@@ -1,0 +1,140 @@
+#include "runtime/quadtree.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "vm/specialise.h"
+
+namespace fathom::runtime {
+namespace {
+
+// Edges of the tiles, pixels; a tile holds kSide * kSide of the next.
+constexpr int kEdges[] = {256, 64, 16};
+constexpr int kLevels = 3, kSide = 4;
+static_assert(kSide * kSide == vm::kEnclosedBoxes);
+// With fewer choices a row at a time is as fast.
+constexpr std::size_t kLeastChoices = 24;
+
+struct Tile {
+  int x, y;  // of its first pixel
+};
+
+class QuadtreeWorker {
+ public:
+  QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
+      : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {}
+
+  // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
+  void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
+    const int edge = kEdges[level];
+    set_boxes(first, edge);
+    vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
+    specialiser.look(part, boxes(), workspace_);
+    const float infinity = std::numeric_limits<float>::infinity();
+    specialiser.decide(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const Tile tile = tile_of(first, edge, i);
+      if (tile.x >= slice_.width || tile.y >= slice_.height || (only < vm::kEnclosedBoxes && i != only)) continue;
+      if (sign_ && (specialiser.lo(i) > 0 || specialiser.hi(i) < 0)) {
+        fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
+        continue;
+      }
+      vm::Part& child = parts_[static_cast<std::size_t>(level)];
+      specialiser.part(i, child);
+      if (level + 1 < kLevels) {
+        run(child, tile, level + 1);
+      } else {
+        evaluate(child, tile);
+      }
+    }
+  }
+
+ private:
+  static Tile tile_of(Tile first, int edge, std::size_t i) {
+    return {first.x + edge * static_cast<int>(i % kSide), first.y + edge * static_cast<int>(i / kSide)};
+  }
+  vm::Boxes boxes() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
+
+  // From the first pixel's centre to the last one's, in the coordinates the pixels are evaluated at.
+  void set_boxes(Tile first, int edge) {
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const Tile tile = tile_of(first, edge, i);
+      const int x0 = std::min(tile.x, slice_.width - 1), y0 = std::min(tile.y, slice_.height - 1);
+      const int x1 = std::min(tile.x + edge, slice_.width) - 1, y1 = std::min(tile.y + edge, slice_.height) - 1;
+      const glm::dvec3 a = slice_.point(x0, y0), b = slice_.point(std::max(x0, x1), std::max(y0, y1));
+      for (int axis = 0; axis < 3; ++axis) {
+        const float u = static_cast<float>(a[axis]), v = static_cast<float>(b[axis]);
+        lo_[axis][i] = std::min(u, v), hi_[axis][i] = std::max(u, v);
+      }
+    }
+  }
+
+  float* row(int y) { return field_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice_.width); }
+
+  void fill(Tile tile, int edge, float value) {
+    const int x1 = std::min(tile.x + edge, slice_.width), y1 = std::min(tile.y + edge, slice_.height);
+    for (int y = tile.y; y < y1; ++y) std::fill(row(y) + tile.x, row(y) + x1, value);
+  }
+
+  void evaluate(const vm::Part& part, Tile tile) {
+    constexpr int kEdge = kEdges[kLevels - 1];
+    const int x1 = std::min(tile.x + kEdge, slice_.width), y1 = std::min(tile.y + kEdge, slice_.height);
+    alignas(64) std::array<std::array<float, kEdge * kEdge>, 3> points;
+    alignas(64) std::array<float, kEdge * kEdge> values;
+    std::size_t count = 0;
+    for (int y = tile.y; y < y1; ++y) {
+      for (int x = tile.x; x < x1; ++x, ++count) {
+        const glm::dvec3 p = slice_.point(x, y);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          points[axis][count] = static_cast<float>(p[static_cast<int>(axis)]);
+        }
+      }
+    }
+    vm::evaluate_distance(part, {points[0].data(), points[1].data(), points[2].data()}, count, values.data(),
+                          workspace_);
+    const float* from = values.data();
+    for (int y = tile.y; y < y1; ++y, from += x1 - tile.x) std::copy_n(from, x1 - tile.x, row(y) + tile.x);
+  }
+
+  const Slice& slice_;
+  const bool sign_;
+  std::vector<float>& field_;
+  vm::Workspace workspace_;
+  std::array<vm::Specialiser, kLevels> specialisers_;
+  std::array<vm::Part, kLevels> parts_;
+  alignas(64) float lo_[3][vm::kEnclosedBoxes], hi_[3][vm::kEnclosedBoxes];
+};
+
+}  // namespace
+
+bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
+                          std::vector<float>& field) {
+  vm::Expression expression;
+  if (!expression.read(distance) || expression.choices().size() < kLeastChoices) return false;
+  const vm::Part part = vm::whole(distance);
+  const int step = kEdges[0] * kSide;
+  const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
+  std::atomic<int> next{0};
+  // The largest tiles are handed out one by one; what is known of sixteen costs as much as of one.
+  constexpr int kTiles = kSide * kSide;
+  const auto work = [&] {
+    QuadtreeWorker worker(slice, wanted, field);
+    for (int i = next++; i < columns * rows * kTiles; i = next++) {
+      const int block = i / kTiles;
+      worker.run(part, {block % columns * step, block / columns * step}, 0,
+                 threads > 1 ? static_cast<std::size_t>(i % kTiles) : vm::kEnclosedBoxes);
+      if (threads <= 1) next += kTiles - 1;
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < std::min(threads, columns * rows * kTiles); ++i) others.emplace_back(work);
+  work();
+  for (std::thread& thread : others) thread.join();
+  return true;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,63 @@
+// Builds the octree of regions (runtime/regions.h): the same tree for any number of threads.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/regions.h"
+#include "vm/specialise.h"
+
+namespace fathom::runtime {
+
+class RegionBuilder {
+ public:
+  RegionBuilder(const vm::Code& program, const compiler::Box& contents, double lipschitz,
+                const RegionOptions& options);
+
+  // Nothing when the program is too short or cannot be cut.
+  std::shared_ptr<const Regions> build();
+
+ private:
+  // A cell that is to be split, and what of the program matters in it where its value is at most `limit`.
+  struct Cell {
+    std::array<std::uint32_t, 3> at;  // in cells of its level
+    int level;
+    float limit;
+    vm::Part part;
+    std::uint32_t node;  // that it is
+  };
+  // What one thread has made of a cell: nodes[0..8) are its children, and numbers are its own.
+  struct Piece {
+    std::vector<Regions::Node> nodes;
+    std::vector<std::uint32_t> bundles;
+    std::vector<vm::Part> programs;
+    std::vector<Cell> pending;                                                    // left for other threads
+    std::unordered_multimap<std::uint64_t, std::uint32_t> bundle_at, program_at;  // by hash
+    std::size_t program_bytes = 0;
+    Regions::Facts facts;
+  };
+  class Splitter;
+
+  bool choose_root(const compiler::Box& contents);
+  void split_all(std::vector<Cell> cells);
+  std::uint32_t append(Piece& piece);
+  void close_outside();
+  void make_grid();
+  void count_bytes();
+
+  RegionOptions options_;
+  vm::Code program_;
+  compiler::Box contents_;
+  vm::Part whole_;
+  std::size_t choices_ = 0;
+  std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
+  std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
+  std::shared_ptr<Regions> regions_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> program_at_;
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,139 @@
+// Regions: an octree over the scene that knows what of its program matters where, so that a point of a scene of a
+// hundred thousand objects meets the few that are near it.
+//
+// A leaf stands for the field cut off at the leaf's limit, min(f, limit), which is all a ray's step needs: near the
+// surface it is f, bit for bit, and far from it a bound. Three kinds:
+//
+//     far       nothing is near: a ball round the cell's centre, value - L |p - centre|
+//     bundle    a union of a few shapes (vm/bundle.h)
+//     program   the part of the program that matters in the cell (vm/specialise.h), shared by the cells that have it
+//
+// A step may leave the cell; the next point finds its own. A cell is split until its part is short, or it is as small
+// as the scene's number of choices warrants. The top levels are a grid. Scenes of few choices have no regions: they
+// would lose by them.
+//
+// Sources: Frisken et al., "Adaptively Sampled Distance Fields", 2000; Barbier et al., "Lipschitz Pruning", 2025.
+// Tested by: tests/runtime/regions_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "compiler/box.h"
+#include "runtime/region_find.h"
+#include "vm/bundle.h"
+
+namespace fathom::runtime {
+
+struct RegionOptions {
+  int threads = 1;
+  std::size_t memory = 64u << 20;  // bytes; the octree is as deep as this allows
+};
+
+// Points evaluated together at most; more than the rays a thread has under way.
+inline constexpr std::size_t kMostPoints = 256;
+
+// How often points were in leaves of each kind.
+struct RegionCounters {
+  std::uint64_t far = 0, bundled = 0, specialised = 0;
+};
+
+// What a thread needs to evaluate regions.
+struct RegionScratch {
+  template <class T>
+  using PerPoint = std::array<T, kMostPoints>;
+  PerPoint<std::uint32_t> refs, next;        // leaf; the next point of the same program
+  PerPoint<float> limits, bounds;            // of the leaf; what a far one says
+  std::vector<vm::BundleJob> jobs;           // points in bundles
+  std::vector<std::uint32_t> far, programs;  // points in far leaves; programs met
+  std::vector<std::uint32_t> heads;          // [program] its first point, or kNone
+  PerPoint<float> x, y, z, distance;         // a program's points, gathered
+  std::vector<std::uint32_t> chosen;         // which they are
+  PerPoint<std::uint32_t> instructions;      // [point] evaluated for it
+  RegionCounters counters;
+};
+
+class Regions {
+ public:
+  // Of a program with Lipschitz constant `lipschitz` whose bounded parts lie in `contents`; nothing when the scene is
+  // too small for regions, or its program cannot be cut. The program must outlive them.
+  static std::shared_ptr<const Regions> build(const vm::Code& program, const compiler::Box& contents,
+                                              double lipschitz, const RegionOptions& options);
+
+  // distance[i] <= f(points[i]), and equal to it where it is at most the leaf's limit.
+  void evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
+                vm::Workspace& workspace) const;
+  // The same of one point in double, with the program's unrounded constants; adds to `instructions`.
+  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+
+  // What min(f, limit) does along a stretch of a line that lies in one cell; nothing when it does not.
+  std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
+
+  // The part of the program that holds at a point, near the surface: where its value is at most `limit`.
+  struct Region {
+    compiler::Box cell;  // may be unbounded
+    const char* kind;
+    double limit;
+    vm::Part part;  // empty of a far leaf
+  };
+  Region region(glm::dvec3 point) const;
+
+  // Gradients and surfaces of points near the surface, as of the whole program; kMostHits at most at once.
+  static constexpr std::size_t kMostHits = 256;
+  void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
+  vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
+
+  struct Facts {
+    std::size_t far = 0, bundles = 0, programs = 0;  // leaves
+    std::size_t distinct_programs = 0;
+    std::size_t bytes = 0;
+    int levels = 0;
+    double seconds = 0;  // to build
+  };
+  const Facts& facts() const { return facts_; }
+
+  enum class Kind : std::uint32_t { Inner, Far, Bundle, Program };
+  struct Node {
+    float value;  // of a leaf its limit; of a far one the distance at the cell's centre
+    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Bundle where it starts
+    // in the pool, of Program its number.
+    std::uint32_t ref;
+
+    Kind kind() const { return static_cast<Kind>(ref >> 30); }
+    std::uint32_t payload() const { return ref & 0x3fffffff; }
+  };
+
+ private:
+  friend class RegionBuilder;
+  struct Found {
+    Node node;
+    int level;  // of the cell; -1 outside the root
+    std::array<std::uint32_t, 3> cell;
+  };
+  Found find(float x, float y, float z) const;
+  float far_value(const Found& found, float x, float y, float z) const;
+  void group(std::uint32_t program, std::uint32_t point, RegionScratch& scratch) const;
+  std::size_t gather(std::uint32_t program, vm::Points points, RegionScratch& scratch) const;
+  void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
+                            vm::SurfaceValues out, vm::Workspace& workspace) const;
+  void part_of(const Node& node, vm::Part& part) const;
+
+  vm::Code whole_;
+  std::vector<std::uint32_t> surfaces_;  // [word of whole_] of a shape the surface it belongs to, or kNone
+  RegionTree tree_{};
+  std::vector<std::uint32_t> grid_;  // node of each cell of the grid's level, or of the leaf it is in
+  std::vector<Node> nodes_;
+  std::array<Node, 6> outside_{};  // below and above the root on each axis; x before y before z
+  std::vector<std::uint32_t> bundles_;
+  std::vector<vm::Part> programs_;
+  Facts facts_;
+};
+
+}  // namespace fathom::runtime

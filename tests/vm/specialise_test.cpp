@@ -1,0 +1,154 @@
+// Parts of programs: in the box they were cut for they give the whole program's bits, wherever the value is within
+// the limits they were cut for, and beyond the limits they are beyond them, too.
+#include "vm/specialise.h"
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "compiler/fuse.h"
+#include "tests/support/compiled.h"
+#include "tests/support/plain_lowering.h"
+#include "tests/support/random_scene.h"
+
+namespace fathom::test {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kPoints = 24;  // in each box
+
+struct BoxSet {
+  float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
+  vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
+};
+
+BoxSet random_boxes(Random& random) {
+  static const double kSizes[] = {1e-3, 0.03, 0.1, 0.3, 1, 3};
+  BoxSet boxes;
+  for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+    const double size = kSizes[random.below(6)];
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes.lo[axis][i] = static_cast<float>(random.uniform(-2.5, 2.5));
+      boxes.hi[axis][i] = boxes.lo[axis][i] + static_cast<float>(size * random.uniform(0.2, 1));
+    }
+  }
+  return boxes;
+}
+
+struct PointSet {
+  std::vector<float> x, y, z;
+  vm::Points view() const { return {x.data(), y.data(), z.data()}; }
+};
+
+PointSet points_in(const BoxSet& boxes, std::size_t box, Random& random) {
+  PointSet points;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    float p[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lo = boxes.lo[axis][box], hi = boxes.hi[axis][box];
+      const float within = static_cast<float>(random.uniform(static_cast<double>(lo), static_cast<double>(hi)));
+      p[axis] = random.chance(0.2) ? (random.chance(0.5) ? lo : hi) : std::min(hi, std::max(lo, within));
+    }
+    points.x.push_back(p[0]), points.y.push_back(p[1]), points.z.push_back(p[2]);
+  }
+  return points;
+}
+
+// A program of the part's words, for the verifier to judge.
+vm::Program as_program(const vm::Part& part) {
+  vm::Program program;
+  program.words = part.words, program.wide = part.wide, program.locals = part.locals;
+  return program;
+}
+
+bool sound(const vm::Part& part) {
+  const auto verified = vm::verify(as_program(part));
+  const auto* program = std::get_if<vm::VerifiedProgram>(&verified);
+  if (program == nullptr) {
+    UNSCOPED_INFO(std::get<vm::VerifyError>(verified).reason);
+    return false;
+  }
+  return program->max_values() == part.max_values && program->max_points() == part.max_points &&
+         program->choices() == part.choices && program->cost() == part.cost;
+}
+
+struct Tally {
+  std::size_t compared = 0, wrong = 0, cut = 0;
+};
+
+// Whether a part's value may stand for the whole one's: the same, but for the sign of a zero, or beyond the same
+// limit.
+bool agrees(float whole, float part, float least, float most) {
+  if (whole < least) return part < least;
+  if (whole > most) return part > most;
+  return part == whole || (std::isnan(part) && std::isnan(whole));
+}
+
+void compare(const vm::Code& whole, const vm::Part& part, const BoxSet& boxes, std::size_t box, float least,
+             float most, Random& random, Tally& tally) {
+  const PointSet points = points_in(boxes, box, random);
+  std::vector<float> a(kPoints), b(kPoints);
+  vm::Workspace workspace;
+  vm::evaluate_distance(whole, points.view(), kPoints, a.data(), workspace);
+  vm::evaluate_distance(part, points.view(), kPoints, b.data(), workspace);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    ++tally.compared;
+    tally.wrong += !agrees(a[i], b[i], least, most);
+  }
+}
+
+// Cuts a program for random boxes and limits, and the parts again for boxes within.
+void cut(const vm::Code& whole, Random& random, Tally& tally) {
+  const vm::Part first = vm::whole(whole);
+  vm::Workspace workspace;
+  vm::Specialiser specialiser, again;
+  const BoxSet boxes = random_boxes(random);
+  REQUIRE(specialiser.look(first, boxes.view(), workspace));
+  static const float kLimits[][2] = {
+      {-kInfinity, kInfinity}, {-kInfinity, 0.25f}, {0, 0}, {-0.1f, 0.1f}, {-kInfinity, 1e-3f}};
+  for (const auto& [least, most] : kLimits) {
+    specialiser.decide(least, most);
+    for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
+      vm::Part part, smaller;
+      specialiser.part(box, part);
+      REQUIRE(sound(part));
+      tally.cut += part.words.size() < first.words.size();
+      compare(whole, part, boxes, box, least, most, random, tally);
+      BoxSet within = boxes;
+      for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+          within.lo[axis][i] = boxes.lo[axis][box];
+          within.hi[axis][i] = boxes.lo[axis][box] + (boxes.hi[axis][box] - boxes.lo[axis][box]) / 2;
+        }
+      }
+      REQUIRE(again.look(part, within.view(), workspace));
+      again.decide(least, most);
+      again.part(0, smaller);
+      REQUIRE(sound(smaller));
+      compare(whole, smaller, within, 0, least, most, random, tally);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
+  Tally tally;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    Random random(seed);
+    const vm::VerifiedProgram plain = plain_lowering(random_scene(random));
+    auto fused = vm::verify(compiler::fuse(plain.program()));
+    INFO("seed " << seed);
+    const std::size_t before = tally.wrong;
+    cut(plain, random, tally);
+    CHECK(tally.wrong == before);
+    cut(std::get<vm::VerifiedProgram>(fused), random, tally);
+    CHECK(tally.wrong == before);
+  }
+  CHECK(tally.compared > 500'000);
+  CHECK(tally.cut > 10'000);
+}
+
+}  // namespace fathom::test

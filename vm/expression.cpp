@@ -1,0 +1,98 @@
+#include "vm/expression.h"
+
+#include <algorithm>
+
+namespace fathom::vm {
+
+bool Expression::read(const Code& code) {
+  nodes_.clear(), choices_.clear(), values_.clear(), places_.clear(), place_of_.clear();
+  points_.assign(1, {kNone, 0});
+  places_.push_back({kNone, kNone});
+  defined_.assign(code.locals, kNone);
+  locals_ = code.locals;
+  for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
+    if (!read_instruction(code, static_cast<std::uint32_t>(at))) return false;
+  }
+  return true;
+}
+
+bool Expression::read_instruction(const Code& code, std::uint32_t at) {
+  const std::uint32_t word = code.words[at], self = static_cast<std::uint32_t>(nodes_.size());
+  const OpcodeInfo& row = *find_opcode(word & 0xff);
+  ExpressionNode node{at};
+  bool sound = true, makes_value = true;
+  switch (row.form) {
+    case Form::Point:
+      points_.push_back({self, place_after(code, at)});
+      makes_value = false;
+      break;
+    case Form::Shape:
+      if (operand_of(word) & kJoined) {
+        sound = take(node.a);
+        node.b = self;
+        node.choice = static_cast<std::uint32_t>(choices_.size());
+      }
+      break;
+    case Form::Outline:
+      break;
+    case Form::Unary:
+    case Form::Binary: {
+      const Sources sources = sources_of(word);
+      if (row.form == Form::Binary) {
+        if (sources.b == Source::Stack) sound = take(node.b);
+        if (sources.b == Source::Local) sound = use_local(sources.local, node.b);
+      }
+      if (sources.a == Source::Stack) sound = take(node.a) && sound;
+      if (sources.a == Source::Local) sound = use_local(sources.local, node.a) && sound;
+      if (row.choice != Choice::None) node.choice = static_cast<std::uint32_t>(choices_.size());
+      break;
+    }
+    case Form::Machine:
+      if (row.opcode == Opcode::Load) {
+        sound = use_local(operand_of(word), node.a);
+      } else {
+        sound = take(node.a);
+      }
+      if (row.opcode == Opcode::Tee) defined_[operand_of(word)] = self;
+      if (row.opcode == Opcode::Drop) {
+        node.point = points_.back().node;
+        points_.pop_back();
+      }
+      break;
+  }
+  if (node.choice != kNone) choices_.push_back(self);
+  nodes_.push_back(node);
+  place_of_.push_back(points_.back().place);
+  if (makes_value) values_.push_back({self, points_.back().place});
+  return sound;
+}
+
+// The top value, computed at the top point.
+bool Expression::take(std::uint32_t& operand) {
+  const Value value = values_.back();
+  values_.pop_back();
+  operand = value.node;
+  return value.place == points_.back().place;
+}
+
+bool Expression::use_local(std::uint32_t local, std::uint32_t& operand) {
+  operand = defined_[local];
+  return place_of_[operand] == points_.back().place;
+}
+
+std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
+  const std::uint32_t before = points_.back().place;
+  if (locals_ > 0) {  // else no place is met twice
+    const std::size_t length = instruction_length(code.words[at]);
+    for (std::uint32_t i = 1; i < places_.size(); ++i) {
+      const Place& place = places_[i];
+      if (place.before == before && std::equal(code.words + at, code.words + at + length, code.words + place.at)) {
+        return i;
+      }
+    }
+  }
+  places_.push_back({before, at});
+  return static_cast<std::uint32_t>(places_.size() - 1);
+}
+
+}  // namespace fathom::vm

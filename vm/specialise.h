@@ -1,0 +1,115 @@
+// Specialising: the part of a program that can matter in a box.
+//
+// Where one operand of a choice (min, max and their smooth kin) is proved to lose all over the box, it and the choice
+// go: a thousand blended balls are three of them nearly everywhere. Beside that a caller may name limits, beyond
+// which it does not matter what the value is. For every f32 point of the box the part then gives
+//
+//     the f32 machine's own bits of the whole program, where its value is within the limits, ends included;
+//     a value beyond the same limit, where the whole program's is.
+//
+// (A zero may change its sign.) The same holds of gradients and surfaces. Bounds on the operands are vm/enclose.h's.
+//
+//     Specialiser specialiser;
+//     specialiser.look(code, boxes, workspace);      // kEnclosedBoxes boxes at once
+//     specialiser.decide(least, most);
+//     specialiser.part(3, part);                     // of the fourth box; itself a Code, to be specialised further
+//
+// Sources: Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid
+// geometry", 1992; Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces", 2020; Barbier et
+// al., "Lipschitz Pruning: Hierarchical Simplification of Primitive-Based SDFs", 2025. Tested by:
+// tests/vm/specialise_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vm/enclose.h"
+#include "vm/expression.h"
+#include "vm/settle.h"
+
+namespace fathom::vm {
+
+// A shorter program and where its instructions are in the whole one.
+struct Part {
+  std::vector<std::uint32_t> words;
+  std::vector<double> wide;            // [word]
+  std::vector<std::uint32_t> sources;  // [instruction] offset of the opcode word it came from, in the whole program
+  std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
+  std::uint64_t cost = 0;  // multiply-adds per point, by the table's estimate
+
+  operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
+};
+
+// The whole program as a part of itself.
+Part whole(const Code& code);
+
+class Specialiser {
+ public:
+  // Encloses the program over the boxes; keeps a reference to it until the next look(). False when the program is not
+  // an expression (vm/expression.h) and cannot be cut.
+  bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
+
+  // What the value can be in box i.
+  float lo(std::size_t box) const { return lo_[box]; }
+  float hi(std::size_t box) const { return hi_[box]; }
+
+  // Settles the choices for the limits of all boxes; -infinity and infinity ask for the value everywhere, 0 and 0 for
+  // its sign.
+  void decide(float least, float most);
+  // Instructions of the part for `box`, roughly: the choices that stay, and one.
+  std::uint32_t choices_left(std::size_t box) const;
+  void part(std::size_t box, Part& out);
+
+ private:
+  struct Emitted {
+    std::uint32_t node, word;        // what it comes from; the opcode word to write
+    std::uint32_t immediate, count;  // its immediates, words of the program
+  };
+  struct Task {
+    std::uint32_t node;
+    // Its value; the value of the local that it, a tee, defines; or the instruction alone.
+    enum What : std::uint8_t { Value, Local, Instruction } what;
+  };
+  struct Local {
+    std::uint32_t left = 0;  // uses not yet written
+    bool shared = false;
+    std::uint32_t number = kNone;
+  };
+
+  void link_choices();
+  bool keeps_a(std::uint32_t choice) const { return kept_[choice].a >> box_ & 1; }
+  bool keeps_b(std::uint32_t choice) const { return kept_[choice].b >> box_ & 1; }
+  std::uint32_t resolve(std::uint32_t id) const;
+  void count_uses();
+  void emit(std::uint32_t id);
+  void emit_word(std::uint32_t id, std::uint32_t word);
+  void emit_whole(std::uint32_t id);
+  void emit_operator(std::uint32_t id);
+  void emit_lone(std::uint32_t id, bool first);
+  Source take(Source source, std::uint32_t operand, std::uint32_t& local, Task* tasks, int& count);
+  void use_local(std::uint32_t tee);
+  void define_local(std::uint32_t tee);
+  std::uint32_t number_of(Local& local);
+  void write(Part& out) const;
+
+  const Part* program_ = nullptr;
+  Expression expression_;
+  std::vector<ChoiceBounds> bounds_;        // [choice]
+  std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
+  std::vector<ChoiceLink> links_;           // [choice]
+  std::vector<Interest> interest_;          // [choice]
+  std::vector<KeptOperands> kept_;          // [choice]
+  alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
+
+  // While a part is made: from the root down, so that the code comes out backwards.
+  std::uint32_t box_ = 0;
+  std::vector<Task> tasks_;
+  std::vector<Emitted> emitted_;
+  std::vector<Local> uses_;  // [node] of a tee
+  std::vector<std::uint32_t> counted_;
+  std::uint32_t locals_ = 0;
+};
+
+}  // namespace fathom::vm
