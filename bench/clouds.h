@@ -20,15 +20,18 @@ struct Cloud {
   vm::Points points() const { return {x.data(), y.data(), z.data()}; }
 };
 
-// In the box where the benchmark scenes are.
-inline Cloud make_cloud(std::size_t count) {
+// In the box, or where the things stand on a ground without end: [-5,5] x [0,2] x [-5,5].
+inline Cloud make_cloud(std::size_t count, const compiler::Box& box = compiler::Box::everything()) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<float> across(-5, 5), up(0, 2);
+  const bool bounded = box.finite() && !box.empty();
+  const glm::vec3 lo = bounded ? glm::vec3(box.lo) : glm::vec3(-5, 0, -5);
+  const glm::vec3 hi = bounded ? glm::vec3(box.hi) : glm::vec3(5, 2, 5);
+  std::uniform_real_distribution<float> x(lo.x, hi.x), y(lo.y, hi.y), z(lo.z, hi.z);
   Cloud cloud;
   for (std::size_t i = 0; i < count; ++i) {
-    cloud.x.push_back(across(random));
-    cloud.y.push_back(up(random));
-    cloud.z.push_back(across(random));
+    cloud.x.push_back(x(random));
+    cloud.y.push_back(y(random));
+    cloud.z.push_back(z(random));
   }
   return cloud;
 }

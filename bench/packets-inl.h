@@ -5,6 +5,7 @@
 //
 // Compiled once for each instruction set. A scene is a type with
 //     static Batch distance(Batch x, Batch y, Batch z);
+//     static constexpr double kLevel;                    // to be added to it
 #if defined(FATHOM_BENCH_PACKETS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_PACKETS_INL
 #undef FATHOM_BENCH_PACKETS_INL
@@ -46,7 +47,8 @@ constexpr int kMostSteps = 256;
 
 template <class Scene>
 HWY_INLINE B field(V p) {
-  return Scene::distance(p.x, p.y, p.z);
+  const B distance = Scene::distance(p.x, p.y, p.z);
+  return Scene::kLevel > 0 ? distance + c(Scene::kLevel) : distance;
 }
 
 template <class Scene>
@@ -144,6 +146,7 @@ class Random {
   using Ints = hn::RebindToUnsigned<FloatLanes>;
   using Int = hn::Vec<Ints>;
 
+  HWY_INLINE Random() : state_(hn::Zero(Ints())) {}
   HWY_INLINE void seed(Mask where, Int seed) {
     state_ = hn::IfThenElse(hn::RebindMask(Ints(), where.m), output(step(seed)), state_);
   }
@@ -162,7 +165,7 @@ class Random {
     return hn::Xor(hn::ShiftRight<22>(w), w);
   }
 
-  Int state_ = hn::Zero(Ints());
+  Int state_;
 };
 
 // Ended lanes wait until so many share the price of four evaluations for their normals; the fastest of 1 to 16.

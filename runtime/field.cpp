@@ -59,6 +59,7 @@ void add_regions(Field& field, const compiler::CompiledScene& scene, const Regio
 
 void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                      vm::Workspace& workspace) const {
+  if (evaluator) return evaluator(points, count, out);
   if (regions) return regions->evaluate(points, count, out, scratch, workspace);
   vm::evaluate_distance(*distance, points, count, out, workspace);
 }

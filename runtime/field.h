@@ -23,6 +23,10 @@ struct Field {
   float magnitude;                         // scene units (compiler/bounds.h)
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
 
+  // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
+  // same scene. May read and write past `count` up to a whole register.
+  void (*evaluator)(vm::Points points, std::size_t count, float* out);
+
   // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near. Regions
   // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,

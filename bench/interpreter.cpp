@@ -1,0 +1,84 @@
+// What does interpretation cost? Time per point of the block machine against the same scene as C++ compiled ahead of
+// time with the same lanes and floating-point flags (`fathom emit cpp`), against that with -O3 -march=native
+// -ffast-math, and against the machine's own scalar interpreter: the same loop over registers of one float, a point
+// at a time.
+//
+//     build/release/bench_interpreter
+#include <cmath>
+
+#include "bench/clouds.h"
+#include "bench/comparison.h"
+#include "bench/compiled_scenes.h"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::bench;
+
+constexpr std::size_t kPoints = 4096;
+constexpr int kRounds = 41;
+
+// A scene's programs and a cloud of points, kept for as long as the benches run.
+class Scene {
+ public:
+  explicit Scene(const CompiledAhead& ahead)
+      : scene_(compile_file(ahead.path)), cloud_(make_cloud(kPoints, scene_.bound)), out_(kPoints) {}
+
+  // A round of a millisecond or more.
+  int repeats() const { return std::max(1, 4000 / static_cast<int>(scene_.distance.instructions() + 50)); }
+
+  void interpret(int repeats) {
+    for (int i = 0; i < repeats; ++i) {
+      vm::evaluate_distance(scene_.distance, cloud_.points(), kPoints, out_.data(), workspace_);
+    }
+  }
+  void interpret_scalar() {
+    const std::string_view before = vm::isa_name();
+    vm::force_isa("scalar");
+    const vm::Points points = cloud_.points();
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      vm::evaluate_distance(scene_.distance, {points.x + i, points.y + i, points.z + i}, 1, &out_[i], workspace_);
+    }
+    vm::force_isa(before);
+  }
+  void run(DistanceOf distance, int repeats) {
+    for (int i = 0; i < repeats; ++i) distance(cloud_.points(), kPoints, out_.data());
+  }
+
+ private:
+  compiler::CompiledScene scene_;
+  Cloud cloud_;
+  std::vector<float> out_;
+  vm::Workspace workspace_;
+};
+
+struct Bars {
+  const char* scene;
+  double ahead, scalar;  // the ratio at most
+};
+constexpr Bars kBars[] = {{"A", 1.15, 0.1},     {"B", 1.15, 0.1}, {"D1000", 1.15, 0.1},
+                          {"C", 1.25, 1 / 7.0}, {"E", 1.25, 0.1}, {"F", 4, 0.1}};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::unique_ptr<Scene>> scenes;
+  for (const Bars& bars : kBars) {
+    const CompiledAhead &ahead = find(compiled_scenes(), bars.scene), &fast = find(fast_scenes(), bars.scene);
+    Scene& scene = *scenes.emplace_back(std::make_unique<Scene>(ahead));
+    const std::string name = bars.scene;
+    const int repeats = scene.repeats();
+    const double nanoseconds = 1e9 / kPoints / repeats;
+    const auto interpret = [&scene, repeats] { scene.interpret(repeats); };
+    const auto against = [&scene, repeats](DistanceOf run) {
+      return [&scene, repeats, run] { scene.run(run, repeats); };
+    };
+    add({name + ": machine / emitted C++", "ns a point", nanoseconds, bars.ahead, 0, kRounds, interpret,
+         against(ahead.distance)});
+    add({name + ": machine / emitted C++ with -ffast-math", "ns a point", nanoseconds, INFINITY, 0, kRounds,
+         interpret, against(fast.distance)});
+    add({name + ": machine / its scalar interpreter", "ns a point", 1e9 / kPoints, bars.scalar, 0, kRounds,
+         [&scene] { scene.interpret(1); }, [&scene] { scene.interpret_scalar(); }});
+  }
+  return run_benches(argc, argv, fmt::format("Interpreter, {} points at random", kPoints));
+}

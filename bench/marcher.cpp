@@ -1,0 +1,89 @@
+// What does interpretation cost a ray? The whole marcher, with its clipping, steps, brackets and search in double,
+// against the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera rays
+// and on the diffuse rays that leave their hits.
+//
+//     build/release/bench_marcher
+#include <glm/geometric.hpp>
+
+#include "bench/clouds.h"
+#include "bench/comparison.h"
+#include "bench/compiled_scenes.h"
+#include "runtime/bsdf.h"
+#include "runtime/camera.h"
+#include "runtime/march.h"
+#include "runtime/surface.h"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::bench;
+
+constexpr int kRounds = 21;
+
+// A scene and its rays, kept for as long as the benches run.
+class Scene {
+ public:
+  explicit Scene(const CompiledAhead& ahead)
+      : scene_(compile_file(ahead.path)), field_(runtime::make_field(scene_, scene_.settings.far)), ahead_(field_) {
+    ahead_.evaluator = ahead.distance;
+    aim();
+    bounce();
+  }
+
+  const std::vector<runtime::Ray>& camera_rays() const { return camera_; }
+  const std::vector<runtime::Ray>& diffuse_rays() const { return diffuse_; }
+  const runtime::Field& interpreted() const { return field_; }
+  const runtime::Field& compiled() const { return ahead_; }
+
+ private:
+  void aim() {
+    constexpr int kWidth = 320, kHeight = 180;
+    const runtime::Camera camera(scene_.camera, kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const runtime::CameraRay ray = camera.ray(x + 0.5, y + 0.5);
+        camera_.push_back({ray.origin, ray.direction});
+      }
+    }
+  }
+
+  // As the integrator has them: by cosine, with what it knows of their beginning.
+  void bounce() {
+    vm::Workspace workspace;
+    for (const runtime::Arrival& arrival : runtime::march(field_, camera_).arrivals) {
+      if (arrival.status != runtime::Arrival::Status::Hit) continue;
+      const runtime::Ray& seen = camera_[arrival.id];
+      const runtime::Hit hit{seen.origin + arrival.t * seen.direction, glm::vec3(-seen.direction), arrival.side,
+                             arrival.width};
+      runtime::SurfacePoint point{};
+      runtime::find_surfaces(scene_, field_, {&hit, 1}, {&point, 1}, workspace);
+      runtime::Sampler sampler(1, arrival.id, 0, 0);
+      runtime::Ray ray{runtime::spawn(hit, point, false),
+                       runtime::sample_diffuse(glm::vec3(1), point.normal, sampler).wi};
+      ray.side = arrival.side;
+      ray.slope = glm::dot(point.normal, glm::vec3(ray.direction));
+      diffuse_.push_back(ray);
+    }
+  }
+
+  compiler::CompiledScene scene_;
+  runtime::Field field_, ahead_;
+  std::vector<runtime::Ray> camera_, diffuse_;
+};
+
+void compare(const std::string& name, const Scene& scene, const std::vector<runtime::Ray>& rays) {
+  add({name, "ns a ray", 1e9 / static_cast<double>(rays.size()), 1.1, 0, kRounds,
+       [&] { runtime::march(scene.interpreted(), rays); }, [&] { runtime::march(scene.compiled(), rays); }});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::unique_ptr<Scene>> scenes;
+  for (const char* name : {"A", "B", "C", "E", "F", "D1000"}) {
+    const Scene& scene = *scenes.emplace_back(std::make_unique<Scene>(find(compiled_scenes(), name)));
+    compare(fmt::format("{}: marcher / around emitted C++, camera", name), scene, scene.camera_rays());
+    compare(fmt::format("{}: marcher / around emitted C++, diffuse", name), scene, scene.diffuse_rays());
+  }
+  return run_benches(argc, argv, "Marcher, 320 x 180 camera rays and one diffuse ray from each hit");
+}
