@@ -38,6 +38,8 @@ compiler::CompiledScene scene_of(test::Random& random, Kind kind, const std::vec
                                 program,
                                 program,
                                 known.box,
+                                known.box,
+                                known.box,
                                 known.lipschitz,
                                 known.magnitude,
                                 known.certified,

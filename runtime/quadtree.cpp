@@ -26,7 +26,11 @@ struct Tile {
 class QuadtreeWorker {
  public:
   QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
-      : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {}
+      : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {
+    for (int x = 0; x < slice.width; ++x) columns_.push_back(glm::vec3(slice.point(x, 0)));
+    for (int y = 0; y < slice.height; ++y) rows_.push_back(glm::vec3(slice.point(0, y)));
+    for (int axis = 0; axis < 3; ++axis) by_column_[axis] = columns_.front()[axis] != columns_.back()[axis];
+  }
 
   // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
   void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
@@ -65,14 +69,20 @@ class QuadtreeWorker {
       const Tile tile = tile_of(first, edge, i);
       const int x0 = std::min(tile.x, slice_.width - 1), y0 = std::min(tile.y, slice_.height - 1);
       const int x1 = std::min(tile.x + edge, slice_.width) - 1, y1 = std::min(tile.y + edge, slice_.height) - 1;
-      const glm::dvec3 a = slice_.point(x0, y0), b = slice_.point(std::max(x0, x1), std::max(y0, y1));
+      const glm::vec3 a = place(x0, y0), b = place(std::max(x0, x1), std::max(y0, y1));
       for (int axis = 0; axis < 3; ++axis) {
-        const float u = static_cast<float>(a[axis]), v = static_cast<float>(b[axis]);
-        lo_[axis][i] = std::min(u, v), hi_[axis][i] = std::max(u, v);
+        lo_[axis][i] = std::min(a[axis], b[axis]), hi_[axis][i] = std::max(a[axis], b[axis]);
       }
     }
   }
 
+  glm::vec3 place(int x, int y) const {
+    glm::vec3 p = rows_[static_cast<std::size_t>(y)];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (by_column_[axis]) p[axis] = columns_[static_cast<std::size_t>(x)][axis];
+    }
+    return p;
+  }
   float* row(int y) { return field_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice_.width); }
 
   void fill(Tile tile, int edge, float value) {
@@ -88,10 +98,8 @@ class QuadtreeWorker {
     std::size_t count = 0;
     for (int y = tile.y; y < y1; ++y) {
       for (int x = tile.x; x < x1; ++x, ++count) {
-        const glm::dvec3 p = slice_.point(x, y);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          points[axis][count] = static_cast<float>(p[static_cast<int>(axis)]);
-        }
+        const glm::vec3 p = place(x, y);
+        for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][count] = p[axis];
       }
     }
     vm::evaluate_distance(part, {points[0].data(), points[1].data(), points[2].data()}, count, values.data(),
@@ -103,6 +111,8 @@ class QuadtreeWorker {
   const Slice& slice_;
   const bool sign_;
   std::vector<float>& field_;
+  std::vector<glm::vec3> columns_, rows_;  // where the first row's pixels are, and the first column's
+  bool by_column_[3];                      // [axis] whether it changes along a row
   vm::Workspace workspace_;
   std::array<vm::Specialiser, kLevels> specialisers_;
   std::array<vm::Part, kLevels> parts_;

@@ -267,7 +267,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   const auto start = std::chrono::steady_clock::now();
   whole_ = vm::whole(program_);
   vm::Expression expression;
-  if (whole_.cost < kLeastCost || !expression.read(program_)) return nullptr;
+  if ((whole_.cost < kLeastCost && !options_.always) || !expression.read(program_)) return nullptr;
   choices_ = std::max<std::size_t>(1, expression.choices().size());
   regions_->surfaces_ = surfaces_of(expression, program_);
   if (!choose_root(contents_)) return nullptr;

@@ -34,6 +34,7 @@ namespace fathom::runtime {
 struct RegionOptions {
   int threads = 1;
   std::size_t memory = 64u << 20;  // bytes; where they would take more, leaves are longer, or there are none
+  bool always = false;             // of scenes that would be as fast whole, too
   int room = 0;                    // the root is 2^room times as long as the scene's bounded parts
 };
 

@@ -8,6 +8,7 @@
 #include "compiler/pass_diff.h"
 #include "runtime/cli/operation_table.h"
 #include "runtime/cli/program_json.h"
+#include "runtime/cli/region_listing.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "vm/disassemble.h"
@@ -22,6 +23,7 @@ constexpr const char* kExamples =
     "fathom dump scene.json --after graph          # before the first\n"
     "fathom dump scene.json --diff                 # what each pass changed\n"
     "fathom dump scene.json --stats                # what costs what\n"
+    "fathom dump scene.json --region 0,1,0         # what matters at a point, and the whole program\n"
     "fathom dump scene.json --stage graph --format dot | dot -Tsvg > graph.svg";
 
 enum Stage { kSyntax, kGraph, kBytecode };
@@ -33,6 +35,7 @@ struct DumpRequest {
   int format = -1;   // a Format; -1: not given
   int program = -1;  // 0 distance, 1 surface; -1: not given
   std::optional<std::string> after;
+  std::optional<glm::dvec3> region;
   bool stats = false, diff = false;
 };
 
@@ -55,6 +58,13 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
   }
   if (request.stage != kGraph && request.diff) {
     return refuse("--diff compares graphs", "use it with --stage graph, and without --stats or --program");
+  }
+  if (request.region && (request.stage != kBytecode || request.stats || request.after || request.format > kText)) {
+    return refuse("--region lists the bytecode as it is run",
+                  "leave out --stage graph, --after, --diff, --stats and --format");
+  }
+  if (request.region && request.program == 0) {
+    return refuse("regions are made of the program that knows the objects", "leave out --program distance");
   }
   if ((request.stats || request.diff) && request.format > kText) {
     return refuse(fmt::format("{} is text", request.stats ? "--stats" : "--diff"), "leave out --format");
@@ -85,6 +95,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("--format", "FORMAT", "text (the default) or json; for graphs also dot and mermaid",
                    one_of({"text", "json", "dot", "mermaid"}, request.format));
   arguments.flag("--diff", "Print what each pass changed in the distance's graph, and what that saved", request.diff);
+  arguments.option("--region", "X,Y,Z", "Print the part of the program that matters in the region at a point, too",
+                   into(read_point, request.region));
   arguments.flag("--stats", "Print what operations and nodes cost, in multiply-adds a point", request.stats);
   if (const auto code = arguments.parse(args, streams)) return code;
   fill_in(request);
@@ -146,7 +158,16 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
     if (request.format <= kText) streams.out << origin_line(scene);
     streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
   }
-  if (request.stage == kBytecode) streams.out << print_bytecode(scene, request);
+  if (request.region) {
+    const std::optional<std::string> listing = region_listing(scene, *request.region);
+    if (!listing) {
+      return fail(streams, kBadScene,
+                  "the scene has no regions: it has no bounded part, or its program cannot be cut");
+    }
+    streams.out << *listing;
+  } else if (request.stage == kBytecode) {
+    streams.out << print_bytecode(scene, request);
+  }
   return kDone;
 }
 

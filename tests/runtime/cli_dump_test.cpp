@@ -111,6 +111,22 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
   CHECK_THAT(folder.run("dump fold.json --diff --after unpaint").out, !Contains("pass fold"));
 }
 
+TEST_CASE("cli: dump --region prints the part that matters at a point, and the whole program") {
+  const Folder folder;
+  const auto near = folder.run("dump two.json --region 0.9,0,0");
+  CHECK(near.code == 0);
+  CHECK_THAT(near.out, Contains("; region at 0.9 0 0: bundle"));
+  CHECK_THAT(near.out, Contains("; the whole program is so short that renders evaluate it everywhere"));
+  CHECK_THAT(near.out, Contains("; whole: "));
+  // The left one is named once, in the whole program.
+  const std::string left = "sphere \"left\"";
+  CHECK(near.out.find(left) == near.out.rfind(left));
+  CHECK(near.out.find(left) > near.out.find("; whole: "));
+  CHECK(folder.run("dump two.json --region 0.9,0,0 --stats").code == 2);
+  CHECK(folder.run("dump two.json --region 0.9,0,0 --stage graph").code == 2);
+  CHECK(folder.run("dump two.json --region here").code == 2);
+}
+
 TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first") {
   CHECK(Folder().run("dump two.json --stats").out ==
         R"(operation             count      cost   share
