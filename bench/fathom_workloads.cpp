@@ -21,8 +21,9 @@ class ShadowRenderer {
       : scene_(scene),
         frame_(frame),
         camera_(scene.camera, frame.width, frame.height),
-        field_(make_field(scene, scene.settings.far)),
-        marcher_(make_marcher(field_)) {
+        field_(make_field(scene, scene.settings.far)) {
+    add_regions(field_, scene, {.threads = 1});
+    marcher_ = make_marcher(field_);
     const auto pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
     picture_.pixels.resize(pixels);
     shadow_rays_.reserve(2 * Marcher::kCapacity);
@@ -99,7 +100,7 @@ class ShadowRenderer {
   const compiler::CompiledScene& scene_;
   const Frame frame_;
   const Camera camera_;
-  const Field field_;
+  Field field_;
   const glm::dvec3 light_ = glm::normalize(kToLight);
   std::unique_ptr<Marcher> marcher_;
   std::vector<ShadowRay> shadow_rays_;

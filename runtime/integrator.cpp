@@ -13,6 +13,8 @@ namespace {
 
 // Arrivals are shaded when so many wait: enough for the machine's blocks, few enough to keep the stream full.
 constexpr std::size_t kShadeBatch = 64;
+// Paths are started so many at once.
+constexpr std::size_t kStartBatch = 32;
 // A path goes on with at most this probability, so that even a closed white room ends.
 constexpr float kMostSurvival = 0.95f;
 
@@ -32,20 +34,12 @@ Integrator::Integrator(const World& world, Film& film)
   for (std::uint32_t id = Marcher::kCapacity; id > 0; --id) free_ids_.push_back(id - 1);
 }
 
-void Integrator::run(const NextPath& next) {
+void Integrator::run(const NextPaths& next) {
   StageClock& clock = marcher_->clock();
   if (world_.settings.profile) clock.start(Stage::Shading);
   bool more = true;
   while (true) {
-    if (more && !free_ids_.empty()) clock.enter(Stage::Shading);
-    while (more && !free_ids_.empty()) {
-      const std::optional<PathKey> key = next();
-      more = key.has_value();
-      if (!more) break;
-      const std::uint32_t id = free_ids_.back();
-      free_ids_.pop_back();
-      start(id, *key);
-    }
+    while (more && !free_ids_.empty()) more = start_paths(next);
     if (marcher_->empty() && marcher_->arrivals().empty()) break;
     clock.enter(Stage::March);
     marcher_->advance();
@@ -54,30 +48,52 @@ void Integrator::run(const NextPath& next) {
   clock.stop();
 }
 
-void Integrator::start(std::uint32_t id, const PathKey& key) {
+// False when there are no more.
+bool Integrator::start_paths(const NextPaths& next) {
+  marcher_->clock().enter(Stage::Shading);
+  std::array<PathKey, kStartBatch> keys;
+  const std::size_t wanted = std::min(kStartBatch, free_ids_.size());
+  const std::size_t given = next(std::span(keys).first(wanted));
+  start(std::span(keys).first(given));
+  return given == wanted;
+}
+
+// In steps of one kind each, so that the processor has several paths' in hand.
+void Integrator::start(std::span<const PathKey> keys) {
   const Settings& settings = world_.settings;
-  Path& path = paths_[id];
-  path.key = key;
-  path.sampler =
-      Sampler(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y), key.sample);
-  // A single sample shows what lies at the pixel's centre.
-  const glm::vec2 place = settings.spp == 1 ? glm::vec2(0.5f) : path.sampler.next2();
-  const CameraRay ray = world_.camera.ray(key.x + static_cast<double>(place.x), key.y + static_cast<double>(place.y));
-  path.origin = ray.origin;
-  path.direction = ray.direction;
-  path.throughput = glm::vec3(1);
-  path.absorption = glm::vec3(0);
-  path.bounces = 0;
-  path.result = {};
-  ++stats_.primary_rays;
-  marcher_->add(id, {ray.origin, ray.direction});
+  std::array<Sampler, kStartBatch> samplers;
+  std::array<CameraRay, kStartBatch> rays;
+  std::uint64_t pixel_key = 0;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const PathKey& key = keys[i];
+    const bool same = i > 0 && key.x == keys[i - 1].x && key.y == keys[i - 1].y;
+    if (!same) {
+      pixel_key =
+          Sampler::pixel_key(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
+    }
+    samplers[i] = Sampler(pixel_key, key.sample);
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    // A single sample shows what lies at the pixel's centre.
+    const glm::vec2 place = settings.spp == 1 ? glm::vec2(0.5f) : samplers[i].next2();
+    rays[i] = world_.camera.ray(keys[i].x + static_cast<double>(place.x), keys[i].y + static_cast<double>(place.y));
+  }
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::uint32_t id = free_ids_.back();
+    free_ids_.pop_back();
+    paths_[id] = {keys[i], samplers[i], rays[i].origin, rays[i].direction, glm::vec3(1), glm::vec3(0), 0, {}};
+    marcher_->add(id, {rays[i].origin, rays[i].direction});
+  }
+  stats_.primary_rays += keys.size();
 }
 
 void Integrator::settle_arrivals() {
   marcher_->take_arrivals(settled_);
-  for (const Arrival& arrival : settled_) {
-    paths_[arrival.id].result.evaluations += arrival.evaluations;
-    paths_[arrival.id].result.instructions += arrival.instructions;
+  if (film_.layers().cost) {
+    for (const Arrival& arrival : settled_) {
+      paths_[arrival.id].result.evaluations += arrival.evaluations;
+      paths_[arrival.id].result.instructions += arrival.instructions;
+    }
   }
   const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
   const auto hits_end = std::partition(settled_.begin(), settled_.end(), is_hit);

@@ -4,7 +4,7 @@
 // next ray, or makes room for a new camera path. Light is found by hitting it.
 //
 //     Integrator integrator(world, film);
-//     integrator.run([&] { return next camera path, or nothing; });
+//     integrator.run([&](std::span<PathKey> keys) { fill keys; return how many; });
 //
 // Source: Kajiya, "The Rendering Equation", 1986; Russian roulette: Arvo and Kirk, "Particle Transport and Image
 // Synthesis", 1990. Tested by: tests/runtime/render_test.cpp
@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/compiled_scene.h"
@@ -47,13 +47,14 @@ struct PathKey {
 
 class Integrator {
  public:
-  // Asked for the next path; nothing when there are no more.
-  using NextPath = std::function<std::optional<PathKey>()>;
+  // Asked for the next paths: fills `keys` from the front and returns how many; fewer than asked for, and there are
+  // no more.
+  using NextPaths = std::function<std::size_t(std::span<PathKey> keys)>;
 
   Integrator(const World& world, Film& film);
 
   // Follows all paths `next` gives to their end, and adds them to the film.
-  void run(const NextPath& next);
+  void run(const NextPaths& next);
   Stats stats() const;
 
  private:
@@ -68,7 +69,8 @@ class Integrator {
     PathSample result;
   };
 
-  void start(std::uint32_t id, const PathKey& key);
+  bool start_paths(const NextPaths& next);
+  void start(std::span<const PathKey> keys);
   void settle_arrivals();
   void shade(std::span<const Arrival> arrivals);
   void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);

@@ -17,12 +17,17 @@ template <class N, class S, class Move>
 HWY_INLINE std::size_t for_each_register(Lanes<S>& lanes, std::size_t count, const S* f, LaneNumbers& ended,
                                          const Move& move) {
   constexpr std::size_t kStep = sizeof(N) / sizeof(S);
-  std::size_t total = 0;
+  // One bit a lane, and one loop over them at the end, whose length the processor mispredicts once.
+  std::uint64_t bits[Lanes<S>::kCapacity / 64] = {};
   for (std::size_t i = 0; i < count; i += kStep) {
     move(i, load(f + i, static_cast<N*>(nullptr)));
-    std::uint32_t bits = lanes_of(load(&lanes.row[kVerdict][i], static_cast<N*>(nullptr)) > number<N>(0));
-    for (; bits != 0; bits &= bits - 1) {
-      const std::size_t lane = i + static_cast<std::size_t>(std::countr_zero(bits));
+    const N verdict = load(&lanes.row[kVerdict][i], static_cast<N*>(nullptr));
+    bits[i / 64] |= std::uint64_t{lanes_of(verdict > number<N>(0))} << i % 64;
+  }
+  std::size_t total = 0;
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
+      const std::size_t lane = word * 64 + static_cast<std::size_t>(std::countr_zero(left));
       if (lane < count) ended[total++] = static_cast<std::uint16_t>(lane);
     }
   }

@@ -22,8 +22,8 @@ class Certifier final : public Marcher {
 
 }  // namespace
 
-void Marcher::arrive(const Arrival& arrival) {
-  switch (arrival.status) {
+void Marcher::count(Arrival::Status status) {
+  switch (status) {
     case Arrival::Status::Hit:
       ++counters_.hits;
       break;
@@ -37,8 +37,6 @@ void Marcher::arrive(const Arrival& arrival) {
       ++counters_.invalid;
       break;
   }
-  counters_.instructions += arrival.instructions;
-  arrivals_.push_back(arrival);
 }
 
 void Marcher::add(std::uint32_t id, const Ray& ray) {
@@ -65,9 +63,9 @@ void Marcher::begin_last() {
       return begin(waiting_, i);
     case Clip::Past:
       ++counters_.clipped;
-      return arrive({waiting_.id[i], Arrival::Status::Miss, 1, 0, 0, 0, 0});
+      return arrive(waiting_.id[i], Arrival::Status::Miss);
     case Clip::Invalid:
-      return arrive({waiting_.id[i], Arrival::Status::Invalid, 1, 0, 0, 0, 0});
+      return arrive(waiting_.id[i], Arrival::Status::Invalid);
   }
 }
 
@@ -79,9 +77,9 @@ void Marcher::certify_from(const Course& course, int side, const Stretch& stretc
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
-  arrive({course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations,
-          found.evaluations, static_cast<float>(found.width), course.entry + found.t,
-          instructions + found.instructions});
+  arrive(course.id, found.status, static_cast<std::int8_t>(found.side), evaluations + found.evaluations,
+         found.evaluations, static_cast<float>(found.width), course.entry + found.t,
+         instructions + found.instructions);
 }
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {

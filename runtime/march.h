@@ -87,7 +87,13 @@ class Marcher {
             rays.length[i],
             rays.id[i]};
   }
-  void arrive(const Arrival& arrival);
+  // The fields of an Arrival, in order; it is made in its place.
+  template <class... Fields>
+  void arrive(std::uint32_t id, Arrival::Status status, Fields... fields) {
+    count(status);
+    arrivals_.emplace_back(id, status, fields...);
+    counters_.instructions += arrivals_.back().instructions;
+  }
   // Ends the ray by certify(), which goes on from `evaluations` in float.
   void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
                     std::uint64_t instructions);
@@ -99,6 +105,7 @@ class Marcher {
   StageClock clock_;
 
  private:
+  void count(Arrival::Status status);
   void begin_waiting();
   void begin_last();
 

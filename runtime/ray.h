@@ -21,11 +21,11 @@ struct Arrival {
   enum class Status : std::uint8_t { Hit, Miss, Contact, Invalid };
   std::uint32_t id;
   Status status;
-  std::int8_t side;                // of the space the ray travelled through, +1 or -1
-  std::uint32_t evaluations;       // of the field, for this ray
-  std::uint32_t certified;         // those in double; 0: float decided
-  float width;                     // of the bracket round the hit, scene units
-  double t;                        // of the hit, scene units from the origin
+  std::int8_t side = 1;            // of the space the ray travelled through, +1 or -1
+  std::uint32_t evaluations = 0;   // of the field, for this ray
+  std::uint32_t certified = 0;     // those in double; 0: float decided
+  float width = 0;                 // of the bracket round the hit, scene units
+  double t = 0;                    // of the hit, scene units from the origin
   std::uint64_t instructions = 0;  // of the field's program, over the evaluations
 };
 

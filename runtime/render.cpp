@@ -49,16 +49,18 @@ class Worker {
       : world_(world), tiles_(tiles), report_(report), cancel_(cancel), integrator_(world, film) {}
 
   void run() {
-    integrator_.run([this] { return next(); });
+    integrator_.run([this](std::span<PathKey> keys) { return next(keys); });
   }
   Stats stats() const { return integrator_.stats(); }
 
  private:
-  std::optional<PathKey> next() {
-    if (!tile_ || sample_ == static_cast<std::uint32_t>(world_.settings.spp)) {
-      if (!next_pixel()) return std::nullopt;
+  std::size_t next(std::span<PathKey> keys) {
+    const auto spp = static_cast<std::uint32_t>(world_.settings.spp);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if ((!tile_ || sample_ == spp) && !next_pixel()) return i;
+      keys[i] = {x_, y_, sample_++};
     }
-    return PathKey{x_, y_, sample_++};
+    return keys.size();
   }
 
   bool next_pixel() {

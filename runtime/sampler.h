@@ -27,11 +27,14 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
 class Sampler {
  public:
   Sampler() = default;
-  Sampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y, std::uint32_t sample) {
-    key_ = mix64(seed + kGoldenGamma);
-    key_ = mix64(key_ ^ (static_cast<std::uint64_t>(y) << 32 | x));
-    key_ = mix64(key_ + kGoldenGamma * (sample + 1ull));
+  Sampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y, std::uint32_t sample)
+      : Sampler(pixel_key(seed, x, y), sample) {}
+
+  // What the samples of a pixel have in common, for who draws many.
+  static std::uint64_t pixel_key(std::uint64_t seed, std::uint32_t x, std::uint32_t y) {
+    return mix64(mix64(seed + kGoldenGamma) ^ (static_cast<std::uint64_t>(y) << 32 | x));
   }
+  Sampler(std::uint64_t pixel_key, std::uint32_t sample) : key_(mix64(pixel_key + kGoldenGamma * (sample + 1ull))) {}
 
   // The next dimension, in [0,1): a multiple of 2^-24.
   float next() {

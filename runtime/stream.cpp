@@ -80,8 +80,6 @@ void Stream<float>::evaluate() {
   field_.evaluate({row[kX], row[kY], row[kZ]}, count, distance_.data(), scratch_, workspace_);
   if (field_.regions) {
     for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
-  } else {
-    for (std::size_t i = 0; i < count; ++i) instructions_[i] += field_.distance->instructions();
   }
 }
 
@@ -124,14 +122,16 @@ void Stream<S>::finish(std::size_t i) {
   const Course& course = courses_[i];
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
+  const std::uint64_t instructions =
+      field_.regions ? instructions_[i] : std::uint64_t{evaluations} * field_.distance->instructions();
   const auto arrive_as = [&](Arrival::Status status, float width, double t) {
-    arrive({course.id, status, static_cast<std::int8_t>(side), evaluations, 0, width, t, instructions_[i]});
+    arrive(course.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
   };
   --live_;
   holes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Certify:
-      return certify_from(course, side, what_is_left(i), evaluations, instructions_[i]);
+      return certify_from(course, side, what_is_left(i), evaluations, instructions);
     case LaneVerdict::Hit:
       return arrive_as(Arrival::Status::Hit, static_cast<float>(number(kWidth)),
                        course.entry + static_cast<double>(number(kT)));
