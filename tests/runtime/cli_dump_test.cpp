@@ -113,15 +113,21 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
 
 TEST_CASE("cli: dump --region prints the part that matters at a point, and the whole program") {
   const Folder folder;
-  const auto near = folder.run("dump two.json --region 0.9,0,0");
+  std::string row;
+  for (int i = 0; i < 60; ++i) {
+    row += (i > 0 ? ", " : "") + std::string("{\"type\": \"sphere\", \"name\": \"at ") + std::to_string(i) +
+           "\", \"radius\": 0.2" + std::to_string(i) + ", \"translate\": [" + std::to_string(i) + ", 0, 0]}";
+  }
+  folder.write("row.json", "{\"version\": 1, \"objects\": [" + row + "]}");
+  const auto near = folder.run("dump row.json --region 3.2,0.1,0");
   CHECK(near.code == 0);
-  CHECK_THAT(near.out, Contains("; region at 0.9 0 0: bundle"));
+  const std::size_t whole = near.out.find("; whole: ");
+  CHECK_THAT(near.out, Contains("; region at 3.2 0.1 0: bundle, cell ["));
   CHECK_THAT(near.out, Contains("; the whole program is so short that renders evaluate it everywhere"));
-  CHECK_THAT(near.out, Contains("; whole: "));
-  // The left one is named once, in the whole program.
-  const std::string left = "sphere \"left\"";
-  CHECK(near.out.find(left) == near.out.rfind(left));
-  CHECK(near.out.find(left) > near.out.find("; whole: "));
+  CHECK(near.out.find("sphere \"at 3\"") < whole);
+  CHECK(near.out.find("sphere \"at 50\"") > whole);
+  CHECK_THAT(folder.run("dump row.json --region 3.5,0.5,0").out,
+             Contains(": far, cell") || Contains(": bundle, cell"));
   CHECK(folder.run("dump two.json --region 0.9,0,0 --stats").code == 2);
   CHECK(folder.run("dump two.json --region 0.9,0,0 --stage graph").code == 2);
   CHECK(folder.run("dump two.json --region here").code == 2);
