@@ -1,0 +1,118 @@
+// What do regions save? The marcher with regions (runtime/regions.h) against the same marcher that evaluates the
+// whole program for every sample, with all lanes full: scattered objects, and objects that are all blended into one.
+//
+//     build/release/bench_culling
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "bench/clouds.h"
+#include "bench/comparison.h"
+#include "bench/many_objects.h"
+#include "runtime/march.h"
+#include "runtime/measure/ray_sets.h"
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::bench;
+
+// Scene D, but for its margin, as a scene file.
+std::string scattered(int count) {
+  const ManyObjects objects = make_many_objects(count);
+  std::string text;
+  for (const auto& s : objects.spheres) {
+    text +=
+        fmt::format("{{\"type\": \"sphere\", \"radius\": {}, \"translate\": [{}, {}, {}]}},\n", s.r, s.x, s.y, s.z);
+  }
+  for (const auto& b : objects.boxes) {
+    text += fmt::format("{{\"type\": \"box\", \"half_size\": [{}, {}, {}], \"translate\": [{}, {}, {}]}},\n", b.hx,
+                        b.hy, b.hz, b.x, b.y, b.z);
+  }
+  text.resize(text.size() - 2);
+  return "{\"type\": \"union\", \"of\": [" + text + "]}";
+}
+
+// As many spheres, boxes and tori as scene B has, or more and smaller, all blended one after the other.
+std::string blended(int count) {
+  std::uint32_t state = 12345;
+  const auto u = [&] {
+    state = state * 1664525u + 1013904223u;
+    return ((state >> 8) % 1000) / 1000.0;
+  };
+  const double size = std::cbrt(30.0 / count);
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const double x = -2 + 4 * u(), y = 0.3 + 1.6 * u(), z = -2 + 4 * u();
+    const double a = size * (0.25 + 0.35 * u()), b = size * (0.25 + 0.35 * u()), c = size * (0.25 + 0.35 * u());
+    const std::string shapes[] = {
+        fmt::format("\"sphere\", \"radius\": {:.5f}", a),
+        fmt::format("\"box\", \"half_size\": [{:.5f}, {:.5f}, {:.5f}]", a, b, c),
+        fmt::format("\"torus\", \"major_radius\": {:.5f}, \"minor_radius\": {:.5f}", a + 0.15 * size, 0.4 * b)};
+    text += fmt::format("{}{{\"type\": {}, \"translate\": [{:.4f}, {:.4f}, {:.4f}]}}", i > 0 ? ",\n" : "",
+                        shapes[i % 3], x, y, z);
+  }
+  return fmt::format("{{\"type\": \"smooth_union\", \"k\": {:.4f}, \"of\": [{}]}}", 0.2 * size, text);
+}
+
+// A scene with and without regions, and rays to follow through it.
+class Scene {
+ public:
+  Scene(const std::string& object, const std::string& camera, std::size_t rays)
+      : scene_(compile(object, camera)), whole_(runtime::make_field(scene_)), cut_(whole_) {
+    runtime::add_regions(cut_, scene_, {});
+    sets_ = runtime::make_ray_sets(scene_, cut_, rays, 1);
+  }
+
+  void compare(const std::string& name, double least_gain, int rounds) const {
+    for (const runtime::RaySet& set : sets_) {
+      if (set.ray_class == "grazing") continue;
+      add({name + ", " + set.ray_class, "ns a ray", 1e9 / static_cast<double>(set.rays.size()), 1 / least_gain, 0,
+           rounds, [&] { runtime::march(cut_, set.rays); }, [&] { runtime::march(whole_, set.rays); },
+           [this, &set] { return describe(set); }});
+    }
+  }
+
+ private:
+  static compiler::CompiledScene compile(const std::string& object, const std::string& camera) {
+    const compiler::Source source("generated",
+                                  "{\"version\": 1, \"camera\": {" + camera + "}, \"objects\": [" + object + "]}");
+    compiler::Diagnostics diagnostics;
+    auto scene = compiler::compile(source, diagnostics);
+    if (!scene) {
+      fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
+      std::exit(1);
+    }
+    return *std::move(scene);
+  }
+
+  std::string describe(const runtime::RaySet& set) const {
+    const runtime::Regions::Facts& facts = cut_.regions->facts();
+    const auto a = runtime::march(cut_, set.rays).counters;
+    return fmt::format(
+        "{:.1f} evaluations of {:.1f} instructions a ray; built in {:.3f} s on one thread, {:.1f} MB, {} far cells, "
+        "{} bundles, {} programs",
+        static_cast<double>(a.evaluations) / static_cast<double>(a.rays),
+        static_cast<double>(a.instructions) / static_cast<double>(a.evaluations), facts.seconds,
+        static_cast<double>(facts.bytes) * 1e-6, facts.far, facts.bundles, facts.programs);
+  }
+
+  compiler::CompiledScene scene_;
+  runtime::Field whole_, cut_;
+  std::vector<runtime::RaySet> sets_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string cube = "\"position\": [2, 1.5, 2.4], \"target\": [0.5, 0.5, 0.5], \"fov_y\": 35";
+  const std::string heap = "\"position\": [4.2, 3.2, 5], \"target\": [0, 1, 0], \"fov_y\": 40";
+  const Scene d1000(scattered(1000), cube, 20000), d10000(scattered(10000), cube, 4000),
+      d100000(scattered(100000), cube, 1000), b300(blended(300), heap, 10000), b1000(blended(1000), heap, 4000);
+  d1000.compare("1000 scattered", 15, 11);
+  d10000.compare("10000 scattered", 80, 5);
+  d100000.compare("100000 scattered", 500, 3);
+  b300.compare("300 blended", 4, 11);
+  b1000.compare("1000 blended", 8, 5);
+  return run_benches(argc, argv, "regions against the whole program, ns a ray");
+}
