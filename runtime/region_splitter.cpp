@@ -1,0 +1,163 @@
+#include "runtime/region_splitter.h"
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/field.h"
+
+namespace fathom::runtime {
+namespace {
+
+// A leaf's limit in half diagonals: how far a step from within it goes at most, but where a longer one costs nothing.
+constexpr float kLimit = 0.4f;
+// The same of what is split further.
+constexpr float kInnerLimit = 0.5f;
+// Shapes in a bundle and choices in a program short enough for a leaf.
+constexpr std::uint32_t kBundleShapes = 24, kProgramChoices = 4;
+// Cells down to this level are shared out among the threads.
+constexpr int kShared = 2;
+
+}  // namespace
+
+RegionBuilder::Splitter::Splitter(RegionBuilder& builder)
+    : builder_(builder),
+      regions_(*builder.regions_),
+      levels_(regions_.tree_.levels),
+      bundle_shapes_(builder.longer_ * kBundleShapes),
+      program_choices_(builder.longer_ * kProgramChoices),
+      parts_(static_cast<std::size_t>(levels_) + 1) {}
+
+void RegionBuilder::Splitter::run(const Cell& cell, Piece& piece) {
+  piece_ = &piece;
+  piece.nodes.resize(8);
+  split(cell.part, cell.at, cell.level, cell.limit, 0);
+}
+
+void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int level, float limit,
+                                    std::uint32_t first) {
+  if (builder_.bytes_ > builder_.options_.memory) return;  // in vain
+  const int below = level + 1;
+  const std::size_t bytes_before = bytes_of(*piece_);
+  const float edge = regions_.tree_.size / static_cast<float>(1u << below), half_diagonal = edge * 0.8661f;
+  const BoxArrays boxes = children_of(at, below);
+  specialiser_.look(part, boxes.view(), workspace_);
+  Children children{};
+  Parts& parts = parts_[static_cast<std::size_t>(below)];
+  find_far(part, boxes, half_diagonal, below, limit, first, children);
+  const float scale = half_diagonal * regions_.tree_.lipschitz;
+  make_leaves(limit, below, first, children, parts);
+  make_leaves(std::min(limit, kLimit * scale), below, first, children, parts);
+  const float inner = std::min(limit, kInnerLimit * scale);
+  cut(inner, children, parts);
+  builder_.bytes_ += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    if (children[i]) continue;
+    const Place cell = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2)};
+    if (below <= kShared) {
+      piece_->pending.push_back({cell, below, inner, parts[i], first + i});
+      continue;
+    }
+    const auto grandchildren = static_cast<std::uint32_t>(piece_->nodes.size());
+    piece_->nodes.resize(grandchildren + 8);
+    piece_->nodes[first + i] = make_node(Kind::Inner, grandchildren, 0);
+    split(parts[i], cell, below, inner, grandchildren);
+  }
+}
+
+void RegionBuilder::Splitter::cut(float limit, const Children& done, Parts& parts) {
+  if (std::all_of(done.begin(), done.end(), [](bool d) { return d; })) return;
+  specialiser_.decide(-std::numeric_limits<float>::infinity(), limit);
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (!done[i]) specialiser_.part(i, parts[i]);
+  }
+}
+
+void RegionBuilder::Splitter::make_leaves(float limit, int level, std::uint32_t first, Children& done, Parts& parts) {
+  if (std::all_of(done.begin(), done.end(), [](bool d) { return d; })) return;
+  specialiser_.decide(-std::numeric_limits<float>::infinity(), limit);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::uint32_t left = done[i] ? 0 : specialiser_.choices_left(i);
+    if (done[i] || (left >= bundle_shapes_ && level < levels_)) continue;
+    specialiser_.part(i, parts[i]);
+    done[i] = make_leaf(parts[i], left, level, limit, first + static_cast<std::uint32_t>(i));
+  }
+}
+
+BoxArrays RegionBuilder::Splitter::children_of(const Place& at, int level) const {
+  BoxArrays boxes;
+  const double size = static_cast<double>(regions_.tree_.size), edge = size / (1u << level),
+               margin = size * kCellMargin;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const double lo = static_cast<double>(regions_.tree_.lo[axis]) + edge * (2.0 * at[axis] + (i >> axis & 1));
+      boxes.lo[axis][i] = static_cast<float>(lo - margin), boxes.hi[axis][i] = static_cast<float>(lo + edge + margin);
+    }
+  }
+  return boxes;
+}
+
+std::size_t RegionBuilder::Splitter::bytes_of(const Piece& piece) {
+  return piece.bundles.size() * sizeof(std::uint32_t) + piece.program_bytes;
+}
+
+void RegionBuilder::Splitter::find_far(const vm::Part& part, const BoxArrays& boxes, float half_diagonal, int level,
+                                       float limit, std::uint32_t first, Children& children) {
+  const float enough = kFar * half_diagonal * regions_.tree_.lipschitz;
+  std::array<float, 8> x, y, z, centre;
+  bool any = false;
+  for (std::size_t i = 0; i < 8; ++i) {
+    children[i] = specialiser_.lo(i) > enough;
+    any = any || children[i];
+    const auto middle = [&](std::size_t axis) { return (boxes.lo[axis][i] + boxes.hi[axis][i]) / 2; };
+    x[i] = middle(0), y[i] = middle(1), z[i] = middle(2);
+  }
+  if (!any) return;
+  vm::evaluate_distance(part, {x.data(), y.data(), z.data()}, 8, centre.data(), workspace_);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    if (!children[i]) continue;
+    // Above the limit the part says no more than that. The rest is for rounding.
+    const float error =
+        4 * kDistanceError * std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i]), centre[i]});
+    const float value = std::min(centre[i], limit) - error - 1e-5f * half_diagonal * regions_.tree_.lipschitz;
+    piece_->nodes[first + i] = make_node(Kind::Far, static_cast<std::uint32_t>(level), value);
+    ++piece_->facts.far;
+  }
+}
+
+bool RegionBuilder::Splitter::make_leaf(vm::Part& part, std::uint32_t choices, int level, float limit,
+                                        std::uint32_t node) {
+  const bool deepest = level == levels_;
+  if (choices >= bundle_shapes_ && !deepest) return false;
+  const std::size_t start = piece_->bundles.size();
+  if (vm::pack_bundle(part, piece_->bundles)) {
+    piece_->nodes[node] = make_node(Kind::Bundle, intern_bundle(start), limit);
+    ++piece_->facts.bundles;
+    return true;
+  }
+  if (choices > program_choices_ && !deepest) return false;
+  const std::size_t size = size_of(part), known = piece_->programs.size();
+  piece_->nodes[node] =
+      make_node(Kind::Program, intern(std::move(part), piece_->programs, piece_->program_at), limit);
+  if (piece_->programs.size() > known) piece_->program_bytes += size;
+  part = {};
+  ++piece_->facts.programs;
+  return true;
+}
+
+std::uint32_t RegionBuilder::Splitter::intern_bundle(std::size_t start) {
+  std::vector<std::uint32_t>& pool = piece_->bundles;
+  const std::size_t size = pool.size() - start;
+  const std::uint64_t hash = hash_of(pool.data() + start, size);
+  const auto [first, last] = piece_->bundle_at.equal_range(hash);
+  for (auto it = first; it != last; ++it) {
+    if (it->second + size <= start && std::equal(pool.begin() + static_cast<std::ptrdiff_t>(start), pool.end(),
+                                                 pool.begin() + static_cast<std::ptrdiff_t>(it->second))) {
+      pool.resize(start);
+      return it->second;
+    }
+  }
+  piece_->bundle_at.emplace(hash, static_cast<std::uint32_t>(start));
+  return static_cast<std::uint32_t>(start);
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,100 @@
+// Splitting the cells of the octree of regions (runtime/region_builder.h): which leaves they become.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "runtime/region_builder.h"
+
+namespace fathom::runtime {
+
+// A cell is far when the field is at least this many half diagonals above zero all over it.
+inline constexpr float kFar = 0.25f;
+// Of the root's edge: how much larger a cell is taken than it is, for the rounding that finds a point's cell.
+inline constexpr double kCellMargin = 0x1p-20;
+
+inline std::uint64_t hash_of(const std::uint32_t* words, std::size_t count) {
+  std::uint64_t hash = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    hash = (hash ^ words[i]) * 0x9e3779b97f4a7c15ull;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+inline Regions::Node make_node(Regions::Kind kind, std::uint32_t payload, float value) {
+  return {value, static_cast<std::uint32_t>(kind) << 30 | payload};
+}
+
+inline std::size_t size_of(const vm::Part& part) {
+  return sizeof(part) + part.words.size() * (sizeof(std::uint32_t) + sizeof(double)) +
+         part.sources.size() * sizeof(std::uint32_t);
+}
+
+// The number of an equal part in `programs`; adds it when there is none.
+inline std::uint32_t intern(vm::Part&& part, std::vector<vm::Part>& programs,
+                            std::unordered_multimap<std::uint64_t, std::uint32_t>& by_hash) {
+  const std::uint64_t hash = hash_of(part.words.data(), part.words.size());
+  const auto [first, last] = by_hash.equal_range(hash);
+  for (auto it = first; it != last; ++it) {
+    if (programs[it->second].words == part.words && programs[it->second].wide == part.wide) return it->second;
+  }
+  const auto number = static_cast<std::uint32_t>(programs.size());
+  by_hash.emplace(hash, number);
+  programs.push_back(std::move(part));
+  return number;
+}
+
+// The coordinates of up to kEnclosedBoxes boxes.
+struct BoxArrays {
+  alignas(64) float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
+  vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
+};
+
+// Splits cells, on one thread.
+class RegionBuilder::Splitter {
+ public:
+  explicit Splitter(RegionBuilder& builder);
+
+  // Makes the cell's descendants, into an empty piece.
+  void run(const Cell& cell, Piece& piece);
+
+ private:
+  using Node = Regions::Node;
+  using Kind = Regions::Kind;
+  using Place = std::array<std::uint32_t, 3>;  // in cells of a level
+  using Children = std::array<bool, 8>;        // those that are leaves already
+  using Parts = std::array<vm::Part, 8>;
+
+  // Makes the eight children, at nodes[first] and on, of a cell; those that are no leaves are split in turn.
+  void split(const vm::Part& part, const Place& at, int level, float limit, std::uint32_t first);
+  // The parts of the children that are no leaves yet.
+  void cut(float limit, const Children& done, Parts& parts);
+  // Leaves of those whose parts for the limit are short enough.
+  void make_leaves(float limit, int level, std::uint32_t first, Children& done, Parts& parts);
+  BoxArrays children_of(const Place& at, int level) const;
+  // What a piece's leaves take, but for the nodes.
+  static std::size_t bytes_of(const Piece& piece);
+  // Children that nothing is near.
+  void find_far(const vm::Part& part, const BoxArrays& boxes, float half_diagonal, int level, float limit,
+                std::uint32_t first, Children& children);
+  // False when the part is too long for a leaf.
+  bool make_leaf(vm::Part& part, std::uint32_t choices, int level, float limit, std::uint32_t node);
+  // The bundle that was packed last, or an equal one before it.
+  std::uint32_t intern_bundle(std::size_t start);
+
+  RegionBuilder& builder_;
+  const Regions& regions_;
+  const int levels_;
+  const std::uint32_t bundle_shapes_, program_choices_;
+  vm::Specialiser specialiser_;
+  vm::Workspace workspace_;
+  std::vector<Parts> parts_;  // [level]
+  Piece* piece_ = nullptr;
+};
+
+}  // namespace fathom::runtime
