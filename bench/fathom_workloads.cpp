@@ -14,7 +14,8 @@ namespace {
 
 using namespace fathom::runtime;
 
-// Workload S. A ray's id is its pixel, and for a shadow ray the top bit.
+// Workload S, with as many rays under way as the marcher takes. Each has a slot, whose number is its id; a pixel's
+// shadow ray takes its camera ray's over.
 class ShadowRenderer {
  public:
   ShadowRenderer(const compiler::CompiledScene& scene, const Frame& frame)
@@ -24,19 +25,14 @@ class ShadowRenderer {
         field_(make_field(scene, scene.settings.far)) {
     add_regions(field_, scene, {.threads = 1});
     marcher_ = make_marcher(field_);
-    const auto pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
-    picture_.pixels.resize(pixels);
-    shadow_rays_.reserve(2 * Marcher::kCapacity);
+    picture_.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
+    for (std::uint32_t slot = Marcher::kCapacity; slot > 0; --slot) free_.push_back(slot - 1);
   }
 
   Picture run() {
-    const auto pixels = static_cast<std::uint32_t>(picture_.pixels.size());
-    for (std::uint32_t next = 0; next < pixels || !shadow_rays_.empty() || !marcher_->empty();) {
-      while (marcher_->room() > 0 && !shadow_rays_.empty()) {
-        marcher_->add(shadow_rays_.back().pixel | kShadow, shadow_rays_.back().ray);
-        shadow_rays_.pop_back();
-      }
-      for (; marcher_->room() > 0 && next < pixels; ++next) marcher_->add(next, camera_ray(next));
+    while (true) {
+      while (!free_.empty() && next_ < picture_.pixels.size()) start_pixel();
+      if (marcher_->empty()) break;
       marcher_->advance();
       if (marcher_->arrivals().size() >= kShadeBatch || marcher_->empty()) settle();
     }
@@ -45,38 +41,44 @@ class ShadowRenderer {
   }
 
  private:
-  static constexpr std::uint32_t kShadow = 1u << 31;
   static constexpr std::size_t kShadeBatch = 64;
 
-  struct ShadowRay {
-    std::uint32_t pixel;
+  struct Slot {
     Ray ray;
+    std::uint32_t pixel;
+    bool shadow;
   };
 
-  Ray camera_ray(std::uint32_t pixel) const {
-    const auto width = static_cast<std::uint32_t>(frame_.width);
-    const CameraRay ray = camera_.ray(pixel % width + 0.5, pixel / width + 0.5);
-    return {ray.origin, ray.direction};
+  void start_pixel() {
+    const std::uint32_t slot = free_.back();
+    free_.pop_back();
+    const CameraRay ray = camera_.ray(x_ + 0.5, y_ + 0.5);
+    Slot& begun = slots_[slot];
+    begun.ray.origin = ray.origin;
+    begun.ray.direction = ray.direction;
+    begun.ray.side = 0;
+    begun.ray.slope = -1;
+    begun.pixel = static_cast<std::uint32_t>(next_++);
+    begun.shadow = false;
+    marcher_->add(slot, begun.ray);
+    if (++x_ == frame_.width) x_ = 0, ++y_;
   }
 
   void settle() {
     marcher_->take_arrivals(arrivals_);
     std::size_t count = 0;
     for (const Arrival& arrival : arrivals_) {
-      const bool hit = arrival.status == Arrival::Status::Hit;
-      if (arrival.id & kShadow) {
-        if (hit) picture_.pixels[arrival.id & ~kShadow] = static_cast<float>(kAlbedo * kAmbient);
+      const Slot& slot = slots_[arrival.id];
+      if (arrival.status == Arrival::Status::Hit && !slot.shadow) {
+        hits_[count] = {slot.ray.origin + arrival.t * slot.ray.direction, glm::vec3(-slot.ray.direction),
+                        arrival.side, arrival.width};
+        hit_slots_[count++] = arrival.id;
         continue;
       }
-      const Ray ray = camera_ray(arrival.id);
-      picture_.pixels[arrival.id] = static_cast<float>(0.5 + 0.5 * ray.direction.y);
-      if (!hit) continue;
-      hits_[count] = {ray.origin + arrival.t * ray.direction, glm::vec3(-ray.direction), arrival.side, arrival.width};
-      pixels_[count] = arrival.id;
-      if (++count == kSurfaceBatch) {
-        shade(count);
-        count = 0;
-      }
+      float& pixel = picture_.pixels[slot.pixel];
+      if (!slot.shadow) pixel = static_cast<float>(0.5 + 0.5 * slot.ray.direction.y);
+      if (slot.shadow && arrival.status == Arrival::Status::Hit) pixel = static_cast<float>(kAlbedo * kAmbient);
+      free_.push_back(arrival.id);
     }
     shade(count);
   }
@@ -86,14 +88,20 @@ class ShadowRenderer {
     picture_.camera_hits += count;
     find_surfaces(scene_, field_, std::span(hits_).first(count), points_, marcher_->workspace());
     for (std::size_t i = 0; i < count; ++i) {
+      Slot& slot = slots_[hit_slots_[i]];
       const float cosine = glm::dot(points_[i].normal, glm::vec3(light_));
-      picture_.pixels[pixels_[i]] =
+      picture_.pixels[slot.pixel] =
           static_cast<float>(kAlbedo * (kAmbient + (1 - kAmbient) * std::max(static_cast<double>(cosine), 0.0)));
-      if (!(cosine > 0)) continue;
-      Ray ray{spawn(hits_[i], points_[i], false), light_};
-      ray.side = hits_[i].side;
-      ray.slope = cosine;
-      shadow_rays_.push_back({pixels_[i], ray});
+      if (!(cosine > 0)) {
+        free_.push_back(hit_slots_[i]);
+        continue;
+      }
+      slot.ray.origin = spawn(hits_[i], points_[i], false);
+      slot.ray.direction = light_;
+      slot.ray.side = hits_[i].side;
+      slot.ray.slope = cosine;
+      slot.shadow = true;
+      marcher_->add(hit_slots_[i], slot.ray);
     }
   }
 
@@ -103,13 +111,18 @@ class ShadowRenderer {
   Field field_;
   const glm::dvec3 light_ = glm::normalize(kToLight);
   std::unique_ptr<Marcher> marcher_;
-  std::vector<ShadowRay> shadow_rays_;
+  std::size_t next_ = 0;  // pixel
+  int x_ = 0, y_ = 0;     // where it is
+  std::array<Slot, Marcher::kCapacity> slots_;
+  std::vector<std::uint32_t> free_;
   std::vector<Arrival> arrivals_;
-  std::array<Hit, kSurfaceBatch> hits_;
+  std::array<Hit, kSurfaceBatch> hits_;  // no more than there are slots
   std::array<SurfacePoint, kSurfaceBatch> points_;
-  std::array<std::uint32_t, kSurfaceBatch> pixels_;
+  std::array<std::uint32_t, kSurfaceBatch> hit_slots_;
   Picture picture_;
 };
+
+static_assert(Marcher::kCapacity <= kSurfaceBatch);
 
 }  // namespace
 

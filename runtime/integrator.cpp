@@ -81,8 +81,16 @@ void Integrator::start(std::span<const PathKey> keys) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::uint32_t id = free_ids_.back();
     free_ids_.pop_back();
-    paths_[id] = {keys[i], samplers[i], rays[i].origin, rays[i].direction, glm::vec3(1), glm::vec3(0), 0, {}};
-    marcher_->add(id, {rays[i].origin, rays[i].direction});
+    Path& path = paths_[id];
+    path.key = keys[i];
+    path.sampler = samplers[i];
+    path.origin = rays[i].origin;
+    path.direction = rays[i].direction;
+    path.throughput = glm::vec3(1);
+    path.absorption = glm::vec3(0);
+    path.bounces = 0;
+    path.result = {};
+    marcher_->add(id, {path.origin, path.direction});
   }
   stats_.primary_rays += keys.size();
 }

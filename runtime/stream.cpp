@@ -65,9 +65,9 @@ void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
     put(kOx + axis, rays.origin[axis][i]);
     put(kDx + axis, rays.direction[axis][i]);
   }
-  put(kTMax, static_cast<double>(round_down<S>(rays.length[i])));
+  first[kTMax * Lanes<S>::kStride] = round_down<S>(rays.length[i]);
   put(kSide, rays.side[i]);
-  put(kM, seeded_ ? std::clamp(static_cast<double>(rays.slope[i]), -1.0, 0.9) : -1);
+  first[kM * Lanes<S>::kStride] = seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1);
   put(kPenalty, seeded_ ? kFirstPenalty : 1);
   courses_[lane] = course_of(rays, i);
   instructions_[lane] = 0;
