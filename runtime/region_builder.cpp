@@ -64,7 +64,8 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
     regions_->bundles_.clear(), regions_->programs_.clear(), program_at_.clear();
     regions_->facts_ = {};
     bytes_ = 0;
-    split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), whole_, 0}});
+    split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), 0, whole_, 0}});
+    if (work_ > kMostWork) return nullptr;
     if (bytes_ <= options_.memory) break;
     if (longer_ > choices_) return nullptr;
   }

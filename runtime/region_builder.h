@@ -27,6 +27,7 @@ class RegionBuilder {
     std::array<std::uint32_t, 3> at;  // in cells of its level
     int level;
     float limit;
+    int idle;  // levels at which its part did not get shorter
     vm::Part part;
     std::uint32_t node;  // that it is
   };
@@ -56,6 +57,7 @@ class RegionBuilder {
   std::size_t choices_ = 0;
   std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
   std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
+  std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far
   std::shared_ptr<Regions> regions_;
   std::unordered_multimap<std::uint64_t, std::uint32_t> program_at_;
 };

@@ -14,6 +14,9 @@ constexpr float kLimit = 0.4f;
 constexpr float kInnerLimit = 0.5f;
 // Shapes in a bundle and choices in a program short enough for a leaf.
 constexpr std::uint32_t kBundleShapes = 24, kProgramChoices = 4;
+// Cells are split no further after so many levels at which their parts did not get this much shorter.
+constexpr double kShorter = 0.9;
+constexpr int kMostIdle = 2;
 // Cells down to this level are shared out among the threads.
 constexpr int kShared = 2;
 
@@ -30,12 +33,13 @@ RegionBuilder::Splitter::Splitter(RegionBuilder& builder)
 void RegionBuilder::Splitter::run(const Cell& cell, Piece& piece) {
   piece_ = &piece;
   piece.nodes.resize(8);
-  split(cell.part, cell.at, cell.level, cell.limit, 0);
+  split(cell.part, cell.at, cell.level, cell.limit, cell.idle, 0);
 }
 
-void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int level, float limit,
+void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far,
                                     std::uint32_t first) {
-  if (builder_.bytes_ > builder_.options_.memory) return;  // in vain
+  if (builder_.bytes_ > builder_.options_.memory || builder_.work_ > kMostWork) return;  // in vain
+  builder_.work_ += part.sources.size();
   const int below = level + 1;
   const std::size_t bytes_before = bytes_of(*piece_);
   const float edge = regions_.tree_.size / static_cast<float>(1u << below), half_diagonal = edge * 0.8661f;
@@ -52,15 +56,21 @@ void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int l
   builder_.bytes_ += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (children[i]) continue;
+    const bool shorter = parts[i].words.size() < kShorter * static_cast<double>(part.words.size());
+    const int idle = shorter || below <= builder_.options_.room ? 0 : idle_so_far + 1;
+    if (idle > kMostIdle) {
+      make_leaf(parts[i], true, 0, below, inner, first + i);
+      continue;
+    }
     const Place cell = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2)};
     if (below <= kShared) {
-      piece_->pending.push_back({cell, below, inner, parts[i], first + i});
+      piece_->pending.push_back({cell, below, inner, idle, parts[i], first + i});
       continue;
     }
     const auto grandchildren = static_cast<std::uint32_t>(piece_->nodes.size());
     piece_->nodes.resize(grandchildren + 8);
     piece_->nodes[first + i] = make_node(Kind::Inner, grandchildren, 0);
-    split(parts[i], cell, below, inner, grandchildren);
+    split(parts[i], cell, below, inner, idle, grandchildren);
   }
 }
 
@@ -79,7 +89,7 @@ void RegionBuilder::Splitter::make_leaves(float limit, int level, std::uint32_t 
     const std::uint32_t left = done[i] ? 0 : specialiser_.choices_left(i);
     if (done[i] || (left >= bundle_shapes_ && level < levels_)) continue;
     specialiser_.part(i, parts[i]);
-    done[i] = make_leaf(parts[i], left, level, limit, first + static_cast<std::uint32_t>(i));
+    done[i] = make_leaf(parts[i], false, left, level, limit, first + static_cast<std::uint32_t>(i));
   }
 }
 
@@ -124,9 +134,9 @@ void RegionBuilder::Splitter::find_far(const vm::Part& part, const BoxArrays& bo
   }
 }
 
-bool RegionBuilder::Splitter::make_leaf(vm::Part& part, std::uint32_t choices, int level, float limit,
+bool RegionBuilder::Splitter::make_leaf(vm::Part& part, bool always, std::uint32_t choices, int level, float limit,
                                         std::uint32_t node) {
-  const bool deepest = level == levels_;
+  const bool deepest = always || level == levels_;
   if (choices >= bundle_shapes_ && !deepest) return false;
   const std::size_t start = piece_->bundles.size();
   if (vm::pack_bundle(part, piece_->bundles)) {

@@ -55,6 +55,9 @@ struct BoxArrays {
   vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
+// Instructions that may be enclosed before regions are given up: scenes that cannot be cut are not worth the time.
+inline constexpr std::size_t kMostWork = 100'000'000;
+
 // Splits cells, on one thread.
 class RegionBuilder::Splitter {
  public:
@@ -71,7 +74,7 @@ class RegionBuilder::Splitter {
   using Parts = std::array<vm::Part, 8>;
 
   // Makes the eight children, at nodes[first] and on, of a cell; those that are no leaves are split in turn.
-  void split(const vm::Part& part, const Place& at, int level, float limit, std::uint32_t first);
+  void split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far, std::uint32_t first);
   // The parts of the children that are no leaves yet.
   void cut(float limit, const Children& done, Parts& parts);
   // Leaves of those whose parts for the limit are short enough.
@@ -82,8 +85,8 @@ class RegionBuilder::Splitter {
   // Children that nothing is near.
   void find_far(const vm::Part& part, const BoxArrays& boxes, float half_diagonal, int level, float limit,
                 std::uint32_t first, Children& children);
-  // False when the part is too long for a leaf.
-  bool make_leaf(vm::Part& part, std::uint32_t choices, int level, float limit, std::uint32_t node);
+  // False when the part is too long for a leaf, and it need not always be one.
+  bool make_leaf(vm::Part& part, bool always, std::uint32_t choices, int level, float limit, std::uint32_t node);
   // The bundle that was packed last, or an equal one before it.
   std::uint32_t intern_bundle(std::size_t start);
 

@@ -10,11 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "compiler/bounds.h"
+#include "compiler/fuse.h"
 #include "runtime/field.h"
 #include "runtime/march.h"
 #include "runtime/render.h"
 #include "runtime/surface.h"
 #include "tests/support/compiled.h"
+#include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
@@ -119,6 +122,51 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
       CHECK(far > 100);
     }
   }
+}
+
+TEST_CASE("regions: random scenes of every kind of node are cut without a wrong value", "[regions]") {
+  std::size_t built = 0, wrong = 0, cut = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed);
+    test::GraphOptions options;
+    options.depth = 5;
+    const compiler::Scene scene = test::random_scene(random, options);
+    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const auto fused = vm::verify(compiler::fuse(test::plain_lowering(scene).program()));
+    const auto& program = std::get<vm::VerifiedProgram>(fused);
+    const bool bounded = known.box.finite() && !known.box.empty();
+    const compiler::Box box = bounded ? known.box : compiler::Box::centred(glm::dvec3(3));
+    if (!(known.lipschitz > 0) || box.hi.x - box.lo.x > 1e3) continue;
+    const auto regions = Regions::build(program, box, known.lipschitz, {.always = true, .room = bounded ? 0 : 3});
+    if (!regions) continue;
+    ++built;
+    vm::Workspace workspace;
+    RegionScratch scratch;
+    for (const double reach : {1.05, 8.0}) {  // some of them outside
+      Sample at = sample(kMostPoints, reach, seed);
+      const glm::dvec3 middle = (box.lo + box.hi) / 2.0, half = (box.hi - box.lo) / 2.0;
+      for (std::size_t i = 0; i < kMostPoints; ++i) {
+        at.x[i] = static_cast<float>(middle.x) + at.x[i] * static_cast<float>(half.x);
+        at.y[i] = static_cast<float>(middle.y) + at.y[i] * static_cast<float>(half.y);
+        at.z[i] = static_cast<float>(middle.z) + at.z[i] * static_cast<float>(half.z);
+      }
+      std::vector<float> whole(kMostPoints), part(kMostPoints);
+      vm::evaluate_distance(program, at.points(), kMostPoints, whole.data(), workspace);
+      regions->evaluate(at.points(), kMostPoints, part.data(), scratch, workspace);
+      for (std::size_t i = 0; i < kMostPoints; ++i) {
+        const Regions::Region region = regions->region({at.x[i], at.y[i], at.z[i]});
+        const float limit = static_cast<float>(region.limit);
+        const bool right =
+            region.part.words.empty() ? part[i] <= whole[i] && part[i] > 0 : part[i] == std::min(whole[i], limit);
+        INFO(fmt::format("seed {}, {} {} {}: {} of {}", seed, at.x[i], at.y[i], at.z[i], part[i], whole[i]));
+        if (!right && wrong++ < 3) FAIL_CHECK("neither the field nor its limit");
+        cut += part[i] < whole[i];
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(built > 40);
+  CHECK(cut > 1000);
 }
 
 TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]") {
