@@ -58,6 +58,14 @@ TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy]
   }
 }
 
+TEST_CASE("render: paths that are cut off bring what they met until then", "[render]") {
+  RenderOptions options = options_of(16, 16, 4);
+  options.cut_after = 2;
+  const Estimate found = estimate(render(scene_of(furnace(0.8)), options).film);
+  CHECK(found.mean == Approx(1 + 0.8 + 0.64).epsilon(1e-6));
+  CHECK(found.sigma < 1e-6);
+}
+
 TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render]") {
   // The floor's radiance under the lamp is albedo E / pi. Orthographic, looking at a small spot from the side, below
   // the lamp and seeing nothing else. The spot is so small that E is 1e-4 from constant.
