@@ -39,7 +39,6 @@ compiler::CompiledScene scene_of(test::Random& random, Kind kind, const std::vec
                                 program,
                                 known.box,
                                 known.box,
-                                known.box,
                                 known.lipschitz,
                                 known.magnitude,
                                 known.certified,
