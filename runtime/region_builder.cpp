@@ -147,21 +147,22 @@ void RegionBuilder::close_outside() {
     r.outside_.fill(make_node(Kind::Program, whole, std::numeric_limits<float>::infinity()));
     return;
   }
-  BoxArrays boxes;
+  constexpr std::size_t kFaces = 6;
   const float infinity = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) boxes.lo[axis][i] = -infinity, boxes.hi[axis][i] = infinity;
-    if (i >= 6) continue;
-    const float margin = r.tree_.size * static_cast<float>(kCellMargin), near = r.tree_.lo[i / 2],
-                far = near + r.tree_.size;
-    (i % 2 == 0 ? boxes.hi : boxes.lo)[i / 2][i] = i % 2 == 0 ? near + margin : far - margin;
+  BoxArrays boxes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(boxes.lo[axis], vm::kEnclosedBoxes, -infinity);
+    std::fill_n(boxes.hi[axis], vm::kEnclosedBoxes, infinity);
+    const float margin = r.tree_.size * static_cast<float>(kCellMargin), near = r.tree_.lo[axis];
+    boxes.hi[axis][2 * axis] = near + margin;
+    boxes.lo[axis][2 * axis + 1] = near + r.tree_.size - margin;
   }
   vm::Specialiser specialiser;
   vm::Workspace workspace;
   specialiser.look(whole_, boxes.view(), workspace);
   const float limit = r.tree_.size / 10 * r.tree_.lipschitz;
   specialiser.decide(-infinity, limit);
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < kFaces; ++i) {
     vm::Part part;
     specialiser.part(i, part);
     r.outside_[i] = make_node(Kind::Program, intern(std::move(part), r.programs_, program_at_), limit);

@@ -105,13 +105,13 @@ inline Enclosed enclosed(const vm::VerifiedProgram& program, const BoxSet& boxes
   return result;
 }
 
-struct Sample {
+struct BoxSample {
   vm::VerifiedProgram program;
   std::string name;
 };
 
 // A primitive, every kind in turn, or a graph, or a formula.
-inline Sample sample(std::uint64_t seed, Random& random) {
+inline BoxSample sample(std::uint64_t seed, Random& random) {
   const std::string number = "seed " + std::to_string(seed);
   if (seed % 3 == 0) {
     GraphOptions options;

@@ -50,7 +50,7 @@ TEST_CASE("the operands of every choice are within their bounds", "[enclosure]")
   int outside = 0, compared = 0;
   for (std::uint64_t seed = 0; seed < 150 && outside < 20; ++seed) {
     Random random(seed);
-    const Sample sampled = sample(seed % 2 == 0 ? 3 * seed : 3 * seed + 1, random);
+    const BoxSample sampled = sample(seed % 2 == 0 ? 3 * seed : 3 * seed + 1, random);
     const BoxSet boxes = random_boxes(random);
     const Enclosed result = enclosed(sampled.program, boxes, workspace);
     const Cloud cloud = points_in(boxes, random, 8);

@@ -75,7 +75,7 @@ TEST_CASE("what the f32 machine computes is within its enclosure, of every opcod
   int outside = 0, bounded = 0, boxes_tried = 0;
   for (std::uint64_t seed = 0; seed < 3000 && outside < 20; ++seed) {
     Random random(seed);
-    const Sample sampled = sample(seed, random);
+    const BoxSample sampled = sample(seed, random);
     add_opcodes(sampled.program, seen);
     const BoxSet boxes = random_boxes(random);
     const Enclosed result = enclosed(sampled.program, boxes, workspace);
@@ -215,7 +215,7 @@ TEST_CASE("enclosures are the same bits on every instruction set", "[enclosure][
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 240; ++seed) {
     Random random(seed);
-    const Sample sampled = sample(seed, random);
+    const BoxSample sampled = sample(seed, random);
     const BoxSet boxes = random_boxes(random);
     std::vector<std::uint32_t> first;
     for (const std::string_view isa : vm::available_isas()) {

@@ -65,7 +65,7 @@ TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosu
   for (std::uint64_t seed = 0; seed < 1500 && violations < 10; ++seed) {
     if (seed % 3 == 1) continue;  // formulas
     Random random(seed);
-    const Sample sampled = sample(seed, random);
+    const BoxSample sampled = sample(seed, random);
     for (const vm::Form form : {vm::Form::Shape, vm::Form::Point}) {
       for (const Row& row : rows_of(sampled.program, form)) {
         seen.insert(static_cast<Opcode>(row.code.words[0] & 0xff));
