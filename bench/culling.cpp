@@ -91,10 +91,10 @@ class Scene {
     const auto a = runtime::march(cut_, set.rays).counters;
     return fmt::format(
         "{:.1f} evaluations of {:.1f} instructions a ray; built in {:.3f} s on one thread, {:.1f} MB, {} far cells, "
-        "{} bundles, {} programs",
+        "{} programs of {} skeletons",
         static_cast<double>(a.evaluations) / static_cast<double>(a.rays),
         static_cast<double>(a.instructions) / static_cast<double>(a.evaluations), facts.seconds,
-        static_cast<double>(facts.bytes) * 1e-6, facts.far, facts.bundles, facts.programs);
+        static_cast<double>(facts.bytes) * 1e-6, facts.far, facts.programs, facts.skeletons);
   }
 
   compiler::CompiledScene scene_;

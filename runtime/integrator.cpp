@@ -31,7 +31,8 @@ bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && st
 
 Integrator::Integrator(const World& world, Film& film)
     : world_(world), film_(film), marcher_(make_marcher(world.field, world.settings.marching)) {
-  for (std::uint32_t id = Marcher::kCapacity; id > 0; --id) free_ids_.push_back(id - 1);
+  paths_.resize(static_cast<std::size_t>(marcher_->capacity()));
+  for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
 void Integrator::run(const NextPaths& next) {

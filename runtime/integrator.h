@@ -83,7 +83,7 @@ class Integrator {
   const World& world_;
   Film& film_;
   std::unique_ptr<Marcher> marcher_;
-  std::array<Path, Marcher::kCapacity> paths_;  // [id]
+  std::vector<Path> paths_;  // [id]
   std::vector<std::uint32_t> free_ids_, ended_;
   std::vector<Arrival> settled_;  // scratch
   Stats stats_;

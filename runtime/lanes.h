@@ -63,7 +63,7 @@ enum LaneRow : std::uint8_t {
 // S: float or double. Counts and flags are numbers of that type, too: a register holds as many of each.
 template <class S>
 struct Lanes {
-  static constexpr std::size_t kCapacity = 128;  // a block of the machine
+  static constexpr std::size_t kCapacity = 768;
   // A line of the cache longer than need be: rows a power of two apart would all compete for the same few lines.
   static constexpr std::size_t kStride = kCapacity + 64 / sizeof(S);
   alignas(64) S row[kLaneRows][kStride];

@@ -40,14 +40,19 @@ namespace fathom::runtime {
 
 class Marcher {
  public:
-  static constexpr int kCapacity = 256;  // rays under way
+  static constexpr int kMostRays = 1024;
 
-  explicit Marcher(const Field& field) : field_(field) {}
+  explicit Marcher(const Field& field) : field_(field), capacity_(field.regions ? kMostRays : kMostRays / 4) {}
   virtual ~Marcher() = default;
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  int room() const { return kCapacity - live_ - static_cast<int>(waiting_.count); }
+  // Rays under way at once, kMostRays at most: with regions many, so that many are in programs of one skeleton.
+  int capacity() const { return capacity_; }
+  int room() const {
+    const int waiting = static_cast<int>(waiting_.count);
+    return std::min(capacity_ - live_, static_cast<int>(RayBlock::kCapacity)) - waiting;
+  }
   bool empty() const { return live_ == 0 && waiting_.count == 0; }
 
   // Needs room.
@@ -99,6 +104,7 @@ class Marcher {
                     std::uint64_t instructions);
 
   const Field& field_;
+  const int capacity_;
   int live_ = 0;  // rays under way; those that were added since the last advance() wait
   MarchCounters counters_;
   vm::Workspace workspace_;
@@ -109,7 +115,6 @@ class Marcher {
   void begin_waiting();
   void begin_last();
 
-  static_assert(RayBlock::kCapacity == kCapacity);
   RayBlock waiting_;         // the last one is the next to begin
   std::size_t clipped_ = 0;  // of those waiting, the first
   std::vector<Arrival> arrivals_;

@@ -21,23 +21,15 @@ constexpr std::uint64_t kLeastCost = 2500;
 // The smallest cells: so many levels below that with as many cells as there are choices.
 constexpr int kExtraLevels = 3, kMostLevels = 10;
 
-// Of every shape the surface that the innermost tag above it claims, by its place; empty when there are no tags.
-std::vector<std::uint32_t> surfaces_of(const vm::Expression& expression, const vm::Code& code) {
-  const auto& nodes = expression.nodes();
-  std::vector<std::uint32_t> by_node(nodes.size(), vm::kNone), by_word;
-  bool any = false;
-  for (std::size_t i = nodes.size(); i-- > 0;) {  // users come after what they use
-    const std::uint32_t word = code.words[nodes[i].at];
-    std::uint32_t surface = by_node[i];
-    if (static_cast<vm::Opcode>(word & 0xff) == vm::Opcode::Tag) surface = vm::operand_of(word), any = true;
-    for (const std::uint32_t operand : {nodes[i].a, nodes[i].b}) {
-      if (operand != vm::kNone) by_node[operand] = surface;
-    }
+// Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
+// granted.
+bool is_unfolded(const vm::Code& code) {
+  for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
+    if (vm::find_opcode(code.words[at] & 0xff)->form != vm::Form::Binary) continue;
+    const vm::Sources sources = vm::sources_of(code.words[at]);
+    if (sources.a == vm::Source::Constant && sources.b == vm::Source::Constant) return true;
   }
-  if (!any) return by_word;
-  by_word.assign(code.size, vm::kNone);
-  for (std::size_t i = 0; i < nodes.size(); ++i) by_word[nodes[i].at] = by_node[i];
-  return by_word;
+  return false;
 }
 
 }  // namespace
@@ -52,19 +44,22 @@ RegionBuilder::RegionBuilder(const vm::Code& program, const compiler::Box& conte
 
 std::shared_ptr<const Regions> RegionBuilder::build() {
   const auto start = std::chrono::steady_clock::now();
-  whole_ = vm::whole(program_);
+  vm::Part& whole = regions_->whole_part_;
+  whole = vm::whole(program_);
   vm::Expression expression;
-  if ((whole_.cost < kLeastCost && !options_.always) || !expression.read(program_)) return nullptr;
+  if ((whole.cost < kLeastCost && !options_.always) || !expression.read(program_) || is_unfolded(program_)) {
+    return nullptr;
+  }
   choices_ = std::max<std::size_t>(1, expression.choices().size());
-  regions_->surfaces_ = surfaces_of(expression, program_);
   if (!choose_root(contents_)) return nullptr;
+  regions_->constants_.emplace(program_);
   // What takes too much memory is cut into fewer, longer leaves.
   for (;; longer_ *= 2) {
     regions_->nodes_.assign(1, {});
-    regions_->bundles_.clear(), regions_->programs_.clear(), program_at_.clear();
+    regions_->pool_.clear(), regions_->skeletons_ = {};
     regions_->facts_ = {};
     bytes_ = 0;
-    split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), 0, whole_, 0}});
+    split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), 0, whole, 0}});
     if (work_ > kMostWork) return nullptr;
     if (bytes_ <= options_.memory) break;
     if (longer_ > choices_) return nullptr;
@@ -122,18 +117,15 @@ void RegionBuilder::split_all(std::vector<Cell> cells) {
 std::uint32_t RegionBuilder::append(Piece& piece) {
   Regions& r = *regions_;
   const auto first = static_cast<std::uint32_t>(r.nodes_.size());
-  const auto bundles = static_cast<std::uint32_t>(r.bundles_.size());
-  std::vector<std::uint32_t> number;
-  for (vm::Part& part : piece.programs) number.push_back(intern(std::move(part), r.programs_, program_at_));
+  const auto pool = static_cast<std::uint32_t>(r.pool_.size());
+  for (const std::uint32_t at : piece.programs) r.skeletons_.adopt(piece.skeletons, piece.pool.data(), at);
   for (Node node : piece.nodes) {
     if (node.kind() == Kind::Inner) node.ref += first;
-    if (node.kind() == Kind::Bundle) node.ref += bundles;
-    if (node.kind() == Kind::Program) node = make_node(Kind::Program, number[node.payload()], node.value);
+    if (node.kind() == Kind::Program) node.ref += pool;
     r.nodes_.push_back(node);
   }
-  r.bundles_.insert(r.bundles_.end(), piece.bundles.begin(), piece.bundles.end());
-  r.facts_.far += piece.facts.far, r.facts_.bundles += piece.facts.bundles;
-  r.facts_.programs += piece.facts.programs;
+  r.pool_.insert(r.pool_.end(), piece.pool.begin(), piece.pool.end());
+  r.facts_.far += piece.facts.far, r.facts_.programs += piece.facts.programs;
   return first;
 }
 
@@ -141,10 +133,8 @@ std::uint32_t RegionBuilder::append(Piece& piece) {
 // time.
 void RegionBuilder::close_outside() {
   Regions& r = *regions_;
-  r.whole_length_ = static_cast<std::uint32_t>(whole_.sources.size());
   if (options_.room == 0) {  // no ray goes there
-    const auto whole = static_cast<std::uint32_t>(r.programs_.size());
-    r.outside_.fill(make_node(Kind::Program, whole, std::numeric_limits<float>::infinity()));
+    r.outside_.fill(make_node(Kind::Program, Regions::kWhole, std::numeric_limits<float>::infinity()));
     return;
   }
   constexpr std::size_t kFaces = 6;
@@ -159,13 +149,13 @@ void RegionBuilder::close_outside() {
   }
   vm::Specialiser specialiser;
   vm::Workspace workspace;
-  specialiser.look(whole_, boxes.view(), workspace);
+  specialiser.look(r.whole_part_, boxes.view(), workspace);
   const float limit = r.tree_.size / 10 * r.tree_.lipschitz;
   specialiser.decide(-infinity, limit);
   for (std::size_t i = 0; i < kFaces; ++i) {
     vm::Part part;
     specialiser.part(i, part);
-    r.outside_[i] = make_node(Kind::Program, intern(std::move(part), r.programs_, program_at_), limit);
+    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), limit);
   }
 }
 
@@ -185,8 +175,7 @@ void RegionBuilder::make_grid() {
     }
     r.grid_[i] = index;
   }
-  r.bundles_.resize(r.bundles_.size() + vm::kBundlePadding);
-  r.bundles_.shrink_to_fit(), r.nodes_.shrink_to_fit();
+  r.pool_.shrink_to_fit(), r.nodes_.shrink_to_fit();
   static_assert(sizeof(Node) == 2 * sizeof(std::uint32_t));
   r.tree_.grid = r.grid_.data(), r.tree_.nodes = reinterpret_cast<const std::uint32_t*>(r.nodes_.data());
 }
@@ -194,11 +183,10 @@ void RegionBuilder::make_grid() {
 void RegionBuilder::count_bytes() {
   Regions& r = *regions_;
   r.facts_.levels = r.tree_.levels;
-  r.facts_.distinct_programs = r.programs_.size();
-  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + (r.grid_.size() + r.bundles_.size()) * sizeof(std::uint32_t);
-  for (const vm::Part& part : r.programs_) {
-    r.facts_.bytes += size_of(part);
-  }
+  r.facts_.skeletons = r.skeletons_.size();
+  r.constants_->forget_rows();
+  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + (r.grid_.size() + r.pool_.size()) * sizeof(std::uint32_t) +
+                   r.skeletons_.bytes() + r.constants_->bytes();
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

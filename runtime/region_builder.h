@@ -34,11 +34,11 @@ class RegionBuilder {
   // What one thread has made of a cell: nodes[0..8) are its children, and numbers are its own.
   struct Piece {
     std::vector<Regions::Node> nodes;
-    std::vector<std::uint32_t> bundles;
-    std::vector<vm::Part> programs;
-    std::vector<Cell> pending;                                                    // left for other threads
-    std::unordered_multimap<std::uint64_t, std::uint32_t> bundle_at, program_at;  // by hash
-    std::size_t program_bytes = 0;
+    vm::Skeletons skeletons;
+    std::vector<std::uint32_t> pool;
+    std::vector<std::uint32_t> programs;                              // where they begin in the pool
+    std::unordered_multimap<std::uint64_t, std::uint32_t> program_at;  // by hash
+    std::vector<Cell> pending;                                        // left for other threads
     Regions::Facts facts;
   };
   class Splitter;
@@ -53,13 +53,11 @@ class RegionBuilder {
   RegionOptions options_;
   vm::Code program_;
   compiler::Box contents_;
-  vm::Part whole_;
   std::size_t choices_ = 0;
   std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
   std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
   std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far
   std::shared_ptr<Regions> regions_;
-  std::unordered_multimap<std::uint64_t, std::uint32_t> program_at_;
 };
 
 }  // namespace fathom::runtime

@@ -9,11 +9,11 @@ namespace fathom::runtime {
 namespace {
 
 // A leaf's limit in half diagonals: how far a step from within it goes at most, but where a longer one costs nothing.
-constexpr float kLimit = 0.4f;
+constexpr float kLimit = 0.6f;
 // The same of what is split further.
-constexpr float kInnerLimit = 0.5f;
-// Shapes in a bundle and choices in a program short enough for a leaf.
-constexpr std::uint32_t kBundleShapes = 24, kProgramChoices = 4;
+constexpr float kInnerLimit = 0.7f;
+// Choices in a program short enough for a leaf.
+constexpr std::uint32_t kLeafChoices = 4;
 // Cells are split no further after so many levels at which their parts did not get this much shorter.
 constexpr double kShorter = 0.9;
 constexpr int kMostIdle = 2;
@@ -26,8 +26,7 @@ RegionBuilder::Splitter::Splitter(RegionBuilder& builder)
     : builder_(builder),
       regions_(*builder.regions_),
       levels_(regions_.tree_.levels),
-      bundle_shapes_(builder.longer_ * kBundleShapes),
-      program_choices_(builder.longer_ * kProgramChoices),
+      leaf_choices_(builder.longer_ * kLeafChoices),
       parts_(static_cast<std::size_t>(levels_) + 1) {}
 
 void RegionBuilder::Splitter::run(const Cell& cell, Piece& piece) {
@@ -87,7 +86,7 @@ void RegionBuilder::Splitter::make_leaves(float limit, int level, std::uint32_t 
   specialiser_.decide(-std::numeric_limits<float>::infinity(), limit);
   for (std::size_t i = 0; i < 8; ++i) {
     const std::uint32_t left = done[i] ? 0 : specialiser_.choices_left(i);
-    if (done[i] || (left >= bundle_shapes_ && level < levels_)) continue;
+    if (done[i] || (left > leaf_choices_ && level < levels_)) continue;
     specialiser_.part(i, parts[i]);
     done[i] = make_leaf(parts[i], false, left, level, limit, first + static_cast<std::uint32_t>(i));
   }
@@ -107,7 +106,7 @@ BoxArrays RegionBuilder::Splitter::children_of(const Place& at, int level) const
 }
 
 std::size_t RegionBuilder::Splitter::bytes_of(const Piece& piece) {
-  return piece.bundles.size() * sizeof(std::uint32_t) + piece.program_bytes;
+  return piece.pool.size() * sizeof(std::uint32_t) + piece.skeletons.bytes();
 }
 
 void RegionBuilder::Splitter::find_far(const vm::Part& part, const BoxArrays& boxes, float half_diagonal, int level,
@@ -136,38 +135,27 @@ void RegionBuilder::Splitter::find_far(const vm::Part& part, const BoxArrays& bo
 
 bool RegionBuilder::Splitter::make_leaf(vm::Part& part, bool always, std::uint32_t choices, int level, float limit,
                                         std::uint32_t node) {
-  const bool deepest = always || level == levels_;
-  if (choices >= bundle_shapes_ && !deepest) return false;
-  const std::size_t start = piece_->bundles.size();
-  if (vm::pack_bundle(part, piece_->bundles)) {
-    piece_->nodes[node] = make_node(Kind::Bundle, intern_bundle(start), limit);
-    ++piece_->facts.bundles;
-    return true;
-  }
-  if (choices > program_choices_ && !deepest) return false;
-  const std::size_t size = size_of(part), known = piece_->programs.size();
-  piece_->nodes[node] =
-      make_node(Kind::Program, intern(std::move(part), piece_->programs, piece_->program_at), limit);
-  if (piece_->programs.size() > known) piece_->program_bytes += size;
-  part = {};
+  if (choices > leaf_choices_ && !always && level < levels_) return false;
+  const std::uint32_t at = piece_->skeletons.pack(part, *regions_.constants_, piece_->pool);
+  piece_->nodes[node] = make_node(Kind::Program, intern(at), limit);
   ++piece_->facts.programs;
   return true;
 }
 
-std::uint32_t RegionBuilder::Splitter::intern_bundle(std::size_t start) {
-  std::vector<std::uint32_t>& pool = piece_->bundles;
+std::uint32_t RegionBuilder::Splitter::intern(std::uint32_t start) {
+  std::vector<std::uint32_t>& pool = piece_->pool;
   const std::size_t size = pool.size() - start;
   const std::uint64_t hash = hash_of(pool.data() + start, size);
-  const auto [first, last] = piece_->bundle_at.equal_range(hash);
+  const auto [first, last] = piece_->program_at.equal_range(hash);
   for (auto it = first; it != last; ++it) {
-    if (it->second + size <= start && std::equal(pool.begin() + static_cast<std::ptrdiff_t>(start), pool.end(),
-                                                 pool.begin() + static_cast<std::ptrdiff_t>(it->second))) {
+    if (it->second + size <= start && std::equal(pool.begin() + start, pool.end(), pool.begin() + it->second)) {
       pool.resize(start);
       return it->second;
     }
   }
-  piece_->bundle_at.emplace(hash, static_cast<std::uint32_t>(start));
-  return static_cast<std::uint32_t>(start);
+  piece_->program_at.emplace(hash, start);
+  piece_->programs.push_back(start);
+  return start;
 }
 
 }  // namespace fathom::runtime

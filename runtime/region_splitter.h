@@ -30,25 +30,6 @@ inline Regions::Node make_node(Regions::Kind kind, std::uint32_t payload, float 
   return {value, static_cast<std::uint32_t>(kind) << 30 | payload};
 }
 
-inline std::size_t size_of(const vm::Part& part) {
-  return sizeof(part) + part.words.size() * (sizeof(std::uint32_t) + sizeof(double)) +
-         part.sources.size() * sizeof(std::uint32_t);
-}
-
-// The number of an equal part in `programs`; adds it when there is none.
-inline std::uint32_t intern(vm::Part&& part, std::vector<vm::Part>& programs,
-                            std::unordered_multimap<std::uint64_t, std::uint32_t>& by_hash) {
-  const std::uint64_t hash = hash_of(part.words.data(), part.words.size());
-  const auto [first, last] = by_hash.equal_range(hash);
-  for (auto it = first; it != last; ++it) {
-    if (programs[it->second].words == part.words && programs[it->second].wide == part.wide) return it->second;
-  }
-  const auto number = static_cast<std::uint32_t>(programs.size());
-  by_hash.emplace(hash, number);
-  programs.push_back(std::move(part));
-  return number;
-}
-
 // The coordinates of up to kEnclosedBoxes boxes.
 struct BoxArrays {
   alignas(64) float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
@@ -87,13 +68,13 @@ class RegionBuilder::Splitter {
                 std::uint32_t first, Children& children);
   // False when the part is too long for a leaf, and it need not always be one.
   bool make_leaf(vm::Part& part, bool always, std::uint32_t choices, int level, float limit, std::uint32_t node);
-  // The bundle that was packed last, or an equal one before it.
-  std::uint32_t intern_bundle(std::size_t start);
+  // The program that was packed last, or an equal one before it.
+  std::uint32_t intern(std::uint32_t start);
 
   RegionBuilder& builder_;
   const Regions& regions_;
   const int levels_;
-  const std::uint32_t bundle_shapes_, program_choices_;
+  const std::uint32_t leaf_choices_;
   vm::Specialiser specialiser_;
   vm::Workspace workspace_;
   std::vector<Parts> parts_;  // [level]

@@ -8,12 +8,6 @@
 #include "vm/check.h"
 
 namespace fathom::runtime {
-namespace {
-
-constexpr std::size_t kGathered = 128;  // points of one program evaluated together
-
-}  // namespace
-
 Regions::Found Regions::find(float x, float y, float z) const {
   const float p[3] = {x, y, z};
   std::array<std::uint32_t, 3> cell;
@@ -50,81 +44,73 @@ float Regions::far_value(const Found& found, float x, float y, float z) const {
   return std::max(found.node.value - tree_.lipschitz * std::sqrt(squared), tree_.far * edge);
 }
 
-void Regions::group(std::uint32_t program, std::uint32_t point, RegionScratch& s) const {
-  std::uint32_t& head = s.heads[program];
-  if (head == vm::kNone) s.programs.push_back(program);
-  s.next[point] = head;
-  head = point;
-}
-
-// Copies the points waiting for a program, kGathered at most, into the scratch; those left stay.
-std::size_t Regions::gather(std::uint32_t program, vm::Points points, RegionScratch& s) const {
-  s.chosen.clear();
-  std::uint32_t& head = s.heads[program];
-  while (head != vm::kNone && s.chosen.size() < kGathered) {
-    const std::size_t at = s.chosen.size();
-    s.x[at] = points.x[head], s.y[at] = points.y[head], s.z[at] = points.z[head];
-    s.chosen.push_back(head);
-    head = s.next[head];
-  }
-  return s.chosen.size();
-}
-
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
   CHECK(count <= kMostPoints, "a batch of points is too large");
-  s.jobs.clear(), s.programs.clear(), s.far.clear();
-  s.heads.resize(programs_.size() + 1, vm::kNone);
   find_regions(tree_, points, count, s.refs.data(), s.limits.data(), s.bounds.data());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::uint32_t ref = s.refs[i];
-    if (ref == kOutside) {
-      const Found found = find(points.x[i], points.y[i], points.z[i]);
-      ref = found.node.ref, s.limits[i] = found.node.value;
+  group(points, count, distance, s, workspace);
+  for (std::size_t n = 0; n < s.met; ++n) {
+    const std::uint32_t number = s.skeletons[n];
+    const vm::Skeleton& skeleton = skeletons_[number];
+    s.jobs.clear();
+    for (std::uint32_t i = std::exchange(s.heads[number], vm::kNone); i != vm::kNone; i = s.next[i]) {
+      s.jobs.push_back({Node{0, s.refs[i]}.payload(), i});
+      s.instructions[i] = skeleton.instructions;
     }
-    const Node node{s.limits[i], ref};
-    switch (node.kind()) {
-      case Kind::Bundle:
-        __builtin_prefetch(bundles_.data() + node.payload());
-        __builtin_prefetch(bundles_.data() + node.payload() + 16);
-        s.jobs.push_back({node.payload(), i});
-        s.instructions[i] = vm::shapes_in(bundles_[node.payload()]);
-        break;
-      case Kind::Program:
-        group(node.payload(), i, s);
-        s.instructions[i] = length_of(node.payload());
-        break;
-      default:
-        s.instructions[i] = 0;
-        s.far.push_back(i);
-        break;
-    }
+    s.counters.specialised += s.jobs.size();
+    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), s.jobs, points, s.limits.data(), distance, workspace);
   }
-  vm::evaluate_bundles(bundles_.data(), s.jobs, points, distance);
-  for (const vm::BundleJob& job : s.jobs) distance[job.point] = std::min(distance[job.point], s.limits[job.point]);
-  for (const std::uint32_t i : s.far) distance[i] = s.bounds[i];
-  std::size_t specialised = 0;
-  for (const std::uint32_t program : s.programs) {
-    while (const std::size_t size = gather(program, points, s)) {
-      specialised += size;
-      vm::evaluate_distance(code_of(program), {s.x.data(), s.y.data(), s.z.data()}, size, s.distance.data(),
-                            workspace);
-      for (std::size_t j = 0; j < size; ++j) {
-        distance[s.chosen[j]] = std::min(s.distance[j], s.limits[s.chosen[j]]);
+}
+
+// Chains the points whose programs have the same skeleton; the others are done. Without branches on what a point
+// meets, which nothing foretells.
+void Regions::group(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
+                    vm::Workspace& workspace) const {
+  const auto none = static_cast<std::uint32_t>(skeletons_.size());  // of a far leaf
+  s.heads.resize(skeletons_.size() + 1, vm::kNone);
+  s.skeletons.resize(skeletons_.size() + 1);
+  s.met = 0;
+  std::size_t far = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (s.refs[i] >= kWholeRef) [[unlikely]] {
+      const Found found = find(points.x[i], points.y[i], points.z[i]);
+      s.refs[i] = found.node.ref, s.limits[i] = found.node.value;
+      if (found.node.payload() == kWhole) {
+        evaluate_whole(points, i, distance, s, workspace);
+        continue;
       }
     }
+    const Node node{0, s.refs[i]};
+    const bool is_far = node.kind() == Kind::Far;
+    const std::uint32_t number = is_far ? none : pool_[node.payload()];
+    std::uint32_t& head = s.heads[number];
+    s.skeletons[s.met] = number;
+    s.met += head == vm::kNone && !is_far;
+    s.next[i] = head;
+    head = i;
+    far += is_far;
+    distance[i] = s.bounds[i];
+    s.instructions[i] = 0;
   }
-  s.counters.far += s.far.size(), s.counters.bundled += s.jobs.size(), s.counters.specialised += specialised;
+  s.heads[none] = vm::kNone;
+  s.counters.far += far;
+}
+
+// Of one point, where nothing has been cut: outside the root of a bounded scene.
+void Regions::evaluate_whole(vm::Points points, std::uint32_t i, float* distance, RegionScratch& s,
+                             vm::Workspace& workspace) const {
+  vm::evaluate_distance(whole_, {points.x + i, points.y + i, points.z + i}, 1, distance + i, workspace);
+  s.instructions[i] = static_cast<std::uint32_t>(whole_part_.sources.size());
 }
 
 void Regions::part_of(const Node& node, vm::Part& part) const {
   part = {};
-  if (node.kind() == Kind::Program)
-    part = node.payload() < programs_.size() ? programs_[node.payload()] : vm::whole(whole_);
-  if (node.kind() != Kind::Bundle) return;
-  std::vector<std::uint32_t> shapes;
-  vm::shapes_of_bundle(bundles_.data(), node.payload(), shapes);
-  vm::unpack_bundle(whole_, surfaces_, bundles_.data(), node.payload(), shapes, part);
+  if (node.kind() != Kind::Program) return;
+  if (node.payload() == kWhole) {
+    part = whole_part_;
+  } else {
+    skeletons_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
+  }
 }
 
 double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace, std::uint64_t& instructions) const {
@@ -132,10 +118,6 @@ double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace, std::uint64_t& 
   const Found found = find(f.x, f.y, f.z);
   if (found.node.kind() == Kind::Far) return static_cast<double>(far_value(found, f.x, f.y, f.z));
   const double limit = static_cast<double>(found.node.value);
-  if (found.node.kind() == Kind::Program) {
-    instructions += length_of(found.node.payload());
-    return std::min(vm::evaluate_distance(code_of(found.node.payload()), p, workspace), limit);
-  }
   vm::Part part;
   part_of(found.node, part);
   instructions += part.sources.size();
@@ -160,7 +142,7 @@ std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direct
 }
 
 Regions::Region Regions::region(glm::dvec3 p) const {
-  static constexpr const char* kNames[] = {"inner", "far", "bundle", "program"};
+  static constexpr const char* kNames[] = {"inner", "far", "program"};
   const glm::vec3 f(p);
   const Found found = find(f.x, f.y, f.z);
   Region region{
@@ -184,39 +166,21 @@ Regions::Region Regions::region(glm::dvec3 p) const {
 void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out,
                                vm::Workspace& workspace) const {
   CHECK(count <= kMostHits, "a batch of hits is too large");
-  std::vector<std::uint32_t> shapes;
-  vm::Part part;
-  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> waiting;  // program, point
-  std::size_t waits = 0;
+  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // leaf, point
   for (std::uint32_t i = 0; i < count; ++i) {
-    const float p[3] = {points.x[i], points.y[i], points.z[i]};
-    const Node node = find(p[0], p[1], p[2]).node;
-    if (node.kind() == Kind::Program) {
-      waiting[waits++] = {node.payload(), i};
-      continue;
-    }
-    // Of a bundle the nearest shape is enough, or those that are as near. What is not near the surface at all, as
-    // rounding may have it, asks the whole program.
-    vm::Code code = whole_;
-    if (node.kind() == Kind::Bundle) {
-      vm::nearest_in_bundle(bundles_.data(), node.payload(), p, shapes);
-      vm::unpack_bundle(whole_, surfaces_, bundles_.data(), node.payload(), shapes, part);
-      code = part;
-    }
-    vm::evaluate_surface(
-        code, {points.x + i, points.y + i, points.z + i}, 1,
-        {out.distance + i, out.gradient_x + i, out.gradient_y + i, out.gradient_z + i, out.surface + i}, workspace);
+    leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
-  std::sort(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(waits));
-  for (std::size_t first = 0; first < waits;) {
+  std::sort(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t first = 0; first < count;) {
     std::size_t last = first;
-    while (last < waits && waiting[last].first == waiting[first].first) ++last;
-    evaluate_surfaces_of(std::span(waiting).subspan(first, last - first), points, out, workspace);
+    while (last < count && leaves[last].first == leaves[first].first) ++last;
+    evaluate_surfaces_of(std::span(leaves).subspan(first, last - first), points, out, workspace);
     first = last;
   }
 }
 
-// Of points whose regions have the same program.
+// Of points in leaves of one program. What is not near the surface at all, as rounding may have it, asks the whole
+// program.
 void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
   alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz;
@@ -225,7 +189,9 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];
   }
-  vm::evaluate_surface(code_of(same[0].first), {x.data(), y.data(), z.data()}, same.size(),
+  vm::Part part;
+  part_of({0, same[0].first}, part);
+  vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), {x.data(), y.data(), z.data()}, same.size(),
                        {d.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;

@@ -2,11 +2,12 @@
 // hundred thousand objects meets the few that are near it.
 //
 // A leaf stands for the field cut off at the leaf's limit, min(f, limit), which is all a ray's step needs: near the
-// surface it is f, bit for bit, and far from it a bound. Three kinds:
+// surface it is f, bit for bit, and far from it a bound. Two kinds:
 //
 //     far       nothing is near: a ball round the cell's centre, value - L |p - centre|
-//     bundle    a union of a few shapes (vm/bundle.h)
-//     program   the part of the program that matters in the cell (vm/specialise.h), shared by the cells that have it
+//     program   the part of the program that matters in the cell (vm/specialise.h)
+//
+// Points in cells whose programs differ by their constants alone are evaluated together (vm/skeleton.h).
 //
 // A step may leave the cell; the next point finds its own. A cell is split until its part is short, or it is as small
 // as the scene's number of choices warrants. The top levels are a grid. Scenes of few choices have no regions: they
@@ -27,7 +28,7 @@
 
 #include "compiler/box.h"
 #include "runtime/region_find.h"
-#include "vm/bundle.h"
+#include "vm/skeleton.h"
 
 namespace fathom::runtime {
 
@@ -39,24 +40,23 @@ struct RegionOptions {
 };
 
 // Points evaluated together at most; more than the rays a thread has under way.
-inline constexpr std::size_t kMostPoints = 256;
+inline constexpr std::size_t kMostPoints = 768;
 
 // How often points were in leaves of each kind.
 struct RegionCounters {
-  std::uint64_t far = 0, bundled = 0, specialised = 0;
+  std::uint64_t far = 0, specialised = 0;
 };
 
 // What a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
   using PerPoint = std::array<T, kMostPoints>;
-  PerPoint<std::uint32_t> refs, next;        // leaf; the next point of the same program
+  PerPoint<std::uint32_t> refs, next;        // leaf; the next point of the same skeleton
   PerPoint<float> limits, bounds;            // of the leaf; what a far one says
-  std::vector<vm::BundleJob> jobs;           // points in bundles
-  std::vector<std::uint32_t> far, programs;  // points in far leaves; programs met
-  std::vector<std::uint32_t> heads;          // [program] its first point, or kNone
-  PerPoint<float> x, y, z, distance;         // a program's points, gathered
-  std::vector<std::uint32_t> chosen;         // which they are
+  std::vector<std::uint32_t> skeletons;      // met; the first of them count
+  std::size_t met = 0;
+  std::vector<std::uint32_t> heads;          // [skeleton] its first point, or kNone
+  std::vector<vm::SkeletonJob> jobs;         // of one skeleton
   PerPoint<std::uint32_t> instructions;      // [point] evaluated for it
   RegionCounters counters;
 };
@@ -93,24 +93,26 @@ class Regions {
   vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
 
   struct Facts {
-    std::size_t far = 0, bundles = 0, programs = 0;  // leaves
-    std::size_t distinct_programs = 0;
+    std::size_t far = 0, programs = 0;  // leaves
+    std::size_t skeletons = 0;
     std::size_t bytes = 0;
     int levels = 0;
     double seconds = 0;  // to build
   };
   const Facts& facts() const { return facts_; }
 
-  enum class Kind : std::uint32_t { Inner, Far, Bundle, Program };
+  enum class Kind : std::uint32_t { Inner, Far, Program };
   struct Node {
     float value;  // of a leaf its limit; of a far one the distance at the cell's centre
-    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Bundle where it starts
-    // in the pool, of Program its number.
+    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Program where it begins
+    // in the pool, or kWhole.
     std::uint32_t ref;
 
     Kind kind() const { return static_cast<Kind>(ref >> 30); }
     std::uint32_t payload() const { return ref & 0x3fffffff; }
   };
+  static constexpr std::uint32_t kWhole = 0x3fffffff;  // the whole program
+  static constexpr std::uint32_t kWholeRef = static_cast<std::uint32_t>(Kind::Program) << 30 | kWhole;
 
  private:
   friend class RegionBuilder;
@@ -127,26 +129,23 @@ class Regions {
   };
   Found find(float x, float y, float z) const;
   float far_value(const Found& found, float x, float y, float z) const;
-  void group(std::uint32_t program, std::uint32_t point, RegionScratch& scratch) const;
-  std::size_t gather(std::uint32_t program, vm::Points points, RegionScratch& scratch) const;
+  void group(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
+             vm::Workspace& workspace) const;
+  void evaluate_whole(vm::Points points, std::uint32_t i, float* distance, RegionScratch& scratch,
+                      vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
-  // Of a program by its number; the one after the last is the whole program.
-  vm::Code code_of(std::uint32_t program) const { return program < programs_.size() ? programs_[program] : whole_; }
-  std::uint32_t length_of(std::uint32_t program) const {
-    return program < programs_.size() ? static_cast<std::uint32_t>(programs_[program].sources.size()) : whole_length_;
-  }
   void part_of(const Node& node, vm::Part& part) const;
 
   vm::Code whole_;
-  std::uint32_t whole_length_ = 0;       // instructions
-  std::vector<std::uint32_t> surfaces_;  // [word of whole_] of a shape the surface it belongs to, or kNone
+  vm::Part whole_part_;
   RegionTree tree_{};
   std::vector<std::uint32_t> grid_;  // node of each cell of the grid's level, or of the leaf it is in
   std::vector<Node> nodes_;
   std::array<Node, 6> outside_{};  // below and above the root on each axis; x before y before z
-  std::vector<std::uint32_t> bundles_;
-  std::vector<vm::Part> programs_;
+  std::optional<vm::Constants> constants_;
+  vm::Skeletons skeletons_;
+  std::vector<std::uint32_t> pool_;  // of the leaves' programs
   Facts facts_;
 };
 

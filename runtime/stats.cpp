@@ -32,7 +32,6 @@ constexpr Row kRows[] = {
     {"instructions", "instructions", nullptr, &MarchCounters::instructions},
     {"lanes", "lanes taken", nullptr, &MarchCounters::lanes},
     {"region_far", "evaluations far off", nullptr, &MarchCounters::region_far},
-    {"region_bundles", "evaluations of bundles", nullptr, &MarchCounters::region_bundles},
     {"region_programs", "evaluations of parts", nullptr, &MarchCounters::region_programs},
     {"dropped_samples", "samples dropped", &Stats::dropped_samples, nullptr},
     {"saturated_samples", "samples over full", &Stats::saturated, nullptr},

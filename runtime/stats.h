@@ -27,7 +27,7 @@ struct MarchCounters {
   std::uint64_t instructions = 0;           // of the field's program, over all evaluations
   std::uint64_t lanes = 0;                  // of the machine, taken by the other evaluations: whole registers
   // Of the evaluations in float, those in each kind of region (runtime/regions.h).
-  std::uint64_t region_far = 0, region_bundles = 0, region_programs = 0;
+  std::uint64_t region_far = 0, region_programs = 0;
 
   void merge(const MarchCounters& other);
 };

@@ -39,12 +39,16 @@ constexpr double kVagueness = 0x1p-14;
 
 }  // namespace
 
+// Lanes of a field without regions: a block of the machine.
+constexpr int kBlock = 128;
+
 template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching)
     : Marcher(field),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
       seeded_(!info(rules_.method).uses_epsilon),
+      most_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
@@ -110,8 +114,7 @@ void Stream<S>::step() {
   const std::size_t count = static_cast<std::size_t>(live_);
   counters_.evaluations += count;
   counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
-  counters_.region_far = scratch_.counters.far, counters_.region_bundles = scratch_.counters.bundled;
-  counters_.region_programs = scratch_.counters.specialised;
+  counters_.region_far = scratch_.counters.far, counters_.region_programs = scratch_.counters.specialised;
   LaneNumbers ended;
   for (std::size_t i = runtime::advance(*lanes_, count, distance_.data(), rules_, ended); i-- > 0;) finish(ended[i]);
 }

@@ -19,7 +19,7 @@ class Stream final : public Marcher {
   static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
 
   void begin(const RayBlock& rays, std::size_t i) override;
-  bool has_room() const override { return live_ < static_cast<int>(kLanes); }
+  bool has_room() const override { return live_ < most_lanes_; }
   void step() override;
   void close_holes();
   void evaluate();
@@ -29,6 +29,7 @@ class Stream final : public Marcher {
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
   const bool seeded_;                           // rays begin with the slope they are given; not what others do
+  const int most_lanes_;                        // in use
   const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
   std::array<Course, kLanes> courses_;          // [lane]
   alignas(64) std::array<S, kLanes> distance_;  // [lane]

@@ -167,7 +167,11 @@ class Outline {
   std::size_t count_;
 };
 
-template <class T>
+// Where float immediates come from: the program, the same for all lanes; or a table [immediate][lane], in which those
+// of an instruction begin at a multiple of four (vm/skeleton.h).
+enum class Immediate { Program, PerLane };
+
+template <class T, Immediate kFrom = Immediate::Program>
 class Machine {
  public:
   using Traits = ValueTraits<T>;
@@ -175,21 +179,25 @@ class Machine {
   using Places = PointTraits<P>;
   using Place = typename Places::Place;
   using C = Constant<T>;
-  static constexpr std::size_t kBlock = kSlot<T>;
+  static constexpr std::size_t kBlock = kFrom == Immediate::PerLane ? 1 : kSlot<T>;
   static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
 
-  // `used` is how many of a slot's numbers matter.
-  Machine(const Code& program, Workspace& workspace, std::size_t used) : program_(program), used_(used) {
+  // `used` is how many of a slot's numbers matter; `table_bytes` how large a table of immediates is.
+  Machine(const Code& program, Workspace& workspace, std::size_t used, std::size_t table_bytes = 0)
+      : program_(program), used_(used) {
     const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Place);
     const std::size_t value_slots = program_.max_values + program_.locals + kSpares;
-    auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_slots * kBlock * sizeof(T)));
+    const std::size_t value_bytes = value_slots * kBlock * sizeof(T);
+    auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_bytes + table_bytes));
     points_ = reinterpret_cast<Place*>(memory);
     values_ = reinterpret_cast<T*>(memory + point_bytes);
     locals_ = values_ + program_.max_values * kBlock;
     spares_ = locals_ + program_.locals * kBlock;
+    table_ = reinterpret_cast<float*>(memory + point_bytes + value_bytes);
   }
 
   Place* first_point() { return points_; }
+  float* immediate_table() { return table_; }
   const T* result() const { return values_; }
   ChoiceObserver<T>& observer() { return observer_; }
 
@@ -198,9 +206,11 @@ class Machine {
     point_ = points_;
     top_ = values_ - kBlock;
     const std::size_t size = program_.size;
+    in_table_ = 0;
     for (at_ = 0; at_ != size;) {
       const std::uint32_t word = program_.words[at_];
       ++at_;
+      if constexpr (kFrom == Immediate::PerLane) in_table_ = (in_table_ + 3) & ~std::size_t{3};
       switch (static_cast<Opcode>(word & 0xff)) {
 // clang-format off
 #define APPLY(Name, apply) case Opcode::Name: apply<Name##Op, count_##Name>(); break;
@@ -257,8 +267,13 @@ class Machine {
   HWY_INLINE Immediates<Count> take() {
     Immediates<Count> result;
     for (int i = 0; i < Count; ++i) {
-      result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
+      if constexpr (kFrom == Immediate::PerLane) {
+        result.k[i] = C::load(table_ + (in_table_ + static_cast<std::size_t>(i)) * kLanes);
+      } else {
+        result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
+      }
     }
+    in_table_ += Count;
     result.words = program_.words + at_;
     at_ += Count;
     return result;
@@ -279,6 +294,14 @@ class Machine {
     const auto immediates = take<Count>();
     const Place* from = point_;
     T* to = joined ? top_ : top_ += kBlock;
+    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
+      if (modes & kAnyShape) {
+        const T which = C::load(table_ + in_table_ * kLanes);
+        const T value = any_shape(TranslateOp::apply(*from, by.k), immediates.k, which);
+        *to = joined ? MinOp::apply(*to, value, immediates.k) : value;
+        return;
+      }
+    }
     for_used([&](std::size_t i) HWY_ATTR {
       const T value =
           Traits::lift(Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words));
@@ -364,7 +387,7 @@ class Machine {
   // Calls body(i) for the numbers of a slot that matter. A full block, the common case, has a constant length.
   template <class Body>
   HWY_INLINE void for_used(const Body& body) {
-    if (const std::size_t used = used_; kAlwaysFull<T> || used == kBlock) {
+    if (const std::size_t used = used_; kAlwaysFull<T> || kBlock == 1 || used == kBlock) {
       for (std::size_t i = 0; i < kBlock; ++i) body(i);
     } else {
       for (std::size_t i = 0; i < used; ++i) body(i);
@@ -380,6 +403,8 @@ class Machine {
   Place* point_ = nullptr;  // top of the point stack
   T* top_ = nullptr;        // top of the value stack
   std::size_t at_ = 0;      // next word
+  float* table_;
+  std::size_t in_table_ = 0;  // the next immediate
   [[no_unique_address]] ChoiceObserver<T> observer_;
 };
 

@@ -44,6 +44,8 @@ constexpr int count_names(std::string_view names) {
 // (compiler/fuse.h). A Shape can be moved: three immediates x, y, z come before its own, and it stands there. It can
 // be joined: the result is the least of it and the top value, which it replaces.
 inline constexpr std::uint32_t kMoved = 1, kJoined = 2;
+// Of skeletons' round boxes alone (vm/skeleton.h): it is another shape in every lane.
+inline constexpr std::uint32_t kAnyShape = 4;
 // A Unary's or Binary's operand can come from elsewhere than the stack: a coordinate of the top point, an immediate
 // before the row's own, or a local.
 enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };

@@ -122,12 +122,12 @@ TEST_CASE("cli: dump --region prints the part that matters at a point, and the w
   const auto near = folder.run("dump row.json --region 3.2,0.1,0");
   CHECK(near.code == 0);
   const std::size_t whole = near.out.find("; whole: ");
-  CHECK_THAT(near.out, Contains("; region at 3.2 0.1 0: bundle, cell ["));
+  CHECK_THAT(near.out, Contains("; region at 3.2 0.1 0: program, cell ["));
   CHECK_THAT(near.out, Contains("; the whole program is so short that renders evaluate it everywhere"));
   CHECK(near.out.find("sphere \"at 3\"") < whole);
   CHECK(near.out.find("sphere \"at 50\"") > whole);
   CHECK_THAT(folder.run("dump row.json --region 3.5,0.5,0").out,
-             Contains(": far, cell") || Contains(": bundle, cell"));
+             Contains(": far, cell") || Contains(": program, cell"));
   CHECK(folder.run("dump two.json --region 0.9,0,0 --stats").code == 2);
   CHECK(folder.run("dump two.json --region 0.9,0,0 --stage graph").code == 2);
   CHECK(folder.run("dump two.json --region here").code == 2);

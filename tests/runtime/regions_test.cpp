@@ -211,7 +211,7 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
       std::vector<std::uint32_t> bits;
       for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value + 0.0f));
       const Regions::Facts& facts = field.regions->facts();
-      for (const std::size_t n : {facts.far, facts.bundles, facts.programs, facts.distinct_programs, facts.bytes}) {
+      for (const std::size_t n : {facts.far, facts.programs, facts.skeletons, facts.bytes}) {
         bits.push_back(static_cast<std::uint32_t>(n));
       }
       if (expected.empty()) expected = bits;
@@ -259,7 +259,7 @@ TEST_CASE("regions: rays meet what they meet without them", "[regions]") {
     // surface at just about epsilon is a hit of sphere tracing or not.
     CHECK(different <= (method == Method::Tiered ? 2 : 20));
     CHECK(b.counters.instructions < a.counters.instructions / 5);
-    if (method == Method::Tiered) CHECK(b.counters.region_bundles + b.counters.region_programs > 0);
+    if (method == Method::Tiered) CHECK(b.counters.region_programs > 0);
   }
 }
 
