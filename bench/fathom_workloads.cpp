@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "runtime/camera.h"
 #include "runtime/march.h"
@@ -26,7 +27,7 @@ class ShadowRenderer {
     add_regions(field_, scene, {.threads = 1});
     marcher_ = make_marcher(field_);
     picture_.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
-    for (std::uint32_t slot = Marcher::kMostRays; slot > 0; --slot) free_.push_back(slot - 1);
+    for (int slot = marcher_->capacity(); slot > 0; --slot) free_.push_back(static_cast<std::uint32_t>(slot - 1));
   }
 
   Picture run() {
@@ -73,6 +74,7 @@ class ShadowRenderer {
         hits_[count] = {slot.ray.origin + arrival.t * slot.ray.direction, glm::vec3(-slot.ray.direction),
                         arrival.side, arrival.width};
         hit_slots_[count++] = arrival.id;
+        if (count == kSurfaceBatch) shade(std::exchange(count, 0));
         continue;
       }
       float& pixel = picture_.pixels[slot.pixel];
@@ -116,13 +118,11 @@ class ShadowRenderer {
   std::array<Slot, Marcher::kMostRays> slots_;
   std::vector<std::uint32_t> free_;
   std::vector<Arrival> arrivals_;
-  std::array<Hit, kSurfaceBatch> hits_;  // no more than there are slots
+  std::array<Hit, kSurfaceBatch> hits_;
   std::array<SurfacePoint, kSurfaceBatch> points_;
   std::array<std::uint32_t, kSurfaceBatch> hit_slots_;
   Picture picture_;
 };
-
-
 
 }  // namespace
 

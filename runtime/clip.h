@@ -19,7 +19,7 @@ enum class Clip : std::uint8_t { Within, Past, Invalid };
 
 // Rays side by side, at most kCapacity.
 struct RayBlock {
-  static constexpr std::size_t kCapacity = 256;
+  static constexpr std::size_t kCapacity = 1024;
   static constexpr std::size_t kPadded = kCapacity + 8;  // a register may begin at the last ray
 
   std::size_t count = 0;

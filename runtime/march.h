@@ -40,7 +40,7 @@ namespace fathom::runtime {
 
 class Marcher {
  public:
-  static constexpr int kMostRays = 1024;
+  static constexpr int kMostRays = RayBlock::kCapacity;
 
   explicit Marcher(const Field& field) : field_(field), capacity_(field.regions ? kMostRays : kMostRays / 4) {}
   virtual ~Marcher() = default;
@@ -49,10 +49,7 @@ class Marcher {
 
   // Rays under way at once, kMostRays at most: with regions many, so that many are in programs of one skeleton.
   int capacity() const { return capacity_; }
-  int room() const {
-    const int waiting = static_cast<int>(waiting_.count);
-    return std::min(capacity_ - live_, static_cast<int>(RayBlock::kCapacity)) - waiting;
-  }
+  int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count); }
   bool empty() const { return live_ == 0 && waiting_.count == 0; }
 
   // Needs room.

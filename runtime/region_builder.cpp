@@ -20,6 +20,8 @@ using Kind = Regions::Kind;
 constexpr std::uint64_t kLeastCost = 2500;
 // The smallest cells: so many levels below that with as many cells as there are choices.
 constexpr int kExtraLevels = 3, kMostLevels = 10;
+// The top levels that are a grid.
+constexpr int kGridLevel = 5;
 
 // Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
 // granted.
@@ -159,13 +161,16 @@ void RegionBuilder::close_outside() {
   }
 }
 
+// Puts the cells of the grid's level, or the leaves they are in, before the tree's nodes.
 void RegionBuilder::make_grid() {
   Regions& r = *regions_;
   r.tree_.scale = static_cast<float>(1u << r.tree_.levels) / r.tree_.size;
-  r.tree_.grid_level = std::min(4, r.tree_.levels);
+  r.tree_.grid_level = std::min(kGridLevel, r.tree_.levels);
   const std::uint32_t edge = 1u << r.tree_.grid_level;
-  r.grid_.resize(std::size_t{edge} * edge * edge);
-  for (std::uint32_t i = 0; i < r.grid_.size(); ++i) {
+  std::vector<Node> all(std::size_t{edge} * edge * edge);
+  all.reserve(all.size() + r.nodes_.size());
+  const auto first = static_cast<std::uint32_t>(all.size());
+  for (std::uint32_t i = 0; i < first; ++i) {
     const std::uint32_t cell[3] = {i % edge, i / edge % edge, i / edge / edge};
     std::uint32_t index = 0;
     for (int shift = r.tree_.grid_level; shift > 0 && r.nodes_[index].kind() == Kind::Inner;) {
@@ -173,11 +178,16 @@ void RegionBuilder::make_grid() {
       index = r.nodes_[index].payload() +
               ((cell[0] >> shift & 1) | (cell[1] >> shift & 1) << 1 | (cell[2] >> shift & 1) << 2);
     }
-    r.grid_[i] = index;
+    all[i] = r.nodes_[index];
   }
-  r.pool_.shrink_to_fit(), r.nodes_.shrink_to_fit();
+  all.insert(all.end(), r.nodes_.begin(), r.nodes_.end());
+  for (Node& node : all) {
+    if (node.kind() == Kind::Inner) node.ref += first;
+  }
+  r.nodes_ = std::move(all);
+  r.pool_.shrink_to_fit();
   static_assert(sizeof(Node) == 2 * sizeof(std::uint32_t));
-  r.tree_.grid = r.grid_.data(), r.tree_.nodes = reinterpret_cast<const std::uint32_t*>(r.nodes_.data());
+  r.tree_.nodes = reinterpret_cast<const std::uint32_t*>(r.nodes_.data());
 }
 
 void RegionBuilder::count_bytes() {
@@ -185,8 +195,8 @@ void RegionBuilder::count_bytes() {
   r.facts_.levels = r.tree_.levels;
   r.facts_.skeletons = r.skeletons_.size();
   r.constants_->forget_rows();
-  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + (r.grid_.size() + r.pool_.size()) * sizeof(std::uint32_t) +
-                   r.skeletons_.bytes() + r.constants_->bytes();
+  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
+                   r.constants_->bytes();
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

@@ -36,9 +36,9 @@ class RegionBuilder {
     std::vector<Regions::Node> nodes;
     vm::Skeletons skeletons;
     std::vector<std::uint32_t> pool;
-    std::vector<std::uint32_t> programs;                              // where they begin in the pool
+    std::vector<std::uint32_t> programs;                               // where they begin in the pool
     std::unordered_multimap<std::uint64_t, std::uint32_t> program_at;  // by hash
-    std::vector<Cell> pending;                                        // left for other threads
+    std::vector<Cell> pending;                                         // left for other threads
     Regions::Facts facts;
   };
   class Splitter;

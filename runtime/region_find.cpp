@@ -22,7 +22,10 @@ class Descent {
  public:
   explicit HWY_INLINE Descent(const RegionTree& tree) : tree_(tree) {}
 
-  HWY_INLINE void run(const vm::Points& points, std::size_t at, std::uint32_t* refs, float* values, float* distance) {
+  // Appends those of the points from `at` on that are in no far leaf to the `size` there are; how many there are
+  // then.
+  HWY_INLINE std::size_t run(const vm::Points& points, std::size_t at, std::size_t count, float* distance,
+                             const NearPoints& near, std::size_t size) {
     const Words words;
     const Batch p[3] = {Batch::load(points.x + at), Batch::load(points.y + at), Batch::load(points.z + at)};
     const Batch zero = Batch::broadcast(0.0f), most = Batch::broadcast(static_cast<float>(1u << tree_.levels));
@@ -38,7 +41,6 @@ class Descent {
     const Word edge = hn::Set(words, 1u << tree_.grid_level);
     Word index = hn::Add(hn::Shr(cell[0], shift),
                          hn::Mul(edge, hn::Add(hn::Shr(cell[1], shift), hn::Mul(edge, hn::Shr(cell[2], shift)))));
-    index = gather(tree_.grid, index);
     index = hn::Add(index, index);
     Word ref = gather(tree_.nodes + 1, index);
     for (auto deeper = hn::Lt(ref, inner); !hn::AllFalse(words, deeper); deeper = hn::Lt(ref, inner)) {
@@ -51,8 +53,14 @@ class Descent {
     }
     const Batch value{hn::BitCast(FloatLanes(), gather(tree_.nodes, index))};
     put_far(p, cell, ref, value, distance + at);
-    value.store(values + at);
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(words, inside.m), ref, hn::Set(words, kOutside)), words, refs + at);
+    ref = hn::IfThenElse(hn::RebindMask(words, inside.m), ref, hn::Set(words, kOutside));
+    const Word point = hn::Iota(words, static_cast<std::uint32_t>(at));
+    const auto is_near = hn::And(hn::Not(hn::Lt(ref, hn::Set(words, kFirstNear))),
+                                 hn::Lt(point, hn::Set(words, static_cast<std::uint32_t>(count))));
+    hn::StoreU(hn::Compress(point, is_near), words, near.point + size);
+    hn::StoreU(hn::Compress(ref, is_near), words, near.ref + size);
+    hn::StoreU(hn::Compress(value.v, hn::RebindMask(FloatLanes(), is_near)), FloatLanes(), near.limit + size);
+    return size + hn::CountTrue(words, is_near);
   }
 
  private:
@@ -62,9 +70,10 @@ class Descent {
     const Word level = hn::And(ref, hn::Set(words, 31u));
     const Word levels = hn::Set(words, static_cast<std::uint32_t>(tree_.levels));
     const Word shift = hn::Sub(levels, hn::Min(level, levels));
-    const Batch count{
-        hn::ConvertTo(FloatLanes(), hn::BitCast(Ints(), hn::Shl(hn::Set(words, 1u), hn::Min(level, levels))))};
-    const Batch edge = Batch::broadcast(tree_.size) / count, half = Batch::broadcast(0.5f);
+    // The root's edge over 2^level: its exponent less the level.
+    const Word root = hn::BitCast(words, hn::Set(FloatLanes(), tree_.size));
+    const Batch edge{hn::BitCast(FloatLanes(), hn::Sub(root, hn::ShiftLeft<23>(level)))};
+    const Batch half = Batch::broadcast(0.5f);
     Batch squared = Batch::broadcast(0.0f);
     for (int axis = 0; axis < 3; ++axis) {
       const Batch at{hn::ConvertTo(FloatLanes(), hn::BitCast(Ints(), hn::Shr(cell[axis], shift)))};
@@ -78,10 +87,12 @@ class Descent {
   const RegionTree& tree_;
 };
 
-void find_all(const RegionTree& tree, vm::Points points, std::size_t count, std::uint32_t* refs, float* values,
-              float* distance) {
+std::size_t find_all(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+                     const NearPoints& near) {
   Descent descent(tree);
-  for (std::size_t at = 0; at < count; at += kLanes) descent.run(points, at, refs, values, distance);
+  std::size_t size = 0;
+  for (std::size_t at = 0; at < count; at += kLanes) size = descent.run(points, at, count, distance, near, size);
+  return size;
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE
@@ -92,9 +103,9 @@ namespace fathom::runtime {
 
 HWY_EXPORT(find_all);
 
-void find_regions(const RegionTree& tree, vm::Points points, std::size_t count, std::uint32_t* refs, float* values,
-                  float* distance) {
-  HWY_DYNAMIC_DISPATCH(find_all)(tree, points, count, refs, values, distance);
+std::size_t find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+                         const NearPoints& near) {
+  return HWY_DYNAMIC_DISPATCH(find_all)(tree, points, count, distance, near);
 }
 
 }  // namespace fathom::runtime

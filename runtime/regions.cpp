@@ -20,7 +20,7 @@ Regions::Found Regions::find(float x, float y, float z) const {
     cell[axis] = static_cast<std::uint32_t>(at);
   }
   int level = tree_.grid_level, shift = tree_.levels - tree_.grid_level;
-  std::uint32_t index = grid_[(((cell[2] >> shift) << level | cell[1] >> shift) << level) | cell[0] >> shift];
+  std::uint32_t index = ((cell[2] >> shift) << level | cell[1] >> shift) << level | cell[0] >> shift;
   Node node = nodes_[index];
   while (node.kind() == Kind::Inner) {
     --shift;
@@ -47,60 +47,67 @@ float Regions::far_value(const Found& found, float x, float y, float z) const {
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
   CHECK(count <= kMostPoints, "a batch of points is too large");
-  find_regions(tree_, points, count, s.refs.data(), s.limits.data(), s.bounds.data());
-  group(points, count, distance, s, workspace);
-  for (std::size_t n = 0; n < s.met; ++n) {
-    const std::uint32_t number = s.skeletons[n];
+  std::size_t near = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
+  std::fill_n(s.instructions.data(), count, 0);
+  s.counters.far += count - near;
+  near = settle_outside(points, near, distance, s, workspace);
+  s.counters.specialised += near;
+  group(near, s);
+  for (const std::uint32_t number : s.met) {
     const vm::Skeleton& skeleton = skeletons_[number];
-    s.jobs.clear();
-    for (std::uint32_t i = std::exchange(s.heads[number], vm::kNone); i != vm::kNone; i = s.next[i]) {
-      s.jobs.push_back({Node{0, s.refs[i]}.payload(), i});
-      s.instructions[i] = skeleton.instructions;
-    }
-    s.counters.specialised += s.jobs.size();
-    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), s.jobs, points, s.limits.data(), distance, workspace);
+    const std::uint32_t size = std::exchange(s.sizes[number], 0);
+    const std::span<const vm::SkeletonJob> jobs(s.jobs.data() + s.ends[number] - size, size);
+    for (const vm::SkeletonJob& job : jobs) s.instructions[job.point] = skeleton.instructions;
+    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, points, distance, workspace);
   }
 }
 
-// Chains the points whose programs have the same skeleton; the others are done. Without branches on what a point
-// meets, which nothing foretells.
-void Regions::group(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
-                    vm::Workspace& workspace) const {
-  const auto none = static_cast<std::uint32_t>(skeletons_.size());  // of a far leaf
-  s.heads.resize(skeletons_.size() + 1, vm::kNone);
-  s.skeletons.resize(skeletons_.size() + 1);
-  s.met = 0;
-  std::size_t far = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (s.refs[i] >= kWholeRef) [[unlikely]] {
+// Sorts the jobs of the first `near` points by their programs' skeletons. Without branches on what a point meets,
+// which nothing foretells.
+void Regions::group(std::size_t near, RegionScratch& s) const {
+  s.sizes.resize(skeletons_.size(), 0);
+  s.ends.resize(skeletons_.size());
+  s.met.resize(skeletons_.size() + 1);
+  std::size_t met = 0;
+  for (std::size_t j = 0; j < near; ++j) {
+    const std::uint32_t number = pool_[Node{0, s.ref[j]}.payload()];
+    s.number[j] = number;
+    s.met[met] = number;
+    met += s.sizes[number]++ == 0;
+  }
+  s.met.resize(met);
+  std::uint32_t first = 0;
+  for (const std::uint32_t number : s.met) {
+    s.ends[number] = first;
+    first += s.sizes[number];
+  }
+  for (std::size_t j = 0; j < near; ++j) {
+    s.jobs[s.ends[s.number[j]]++] = {Node{0, s.ref[j]}.payload(), s.point[j], s.limit[j]};
+  }
+}
+
+// Points outside the root find their leaf; where nothing has been cut, outside a bounded scene's, they are done. How
+// many are left.
+std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
+                                    vm::Workspace& workspace) const {
+  std::size_t left = 0;
+  for (std::size_t j = 0; j < near; ++j) {
+    const std::uint32_t i = s.point[j];
+    std::uint32_t ref = s.ref[j];
+    float limit = s.limit[j];
+    if (ref == kOutside) [[unlikely]] {
       const Found found = find(points.x[i], points.y[i], points.z[i]);
-      s.refs[i] = found.node.ref, s.limits[i] = found.node.value;
-      if (found.node.payload() == kWhole) {
-        evaluate_whole(points, i, distance, s, workspace);
-        continue;
-      }
+      ref = found.node.ref, limit = found.node.value;
     }
-    const Node node{0, s.refs[i]};
-    const bool is_far = node.kind() == Kind::Far;
-    const std::uint32_t number = is_far ? none : pool_[node.payload()];
-    std::uint32_t& head = s.heads[number];
-    s.skeletons[s.met] = number;
-    s.met += head == vm::kNone && !is_far;
-    s.next[i] = head;
-    head = i;
-    far += is_far;
-    distance[i] = s.bounds[i];
-    s.instructions[i] = 0;
+    if (Node{0, ref}.payload() == kWhole) [[unlikely]] {
+      vm::evaluate_distance(whole_, {points.x + i, points.y + i, points.z + i}, 1, distance + i, workspace);
+      s.instructions[i] = static_cast<std::uint32_t>(whole_part_.sources.size());
+      continue;
+    }
+    s.point[left] = i, s.ref[left] = ref, s.limit[left] = limit;
+    ++left;
   }
-  s.heads[none] = vm::kNone;
-  s.counters.far += far;
-}
-
-// Of one point, where nothing has been cut: outside the root of a bounded scene.
-void Regions::evaluate_whole(vm::Points points, std::uint32_t i, float* distance, RegionScratch& s,
-                             vm::Workspace& workspace) const {
-  vm::evaluate_distance(whole_, {points.x + i, points.y + i, points.z + i}, 1, distance + i, workspace);
-  s.instructions[i] = static_cast<std::uint32_t>(whole_part_.sources.size());
+  return left;
 }
 
 void Regions::part_of(const Node& node, vm::Part& part) const {

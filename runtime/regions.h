@@ -50,14 +50,13 @@ struct RegionCounters {
 // What a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
-  using PerPoint = std::array<T, kMostPoints>;
-  PerPoint<std::uint32_t> refs, next;        // leaf; the next point of the same skeleton
-  PerPoint<float> limits, bounds;            // of the leaf; what a far one says
-  std::vector<std::uint32_t> skeletons;      // met; the first of them count
-  std::size_t met = 0;
-  std::vector<std::uint32_t> heads;          // [skeleton] its first point, or kNone
-  std::vector<vm::SkeletonJob> jobs;         // of one skeleton
-  PerPoint<std::uint32_t> instructions;      // [point] evaluated for it
+  using PerPoint = std::array<T, kMostPoints + 16>;  // find_regions() writes whole registers
+  PerPoint<std::uint32_t> point, ref, number;  // of those in no far leaf: which, the leaf, its program's skeleton
+  PerPoint<float> limit;
+  PerPoint<vm::SkeletonJob> jobs;          // by skeletons
+  std::vector<std::uint32_t> met;          // skeletons
+  std::vector<std::uint32_t> sizes, ends;  // [skeleton] of its jobs
+  PerPoint<std::uint32_t> instructions;    // [point] evaluated for it
   RegionCounters counters;
 };
 
@@ -104,15 +103,14 @@ class Regions {
   enum class Kind : std::uint32_t { Inner, Far, Program };
   struct Node {
     float value;  // of a leaf its limit; of a far one the distance at the cell's centre
-    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Program where it begins
-    // in the pool, or kWhole.
+    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Program where it
+    // begins in the pool, or kWhole.
     std::uint32_t ref;
 
     Kind kind() const { return static_cast<Kind>(ref >> 30); }
     std::uint32_t payload() const { return ref & 0x3fffffff; }
   };
   static constexpr std::uint32_t kWhole = 0x3fffffff;  // the whole program
-  static constexpr std::uint32_t kWholeRef = static_cast<std::uint32_t>(Kind::Program) << 30 | kWhole;
 
  private:
   friend class RegionBuilder;
@@ -129,10 +127,9 @@ class Regions {
   };
   Found find(float x, float y, float z) const;
   float far_value(const Found& found, float x, float y, float z) const;
-  void group(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
-             vm::Workspace& workspace) const;
-  void evaluate_whole(vm::Points points, std::uint32_t i, float* distance, RegionScratch& scratch,
-                      vm::Workspace& workspace) const;
+  void group(std::size_t near, RegionScratch& scratch) const;
+  std::size_t settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
+                             vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
   void part_of(const Node& node, vm::Part& part) const;
@@ -140,8 +137,7 @@ class Regions {
   vm::Code whole_;
   vm::Part whole_part_;
   RegionTree tree_{};
-  std::vector<std::uint32_t> grid_;  // node of each cell of the grid's level, or of the leaf it is in
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;        // first those of the cells of the grid's level
   std::array<Node, 6> outside_{};  // below and above the root on each axis; x before y before z
   std::optional<vm::Constants> constants_;
   vm::Skeletons skeletons_;

@@ -120,8 +120,7 @@ class LanePrograms {
 };
 
 void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                    std::span<const SkeletonJob> jobs, Points points, const float* most, float* distance,
-                    Workspace& workspace) {
+                    std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace) {
   const std::size_t quads = std::accumulate(skeleton.quads.begin(), skeleton.quads.end(), std::size_t{0});
   Machine<Batch, Immediate::PerLane> machine(skeleton, workspace, 1, quads * kQuad * kLanes * sizeof(float));
   for (std::size_t first = 0; first < jobs.size(); first += kLanes) {
@@ -133,8 +132,7 @@ void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const 
     alignas(64) float values[kLanes];
     machine.result()->store(values);
     for (std::size_t lane = 0; lane < some.size(); ++lane) {
-      const std::uint32_t point = some[lane].point;
-      distance[point] = std::min(values[lane], most[point]);
+      distance[some[lane].point] = std::min(values[lane], some[lane].most);
     }
   }
 }
@@ -148,9 +146,8 @@ namespace fathom::vm {
 HWY_EXPORT(skeleton_batch);
 
 void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, Points points, const float* most, float* distance,
-                       Workspace& workspace) {
-  HWY_DYNAMIC_DISPATCH(skeleton_batch)(skeleton, constants, pool, jobs, points, most, distance, workspace);
+                       std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(skeleton_batch)(skeleton, constants, pool, jobs, points, distance, workspace);
 }
 
 }  // namespace fathom::vm

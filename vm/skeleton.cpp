@@ -60,9 +60,8 @@ void sort_union(std::vector<Step>& steps) {
   if (steps.empty() || !is_shape(steps[0].word)) return;
   auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined(s.word); });
   constexpr std::uint32_t kJoinedBit = kJoined << 8;
-  std::stable_sort(steps.begin(), end, [](const Step& a, const Step& b) {
-    return (a.word & ~kJoinedBit) < (b.word & ~kJoinedBit);
-  });
+  std::stable_sort(steps.begin(), end,
+                   [](const Step& a, const Step& b) { return (a.word & ~kJoinedBit) < (b.word & ~kJoinedBit); });
   for (auto s = steps.begin(); s != end; ++s) s->word |= kJoinedBit;
   steps[0].word &= ~kJoinedBit;
 }

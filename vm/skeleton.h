@@ -7,7 +7,7 @@
 //
 //     const Constants constants(whole);                       // of all programs that are cut from it
 //     std::uint32_t at = skeletons.pack(part, constants, pool);
-//     evaluate_skeleton(skeletons.of(pool, at), constants, pool.data(), jobs, points, most, distance, workspace);
+//     evaluate_skeleton(skeletons.of(pool, at), constants, pool.data(), jobs, points, distance, workspace);
 //     skeletons.unpack(whole, constants, pool.data(), at, part);  // the part again
 //
 // A skeleton is what distances take: it has no tags, its unions are in the order of their opcodes, and small shapes
@@ -39,13 +39,13 @@ constexpr bool can_be_any_shape(Opcode opcode, std::string_view immediates, int 
          opcode != Opcode::Constant && cost <= kMostCost;
 }
 
-// The constants of a whole program by instruction, as the lanes want them. Where there are both spheres and boxes they
-// are laid out as round boxes, which have the same distances bit for bit (but for the sign of a zero).
+// The constants of a whole program by instruction, as the lanes want them. Where there are both spheres and boxes
+// they are laid out as round boxes, which have the same distances bit for bit (but for the sign of a zero).
 class Constants {
  public:
   explicit Constants(const Code& whole);
 
-  std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }    // in quads
+  std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }  // in quads
   std::uint32_t source(std::uint32_t row) const { return source_of_[row]; }
   const float* values() const { return values_.data(); }
   std::size_t bytes() const;
@@ -67,9 +67,7 @@ struct Skeleton {
   std::uint32_t locals, max_values, max_points, choices, instructions;
   std::vector<std::uint8_t> quads;  // of each instruction that has constants
 
-  operator Code() const {
-    return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices};
-  }
+  operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 
 // The skeletons of many parts, and their frames. A part in a pool is its skeleton's number, its frame's, the rows of
@@ -109,10 +107,10 @@ class Skeletons {
 
 struct SkeletonJob {
   std::uint32_t at, point;  // the program in the pool
+  float most;
 };
-// distance[job.point] = the lesser of the program's distance there and most[job.point], for programs of one skeleton.
+// distance[job.point] = the lesser of the program's distance there and job.most, for programs of one skeleton.
 void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, Points points, const float* most, float* distance,
-                       Workspace& workspace);
+                       std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace);
 
 }  // namespace fathom::vm
