@@ -42,7 +42,7 @@ class Marcher {
  public:
   static constexpr int kMostRays = RayBlock::kCapacity;
 
-  explicit Marcher(const Field& field) : field_(field), capacity_(field.regions ? kMostRays : kMostRays / 4) {}
+  explicit Marcher(const Field& field) : field_(field), capacity_(field.regions ? kMostRays : kMostRays / 2) {}
   virtual ~Marcher() = default;
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;

@@ -40,7 +40,7 @@ constexpr double kVagueness = 0x1p-14;
 }  // namespace
 
 // Lanes of a field without regions: a block of the machine.
-constexpr int kBlock = 128;
+constexpr int kBlock = 256;
 
 template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching)

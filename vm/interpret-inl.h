@@ -127,12 +127,12 @@ struct ChoiceObserver {
   HWY_INLINE void next() {}
 };
 
-// Numbers per stack slot. Eight registers a block measured best or equal on 8 and 16 lanes; types that are many
-// registers wide take shorter blocks to stay in the cache.
+// Numbers per stack slot. Sixteen registers a block measured best or equal: with fewer, an instruction waits for the
+// one before it, with more, the cache is too small. Types that are many registers wide take shorter blocks.
 template <class T>
 inline constexpr std::size_t kSlot = 1;
 template <>
-inline constexpr std::size_t kSlot<Batch> = kLanes >= 8 ? 8 : 16;
+inline constexpr std::size_t kSlot<Batch> = 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
 
@@ -203,17 +203,15 @@ class Machine {
 
   // Runs the program on the block of points at first_point(); its values are at result() afterwards.
   void interpret() {
-    point_ = points_;
-    top_ = values_ - kBlock;
+    Cursor c{0, points_, values_ - kBlock, 0};
     const std::size_t size = program_.size;
-    in_table_ = 0;
-    for (at_ = 0; at_ != size;) {
-      const std::uint32_t word = program_.words[at_];
-      ++at_;
-      if constexpr (kFrom == Immediate::PerLane) in_table_ = (in_table_ + 3) & ~std::size_t{3};
+    while (c.at != size) {
+      const std::uint32_t word = program_.words[c.at];
+      ++c.at;
+      if constexpr (kFrom == Immediate::PerLane) c.in_table = (c.in_table + 3) & ~std::size_t{3};
       switch (static_cast<Opcode>(word & 0xff)) {
 // clang-format off
-#define APPLY(Name, apply) case Opcode::Name: apply<Name##Op, count_##Name>(); break;
+#define APPLY(Name, apply) case Opcode::Name: apply<Name##Op, count_##Name>(c); break;
 #define OP_Point(Name) APPLY(Name, apply_point)
 #define OP_Shape(Name) APPLY(Name, apply_shape)
 #define OP_Outline(Name) APPLY(Name, apply_outline)
@@ -232,23 +230,32 @@ class Machine {
 #undef APPLY
         // clang-format on
         case Opcode::Drop:
-          point_ -= kBlock;
+          c.point -= kBlock;
           break;
         case Opcode::Tee:
-          copy(locals_ + operand_of(word) * kBlock, top_);
+          copy(locals_ + operand_of(word) * kBlock, c.top);
           break;
         case Opcode::Load:
-          top_ += kBlock;
-          copy(top_, locals_ + operand_of(word) * kBlock);
+          c.top += kBlock;
+          copy(c.top, locals_ + operand_of(word) * kBlock);
           break;
         case Opcode::Tag:
-          for (std::size_t i = 0; i < used_; ++i) Traits::tag(top_[i], operand_of(word));
+          for (std::size_t i = 0; i < used_; ++i) Traits::tag(c.top[i], operand_of(word));
           break;
       }
     }
   }
 
  private:
+  // Where the program is. It is no member: nothing points to it, and so it stays in registers, where a store to a slot
+  // could be thought to change what lies in memory.
+  struct Cursor {
+    std::size_t at;        // next word
+    Place* point;          // top of the point stack
+    T* top;                // top of the value stack
+    std::size_t in_table;  // the next immediate
+  };
+
   // Immediate counts as compile-time constants.
   enum : int {
 #define OP(Name, mnemonic, form, immediates, ...) count_##Name = count_names(immediates),
@@ -264,39 +271,39 @@ class Machine {
     const std::uint32_t* words;
   };
   template <int Count>
-  HWY_INLINE Immediates<Count> take() {
+  HWY_INLINE Immediates<Count> take(Cursor& c) {
     Immediates<Count> result;
     for (int i = 0; i < Count; ++i) {
       if constexpr (kFrom == Immediate::PerLane) {
-        result.k[i] = C::load(table_ + (in_table_ + static_cast<std::size_t>(i)) * kLanes);
+        result.k[i] = C::load(table_ + (c.in_table + static_cast<std::size_t>(i)) * kLanes);
       } else {
-        result.k[i] = immediate(program_, at_ + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
+        result.k[i] = immediate(program_, c.at + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
       }
     }
-    in_table_ += Count;
-    result.words = program_.words + at_;
-    at_ += Count;
+    c.in_table += Count;
+    result.words = program_.words + c.at;
+    c.at += Count;
     return result;
   }
 
   template <class Op, int Count>
-  HWY_INLINE void apply_point() {
-    const auto immediates = take<Count>();
-    const Place* from = point_;
-    Place* to = point_ += kBlock;
+  HWY_INLINE void apply_point(Cursor& c) {
+    const auto immediates = take<Count>(c);
+    const Place* from = c.point;
+    Place* to = c.point += kBlock;
     for_used([&](std::size_t i) HWY_ATTR { to[i] = Places::template map<Op>(from[i], immediates.k); });
   }
   template <class Op, int Count>
-  HWY_INLINE void apply_shape() {
-    const std::uint32_t modes = operand_of(program_.words[at_ - 1]);
+  HWY_INLINE void apply_shape(Cursor& c) {
+    const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
     const bool moved = modes & kMoved, joined = modes & kJoined;
-    const auto by = moved ? take<3>() : Immediates<3>{};
-    const auto immediates = take<Count>();
-    const Place* from = point_;
-    T* to = joined ? top_ : top_ += kBlock;
+    const auto by = moved ? take<3>(c) : Immediates<3>{};
+    const auto immediates = take<Count>(c);
+    const Place* from = c.point;
+    T* to = joined ? c.top : c.top += kBlock;
     if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
       if (modes & kAnyShape) {
-        const T which = C::load(table_ + in_table_ * kLanes);
+        const T which = C::load(table_ + c.in_table * kLanes);
         const T value = any_shape(TranslateOp::apply(*from, by.k), immediates.k, which);
         *to = joined ? MinOp::apply(*to, value, immediates.k) : value;
         return;
@@ -311,43 +318,44 @@ class Machine {
     if (joined) observer_.next();
   }
   template <class Op, int Count>
-  HWY_INLINE void apply_outline() {
-    const Outline<C, Count> outline(program_, at_, operand_of(program_.words[at_ - 1]));
-    at_ += outline.count() * Count;
-    const Place* from = point_;
-    T* to = top_ += kBlock;
+  HWY_INLINE void apply_outline(Cursor& c) {
+    const Outline<C, Count> outline(program_, c.at, operand_of(program_.words[c.at - 1]));
+    c.at += outline.count() * Count;
+    const Place* from = c.point;
+    T* to = c.top += kBlock;
     for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Places::template outline<Op>(from[i], outline)); });
   }
   template <class Op, int Count>
-  HWY_INLINE void apply_unary() {
-    const Sources sources = sources_of(program_.words[at_ - 1]);
-    const Operand a = operand(sources.a, sources.local, spares_);
-    const auto immediates = take<Count>();
-    T* to = top_ += kBlock;
+  HWY_INLINE void apply_unary(Cursor& c) {
+    const Sources sources = sources_of(program_.words[c.at - 1]);
+    Operand a = operand(c, sources.a, sources.local, spares_);
+    const auto immediates = take<Count>(c);
+    T* to = c.top += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
-      T value = a[i];
+      T value = a.next();
       Traits::number(value) = Op::apply(Traits::number(value), immediates.k);
       to[i] = value;
     });
   }
   template <class Op, int Count>
-  HWY_INLINE void apply_binary() {
-    const Sources sources = sources_of(program_.words[at_ - 1]);
+  HWY_INLINE void apply_binary(Cursor& c) {
+    const Sources sources = sources_of(program_.words[c.at - 1]);
     // The constant of a is the first, the value of b the top one.
     const bool stack = sources.b == Source::Stack;
-    Operand b = stack ? operand(sources.b, 0, nullptr) : Operand{};
-    const Operand a = operand(sources.a, sources.local, spares_);
-    if (!stack) b = operand(sources.b, sources.local, spares_ + kBlock);
-    const auto immediates = take<Count>();
-    T* to = top_ += kBlock;
+    Operand b = stack ? operand(c, sources.b, 0, nullptr) : Operand{};
+    Operand a = operand(c, sources.a, sources.local, spares_);
+    if (!stack) b = operand(c, sources.b, sources.local, spares_ + kBlock);
+    const auto immediates = take<Count>(c);
+    T* to = c.top += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
+      const T &x = a.next(), &y = b.next();
       if constexpr (Op::kChoice == Choice::None) {
-        T value = a[i];
-        Traits::number(value) = Op::apply(Traits::number(value), Traits::number(b[i]), immediates.k);
+        T value = x;
+        Traits::number(value) = Op::apply(Traits::number(value), Traits::number(y), immediates.k);
         to[i] = value;
       } else {
-        observer_.see(i, a[i], b[i]);
-        to[i] = Op::apply(a[i], b[i], immediates.k);
+        observer_.see(i, x, y);
+        to[i] = Op::apply(x, y, immediates.k);
       }
     });
     if constexpr (Op::kChoice != Choice::None) observer_.next();
@@ -355,28 +363,33 @@ class Machine {
 
   // The numbers of an operand, wherever they lie.
   struct Operand {
-    const T* first;
+    const T* at;
     std::size_t step;
-    HWY_INLINE const T& operator[](std::size_t i) const { return first[i * step]; }
+    HWY_INLINE const T& next() {
+      const T* now = at;
+      at += step;
+      return *now;
+    }
   };
   // Takes the operand from its source; `spare` is a slot for what is not in one.
-  HWY_INLINE Operand operand(Source source, std::uint32_t local, T* spare) {
+  HWY_INLINE Operand operand(Cursor& c, Source source, std::uint32_t local, T* spare) {
     if (source == Source::Stack) {
-      top_ -= kBlock;
-      return {top_ + kBlock, 1};
+      c.top -= kBlock;
+      return {c.top + kBlock, 1};
     }
     if (source == Source::Local) return {locals_ + local * kBlock, 1};
     if (source == Source::Constant) {
-      *spare = Traits::lift(as_value(point_->x, take<1>().k[0]));
+      *spare = Traits::lift(as_value(c.point->x, take<1>(c).k[0]));
       return {spare, 0};
     }
     const auto axis = static_cast<std::size_t>(source) - static_cast<std::size_t>(Source::X);
     if constexpr (std::is_same_v<T, P>) {
       static_assert(sizeof(Place) % sizeof(T) == 0, "a coordinate's neighbours are a whole number of numbers away");
-      return {&point_->x + axis, sizeof(Place) / sizeof(T)};
+      return {&c.point->x + axis, sizeof(Place) / sizeof(T)};
     } else {
       P Place::*const coordinate = axis == 0 ? &Place::x : axis == 1 ? &Place::y : &Place::z;
-      for_used([&](std::size_t i) HWY_ATTR { spare[i] = Traits::lift(point_[i].*coordinate); });
+      const Place* point = c.point;
+      for_used([&](std::size_t i) HWY_ATTR { spare[i] = Traits::lift(point[i].*coordinate); });
       return {spare, 1};
     }
   }
@@ -400,11 +413,7 @@ class Machine {
   T* values_;
   T* locals_;
   T* spares_;
-  Place* point_ = nullptr;  // top of the point stack
-  T* top_ = nullptr;        // top of the value stack
-  std::size_t at_ = 0;      // next word
   float* table_;
-  std::size_t in_table_ = 0;  // the next immediate
   [[no_unique_address]] ChoiceObserver<T> observer_;
 };
 
