@@ -1,6 +1,6 @@
 // The interpreter: one loop, a template over the number type.
 //
-// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (128 with 16 f32 lanes); all
+// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (256 with 16 f32 lanes); all
 // slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is
 // verified: nothing is checked here.
 #if defined(FATHOM_VM_INTERPRET_INL) == defined(HWY_TARGET_TOGGLE)
@@ -134,7 +134,7 @@ inline constexpr std::size_t kSlot = 1;
 template <>
 inline constexpr std::size_t kSlot<Batch> = 16;
 template <>
-inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 2;
+inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 4;
 
 // Whether all numbers of a slot always matter.
 template <class T>
