@@ -23,6 +23,7 @@ struct Comparison {
   std::function<void()> ours, theirs;
   std::function<std::string()> note = {};  // printed below the row
   bool wall = false;                       // time on the wall, and threads go where they like
+  double theirs_times = 1;                 // how often theirs would have to run to do what ours does
 };
 
 void add(Comparison comparison);
