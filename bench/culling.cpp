@@ -79,8 +79,8 @@ class Scene {
            .per_unit = 1e9 / rays,
            .most = 1 / least_gain,
            .rounds = rounds,
-           .ours = [&] { runtime::march(cut_, set.rays); },
-           .theirs = [this, i] { runtime::march(whole_, shares_[i]); },
+           .ours = [&] { follow(cut_, set.rays); },
+           .theirs = [this, i] { follow(whole_, shares_[i]); },
            .note = [this, &set] { return describe(set); },
            .theirs_times = rays / some});
     }
@@ -97,6 +97,13 @@ class Scene {
       std::exit(1);
     }
     return *std::move(scene);
+  }
+
+  static void follow(const runtime::Field& field, std::span<const runtime::Ray> rays) {
+    std::size_t hits = 0;
+    runtime::follow(field, rays, {},
+                    [&](const runtime::Arrival& a) { hits += a.status == runtime::Arrival::Status::Hit; });
+    benchmark::DoNotOptimize(hits);
   }
 
   std::string describe(const runtime::RaySet& set) const {

@@ -197,6 +197,8 @@ void RegionBuilder::count_bytes() {
   r.constants_->forget_rows();
   r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
                    r.constants_->bytes();
+  constexpr std::size_t kCache = 1u << 20;
+  r.beyond_cache_ = r.facts_.bytes > kCache;
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

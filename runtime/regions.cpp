@@ -82,7 +82,9 @@ void Regions::group(std::size_t near, RegionScratch& s) const {
     first += s.sizes[number];
   }
   for (std::size_t j = 0; j < near; ++j) {
-    s.jobs[s.ends[s.number[j]]++] = {Node{0, s.ref[j]}.payload(), s.point[j], s.limit[j]};
+    const std::uint32_t at = Node{0, s.ref[j]}.payload();
+    s.jobs[s.ends[s.number[j]]++] = {at, s.point[j], s.limit[j]};
+    if (beyond_cache_) skeletons_.prefetch(*constants_, pool_.data(), at);
   }
 }
 
@@ -104,6 +106,7 @@ std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* 
       s.instructions[i] = static_cast<std::uint32_t>(whole_part_.sources.size());
       continue;
     }
+    __builtin_prefetch(pool_.data() + Node{0, ref}.payload());
     s.point[left] = i, s.ref[left] = ref, s.limit[left] = limit;
     ++left;
   }

@@ -142,6 +142,7 @@ class Regions {
   std::optional<vm::Constants> constants_;
   vm::Skeletons skeletons_;
   std::vector<std::uint32_t> pool_;  // of the leaves' programs
+  bool beyond_cache_ = false;        // a core's own cache does not hold all this
   Facts facts_;
 };
 

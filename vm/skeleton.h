@@ -81,6 +81,12 @@ class Skeletons {
   // A part that others have packed becomes one of these.
   void adopt(const Skeletons& others, std::uint32_t* pool, std::uint32_t at);
 
+  // Asks for what evaluate_skeleton() will read of the part.
+  void prefetch(const Constants& constants, const std::uint32_t* pool, std::uint32_t at) const {
+    const std::size_t rows = skeletons_[pool[at]].quads.size();
+    for (std::size_t i = 0; i < rows; ++i) __builtin_prefetch(constants.values() + kQuad * pool[at + 2 + i]);
+  }
+
   const Skeleton& operator[](std::uint32_t number) const { return skeletons_[number]; }
   std::size_t size() const { return skeletons_.size(); }
   std::size_t bytes() const { return bytes_; }
