@@ -22,8 +22,8 @@ HWY_INLINE float first_of(Batch numbers, BatchMask left) {
 // A shape that is another one in every lane (vm/skeleton.h): each is asked once, for the lanes that are it.
 Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   Batch result = which;
-  for (BatchMask left = which == which; any(left);) {
-    const float opcode = first_of(which, left);
+  float opcode = hn::GetLane(which.v);
+  for (BatchMask left = which == which;;) {
     Batch value = which;
     switch (static_cast<Opcode>(opcode)) {
 // clang-format off
@@ -54,8 +54,9 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
     const BatchMask mine = which == Batch::broadcast(opcode);
     result = select(mine, value, result);
     left = left & !mine;
+    if (!any(left)) return result;
+    opcode = first_of(which, left);
   }
-  return result;
 }
 
 #if HWY_TARGET == HWY_SCALAR
