@@ -55,12 +55,13 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   choices_ = std::max<std::size_t>(1, expression.choices().size());
   if (!choose_root(contents_)) return nullptr;
   regions_->constants_.emplace(program_);
+  const std::size_t fixed_bytes = regions_->constants_->bytes() + choose_grid();
   // What takes too much memory is cut into fewer, longer leaves.
   for (;; longer_ *= 2) {
     regions_->nodes_.assign(1, {});
     regions_->pool_.clear(), regions_->skeletons_ = {};
     regions_->facts_ = {};
-    bytes_ = 0;
+    bytes_ = fixed_bytes;
     split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), 0, whole, 0}});
     if (work_ > kMostWork) return nullptr;
     if (bytes_ <= options_.memory) break;
@@ -161,11 +162,20 @@ void RegionBuilder::close_outside() {
   }
 }
 
+// The finest grid that takes a small share of the memory; how much it takes.
+std::size_t RegionBuilder::choose_grid() {
+  constexpr std::size_t kShare = 8;
+  const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
+  int level = std::min(kGridLevel, regions_->tree_.levels);
+  while (level > 0 && bytes(level) > options_.memory / kShare) --level;
+  regions_->tree_.grid_level = level;
+  return bytes(level);
+}
+
 // Puts the cells of the grid's level, or the leaves they are in, before the tree's nodes.
 void RegionBuilder::make_grid() {
   Regions& r = *regions_;
   r.tree_.scale = static_cast<float>(1u << r.tree_.levels) / r.tree_.size;
-  r.tree_.grid_level = std::min(kGridLevel, r.tree_.levels);
   const std::uint32_t edge = 1u << r.tree_.grid_level;
   std::vector<Node> all(std::size_t{edge} * edge * edge);
   all.reserve(all.size() + r.nodes_.size());
