@@ -61,6 +61,14 @@ bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& works
   return true;
 }
 
+bool Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, SlopeBound& bound, Workspace& workspace) {
+  program_ = &program;
+  bound = enclose_slope(program, lo, hi, bounds_, workspace);
+  if (!expression_.read(program)) return false;
+  link_choices();
+  return true;
+}
+
 void Specialiser::link_choices() {
   const auto& nodes = expression_.nodes();
   under_.assign(nodes.size(), {kNone, 0});

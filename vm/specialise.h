@@ -50,6 +50,10 @@ class Specialiser {
   // Encloses the program over the boxes; keeps a reference to it until the next look(). False when the program is not
   // an expression (vm/expression.h) and cannot be cut.
   bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
+  // The same over one box, which is number 0, for the exact function as well: a part for limits of -infinity and
+  // infinity equals the whole, exactly and in f32, wherever every operation of the whole is defined, so that what
+  // holds of the one holds of the other. `bound`: what the program does in the box.
+  bool look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, SlopeBound& bound, Workspace& workspace);
 
   // What the value can be in box i.
   float lo(std::size_t box) const { return lo_[box]; }
