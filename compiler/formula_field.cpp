@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "compiler/fuse.h"
 #include "compiler/lower.h"
 #include "vm/check.h"
 #include "vm/evaluate.h"
@@ -39,13 +40,13 @@ class Bisection {
  public:
   // `used`: which coordinates the formula has in it; along the others nothing changes.
   Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
-      : program_(program), whole_(box), used_(used) {
+      : length_(static_cast<int>(program.instructions())), whole_(box), used_(used) {
     add(box, std::make_shared<const vm::Part>(vm::whole(program)));
   }
 
   FormulaBound run() {
     // Of the formula's length: a tenth of a second at most, were no cell's part shorter.
-    const int budget = std::clamp(4'000'000 / static_cast<int>(program_.instructions() + 1), 64, 8192);
+    const int budget = std::clamp(4'000'000 / (length_ + 1), 64, 8192);
     for (int i = 0; i < budget && !cells_.empty(); ++i) {
       const Cell steepest = cells_.top();
       constexpr double kCloseEnough = 1.02;
@@ -104,7 +105,7 @@ class Bisection {
     return true;
   }
 
-  const vm::VerifiedProgram& program_;
+  const int length_;
   const Box whole_;
   const std::array<bool, 3> used_;
   vm::Workspace workspace_;
@@ -117,7 +118,7 @@ vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
   constexpr std::size_t kUnlimited = 10'000'000;
   std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
   CHECK(program.has_value(), "a formula's program is as long as the formula");
-  auto verified = vm::verify(std::move(*program));
+  auto verified = vm::verify(fuse(*program));
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }
