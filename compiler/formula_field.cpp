@@ -22,6 +22,7 @@ namespace fathom::compiler {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kCloseEnough = 1.02;
 constexpr double kEndless = 1e18;  // stands for an infinite side in the program
 
 struct Cell {
@@ -49,7 +50,6 @@ class Bisection {
     const int budget = std::clamp(4'000'000 / (length_ + 1), 64, 8192);
     for (int i = 0; i < budget && !cells_.empty(); ++i) {
       const Cell steepest = cells_.top();
-      constexpr double kCloseEnough = 1.02;
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
     FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
@@ -66,8 +66,15 @@ class Bisection {
  private:
   // `part`: of a cell that holds this one.
   void add(const Box& box, std::shared_ptr<const vm::Part> part) {
-    Cell cell{box, {}, std::move(part)};
-    if (specialiser_.look(*cell.part, box.lo, box.hi, cell.bound, workspace_)) cell.part = cut(cell.part);
+    Cell cell{box, specialiser_.look(*part, box.lo, box.hi, workspace_), part};
+    if (cell.bound.lipschitz > kCloseEnough * seen_) cell.part = cut(part);
+    if (cell.bound.lipschitz > seen_) see(cell);
+    cells_.push(std::move(cell));
+  }
+
+  // The slope in the middle of a cell, of the part that is cut for it.
+  void see(const Cell& cell) {
+    const Box& box = cell.box;
     glm::dvec3 middle;
     for (int i = 0; i < 3; ++i) {
       middle[i] = std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]) ? (box.lo[i] + box.hi[i]) / 2
@@ -75,7 +82,6 @@ class Bisection {
     }
     const double slope = glm::length(vm::evaluate_surface(*cell.part, middle, workspace_).gradient);
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
-    cells_.push(std::move(cell));
   }
 
   // What the cell that was looked at leaves of its part; the part itself where that is most of it.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "vm/check.h"
+
 namespace fathom::vm {
 namespace {
 
@@ -55,18 +57,21 @@ Part whole(const Code& code) {
 
 bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& workspace) {
   program_ = &program;
-  if (!expression_.read(program)) return false;
+  if (!read()) return false;
   enclose(program, boxes, lo_.data(), hi_.data(), bounds_, workspace);
-  link_choices();
   return true;
 }
 
-bool Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, SlopeBound& bound, Workspace& workspace) {
+SlopeBound Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   program_ = &program;
-  bound = enclose_slope(program, lo, hi, bounds_, workspace);
-  if (!expression_.read(program)) return false;
-  link_choices();
-  return true;
+  is_read_ = false;  // most of those who ask want the bound alone
+  return enclose_slope(program, lo, hi, bounds_, workspace);
+}
+
+bool Specialiser::read() {
+  is_read_ = expression_.read(*program_);
+  if (is_read_) link_choices();
+  return is_read_;
 }
 
 void Specialiser::link_choices() {
@@ -97,6 +102,7 @@ void Specialiser::link_choices() {
 }
 
 void Specialiser::decide(float least, float most) {
+  CHECK(is_read_ || read(), "what is to be cut is an expression");
   interest_.resize(links_.size()), kept_.resize(links_.size());
   settle_choices(links_.data(), bounds_.data(), links_.size(), under_[expression_.root()], least, most,
                  interest_.data(), kept_.data());

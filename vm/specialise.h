@@ -52,8 +52,8 @@ class Specialiser {
   bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
   // The same over one box, which is number 0, for the exact function as well: a part for limits of -infinity and
   // infinity equals the whole, exactly and in f32, wherever every operation of the whole is defined, so that what
-  // holds of the one holds of the other. `bound`: what the program does in the box.
-  bool look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, SlopeBound& bound, Workspace& workspace);
+  // holds of the one holds of the other. The program is an expression; returned is what it does in the box.
+  SlopeBound look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
   // What the value can be in box i.
   float lo(std::size_t box) const { return lo_[box]; }
@@ -82,6 +82,7 @@ class Specialiser {
     std::uint32_t number = kNone;
   };
 
+  bool read();
   void link_choices();
   bool keeps_a(std::uint32_t choice) const { return kept_[choice].a >> box_ & 1; }
   bool keeps_b(std::uint32_t choice) const { return kept_[choice].b >> box_ & 1; }
@@ -100,6 +101,7 @@ class Specialiser {
 
   const Part* program_ = nullptr;
   Expression expression_;
+  bool is_read_ = false;                    // the expression and the links are those of the program
   std::vector<ChoiceBounds> bounds_;        // [choice]
   std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
   std::vector<ChoiceLink> links_;           // [choice]
