@@ -5,30 +5,40 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 #include <queue>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "compiler/fuse.h"
 #include "compiler/lower.h"
 #include "vm/check.h"
 #include "vm/evaluate.h"
+#include "vm/specialise.h"
 #include "vm/verify.h"
 
 namespace fathom::compiler {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kCloseEnough = 1.02;
 constexpr double kEndless = 1e18;  // stands for an infinite side in the program
 
 struct Cell {
   Box box;
   vm::SlopeBound bound;
-  // The steepest on top of the queue; among equals the larger, so that the end does not depend on the queue.
+  std::shared_ptr<const vm::Part> part;  // what of the formula matters within the box
+  // The steepest on top of the queue. Among those that are as steep but for rounding the smaller, which is nearer to
+  // where that slope is met; among jumps the larger, that many places are seen before one is too small to be cut.
   bool operator<(const Cell& other) const {
-    if (bound.lipschitz != other.bound.lipschitz) return bound.lipschitz < other.bound.lipschitz;
-    const glm::dvec3 a = box.hi - box.lo, b = other.box.hi - other.box.lo;
-    return std::max({a.x, a.y, a.z}) < std::max({b.x, b.y, b.z});
+    const auto slope = static_cast<float>(bound.lipschitz), other_slope = static_cast<float>(other.bound.lipschitz);
+    if (slope != other_slope) return slope < other_slope;
+    return std::isfinite(slope) ? longest_side() > other.longest_side() : longest_side() < other.longest_side();
+  }
+  double longest_side() const {
+    const glm::dvec3 size = box.hi - box.lo;
+    return std::max({size.x, size.y, size.z});
   }
 };
 
@@ -36,16 +46,15 @@ class Bisection {
  public:
   // `used`: which coordinates the formula has in it; along the others nothing changes.
   Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
-      : program_(program), whole_(box), used_(used) {
-    add(box);
+      : length_(static_cast<int>(program.instructions())), whole_(box), used_(used) {
+    add(box, std::make_shared<const vm::Part>(vm::whole(program)));
   }
 
   FormulaBound run() {
-    // Of the formula's length: about a tenth of a second.
-    const int budget = std::clamp(4'000'000 / static_cast<int>(program_.instructions() + 1), 64, 8192);
+    // Of the formula's length: a tenth of a second at most, were no cell's part shorter.
+    const int budget = std::clamp(4'000'000 / (length_ + 1), 64, 8192);
     for (int i = 0; i < budget && !cells_.empty(); ++i) {
       const Cell steepest = cells_.top();
-      constexpr double kCloseEnough = 1.02;
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
     FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
@@ -60,15 +69,33 @@ class Bisection {
   }
 
  private:
-  void add(const Box& box) {
-    cells_.push({box, vm::evaluate_slope(program_, box.lo, box.hi, workspace_)});
+  // `part`: of a cell that holds this one.
+  void add(const Box& box, std::shared_ptr<const vm::Part> part) {
+    Cell cell{box, specialiser_.look(*part, box.lo, box.hi, workspace_), part};
+    if (cell.bound.lipschitz > kCloseEnough * seen_) cell.part = cut(part);
+    if (cell.bound.lipschitz > seen_) see(cell);
+    cells_.push(std::move(cell));
+  }
+
+  // The slope in the middle of a cell, of the part that is cut for it.
+  void see(const Cell& cell) {
+    const Box& box = cell.box;
     glm::dvec3 middle;
     for (int i = 0; i < 3; ++i) {
       middle[i] = std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]) ? (box.lo[i] + box.hi[i]) / 2
                                                                        : std::clamp(0.0, box.lo[i], box.hi[i]);
     }
-    const double slope = glm::length(vm::evaluate_surface(program_, middle, workspace_).gradient);
+    const double slope = glm::length(vm::evaluate_surface(*cell.part, middle, workspace_).gradient);
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
+  }
+
+  // What the cell that was looked at leaves of its part.
+  std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
+    if (part->choices == 0) return part;
+    specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+    auto smaller = std::make_shared<vm::Part>();
+    specialiser_.part(0, *smaller);
+    return smaller;
   }
 
   // False when the cell has become too small for its slope to be anything but a jump.
@@ -84,15 +111,16 @@ class Bisection {
     const double middle = (cell.box.lo[axis] + cell.box.hi[axis]) / 2;
     Box lower = cell.box, upper = cell.box;
     lower.hi[axis] = upper.lo[axis] = middle;
-    add(lower);
-    add(upper);
+    add(lower, cell.part);
+    add(upper, cell.part);
     return true;
   }
 
-  const vm::VerifiedProgram& program_;
+  const int length_;
   const Box whole_;
   const std::array<bool, 3> used_;
   vm::Workspace workspace_;
+  vm::Specialiser specialiser_;
   std::priority_queue<Cell> cells_;
   double seen_ = 0;
 };
@@ -101,7 +129,7 @@ vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
   constexpr std::size_t kUnlimited = 10'000'000;
   std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
   CHECK(program.has_value(), "a formula's program is as long as the formula");
-  auto verified = vm::verify(std::move(*program));
+  auto verified = vm::verify(fuse(*program));
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }

@@ -64,4 +64,9 @@ struct ChoiceBounds {
 void enclose(const Code& program, const Boxes& boxes, float* lo, float* hi, std::vector<ChoiceBounds>& choices,
              Workspace& workspace);
 
+// evaluate_slope(), and the bounds of every choice's operands at [0]. These hold for f32 as above and for the exact
+// values, the program's constants unrounded; both at points where every operation of the program is defined.
+SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceBounds>& choices,
+                         Workspace& workspace);
+
 }  // namespace fathom::vm

@@ -1,4 +1,4 @@
-// The evaluators in double: one point, its gradient and surface, or a box.
+// The evaluators in double: one point, its gradient and surface, or a box. Slopes: vm/slope.cpp.
 #include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
 
@@ -48,20 +48,6 @@ AlongLine along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, do
   return {{result.v.lo, result.v.hi}, {result.d.lo, result.d.hi}};
 }
 
-Slope coordinate(double lo, double hi, int axis) {
-  const Interval zero{0, 0}, one{1, 1};
-  Slope s = make_slope({lo, hi}, axis == 0 ? one : zero, axis == 1 ? one : zero, axis == 2 ? one : zero, 1, 0);
-  s.norm = 1;
-  s.nonnegative = lo >= 0;
-  return s;
-}
-
-SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
-  const Vec3<Slope> box{coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
-  const Slope result = run_once<Slope>(program, box, workspace);
-  return {{result.v.lo, result.v.hi}, result.norm, result.error * kUnit};
-}
-
 }  // namespace
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -83,10 +69,6 @@ Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspac
 AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
                          double end, Workspace& workspace) {
   return HWY_NAMESPACE::along(program, origin, direction, begin, end, workspace);
-}
-
-SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
-  return HWY_NAMESPACE::slope(program, lo, hi, workspace);
 }
 
 }  // namespace fathom::vm

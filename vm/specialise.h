@@ -50,6 +50,12 @@ class Specialiser {
   // Encloses the program over the boxes; keeps a reference to it until the next look(). False when the program is not
   // an expression (vm/expression.h) and cannot be cut.
   bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
+  // The same over one box, which is number 0, for the exact function as well: a part for limits of -infinity and
+  // infinity equals the whole, exactly and in f32, wherever every operation of the whole is defined, so that what
+  // holds of the one holds of the other. The program is an expression; returned is what it does in the box. Operands
+  // are cut that lose to the other one: that others lie beyond what matters further down would make the part shorter,
+  // but it may be what narrows a range, and the bounds of parts are to be as good as the whole's.
+  SlopeBound look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
   // What the value can be in box i.
   float lo(std::size_t box) const { return lo_[box]; }
@@ -78,6 +84,7 @@ class Specialiser {
     std::uint32_t number = kNone;
   };
 
+  bool read();
   void link_choices();
   bool keeps_a(std::uint32_t choice) const { return kept_[choice].a >> box_ & 1; }
   bool keeps_b(std::uint32_t choice) const { return kept_[choice].b >> box_ & 1; }
@@ -96,11 +103,17 @@ class Specialiser {
 
   const Part* program_ = nullptr;
   Expression expression_;
+  bool is_read_ = false;                    // the expression and the links are those of the program
+  bool pairwise_ = false;                   // no choice's limits are those of what uses it
   std::vector<ChoiceBounds> bounds_;        // [choice]
   std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
   std::vector<ChoiceLink> links_;           // [choice]
   std::vector<Interest> interest_;          // [choice]
   std::vector<KeptOperands> kept_;          // [choice]
+  struct HandsOn {
+    bool a, b;  // as they are, from the stack
+  };
+  std::vector<HandsOn> hands_on_;  // [choice] which operand's value is its own where only that one is kept
   alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
 
   // While a part is made: from the root down, so that the code comes out backwards.
@@ -109,6 +122,7 @@ class Specialiser {
   std::vector<Emitted> emitted_;
   std::vector<Local> uses_;  // [node] of a tee
   std::vector<std::uint32_t> counted_;
+  std::vector<std::uint32_t> resolved_;  // [node], of those counted
   std::uint32_t locals_ = 0;
 };
 

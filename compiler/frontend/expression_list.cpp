@@ -13,6 +13,7 @@
 
 #include "compiler/fits_float.h"
 #include "compiler/frontend/formula.h"
+#include "compiler/frontend/formula_functions.h"
 #include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/json_error.h"
 #include "compiler/frontend/make_syntax.h"
@@ -200,7 +201,7 @@ class ListReader {
 
   // The name itself where formulas can have it, else one made up.
   std::string formula_name(std::string_view name) {
-    if (misfit_name(name, machine_functions()).empty()) return std::string(name);
+    if (misfit_name(name, functions_).empty()) return std::string(name);
     std::string made = fmt::format("line{}", names_.size() + 1);
     while (!taken_.insert(made).second) made += '_';
     return made;
@@ -246,6 +247,7 @@ class ListReader {
   std::unordered_map<std::string_view, std::string> names_;  // of the lines so far: as the formula calls them
   std::unordered_set<std::string> taken_;                    // names that lines have, or that were made up
   std::vector<Line> formula_;
+  const std::vector<FormulaFunction> functions_ = formula_functions(machine_functions());
   bool has_z_ = false;
 };
 

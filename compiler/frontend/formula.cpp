@@ -12,12 +12,12 @@ namespace {
 
 // Reads `name = expression` into the context. A name whose expression is in error is defined all the same, so that
 // the lines after it are read as they were meant.
-void read_definition(const FormulaText& text, FormulaContext& context, std::span<const FunctionSpec> functions) {
+void read_definition(const FormulaText& text, FormulaContext& context) {
   FormulaParser parser(text, context);
   const std::optional<Token> name = parser.definition();
   if (!name) return;
   const Span place = text.span_of(name->text);
-  std::string misfit = misfit_name(name->text, functions);
+  std::string misfit = misfit_name(name->text, context.functions);
   if (misfit.empty() && context.scope.use(name->text)) misfit = "is a parameter of the scene";
   if (misfit.empty() && context.definitions.contains(name->text)) misfit = "is defined already";
   if (!misfit.empty()) {
@@ -34,8 +34,7 @@ std::optional<Formula> finish(FormulaContext& context, std::optional<FormulaId> 
   return std::move(context.builder).finish(*root);
 }
 
-std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& context,
-                                  std::span<const FunctionSpec> functions) {
+std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& context) {
   std::optional<FormulaId> result;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto* line = std::get_if<std::string>(&lines[i].data);
@@ -43,7 +42,7 @@ std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& con
       context.diagnostics.error("E0101", lines[i].span, "a line of a formula must be a string");
       context.good = false;
     } else if (i + 1 < lines.size()) {
-      read_definition({*line, lines[i].span}, context, functions);
+      read_definition({*line, lines[i].span}, context);
     } else {
       result = FormulaParser({*line, lines[i].span}, context).expression_to_end();
     }
@@ -57,7 +56,7 @@ std::optional<Formula> read_formula(const syntax::Value& value, const Scope& sco
                                     std::span<const FunctionSpec> functions, Diagnostics& diagnostics) {
   FormulaContext context{scope, formula_functions(functions), true, diagnostics};
   const auto* lines = std::get_if<syntax::List>(&value.data);
-  if (lines && !lines->empty()) return read_lines(*lines, context, functions);
+  if (lines && !lines->empty()) return read_lines(*lines, context);
   if (const auto* text = std::get_if<std::string>(&value.data)) {
     return finish(context, FormulaParser({*text, value.span}, context).expression_to_end());
   }

@@ -24,6 +24,8 @@
 namespace fathom::compiler {
 
 // A function of the machine.
+struct FormulaFunction;
+
 struct FunctionSpec {
   std::string_view name;
   int arity;
@@ -54,7 +56,8 @@ std::optional<double> read_number(const syntax::Value& value, const Scope& scope
 // The value of a formula that has no x, y and z in it.
 double evaluate(const Formula& formula);
 
-// What is wrong with giving this name to a parameter or a definition; empty when nothing is.
-std::string misfit_name(std::string_view name, std::span<const FunctionSpec> functions);
+// What is wrong with giving this name to a parameter or a definition where formulas have these functions
+// (compiler/frontend/formula_functions.h); empty when nothing is.
+std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions);
 
 }  // namespace fathom::compiler

@@ -29,7 +29,7 @@ const NamedConstant* find_constant(std::string_view name) {
   return found == std::end(kConstants) ? nullptr : found;
 }
 
-const FormulaFunction* find_function(const std::vector<FormulaFunction>& functions, std::string_view name) {
+const FormulaFunction* find_function(std::span<const FormulaFunction> functions, std::string_view name) {
   const auto same = [&](const FormulaFunction& row) { return row.name == name; };
   const auto found = std::find_if(functions.begin(), functions.end(), same);
   return found == functions.end() ? nullptr : &*found;
@@ -307,11 +307,11 @@ void FormulaParser::report(const char* code, Span span, std::string message, std
   context_.diagnostics.error(code, span, std::move(message), std::move(label), std::move(help));
 }
 
-std::string misfit_name(std::string_view name, std::span<const FunctionSpec> functions) {
+std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions) {
   if (!is_formula_name(name)) return "is not a letter or _ followed by letters, digits and _";
   if (is_axis(name)) return "is a coordinate";
   if (find_constant(name)) return "is a constant of formulas";
-  if (find_function(formula_functions(functions), name)) return "is a function of formulas";
+  if (find_function(functions, name)) return "is a function of formulas";
   return "";
 }
 

@@ -7,6 +7,7 @@
 
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_evaluate.h"
+#include "compiler/frontend/formula_functions.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/suggest.h"
 
@@ -53,7 +54,7 @@ std::string broken_rule(const Parameter& parameter) {
 }
 
 bool check_name(const syntax::Property& property, Diagnostics& diagnostics) {
-  const std::string misfit = misfit_name(property.name, constant_functions());
+  const std::string misfit = misfit_name(property.name, formula_functions(constant_functions()));
   if (misfit.empty()) return true;
   diagnostics.error("E0407", property.name_span, fmt::format("the name `{}` {}", property.name, misfit), "",
                     {"choose another name; formulas call the parameter by it"});

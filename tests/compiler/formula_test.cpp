@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "compiler/frontend/formula_evaluate.h"
+#include "compiler/frontend/formula_functions.h"
 #include "tests/compiler/formula_texts.h"
 
 namespace {
@@ -238,10 +239,10 @@ TEST_CASE("formula: nesting ends at a limit, length does not", "[formula]") {
 
 TEST_CASE("formula: names of parameters", "[formula]") {
   for (const char* good : {"r", "wall_thickness", "_a", "R2", "X"}) {
-    CHECK(misfit_name(good, constant_functions()) == "");
+    CHECK(misfit_name(good, formula_functions(constant_functions())) == "");
   }
   for (const char* bad : {"", "2r", "a-b", "a b", "\u00E9", "x", "y", "z", "e", "pi", "tau", "sin", "mod", "mix"}) {
-    CHECK(misfit_name(bad, constant_functions()) != "");
+    CHECK(misfit_name(bad, formula_functions(constant_functions())) != "");
   }
 }
 

@@ -1,0 +1,73 @@
+// What a program can do over one box of exact numbers: its values, its slope, its float error, and what its choices
+// choose from.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vm/enclose.h"
+#include "vm/evaluate.h"
+#include "vm/interpret-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// A float that is less. Widths of blends are double here and f32 where choices are settled (vm/settle.h): operands so
+// far apart that they do not mix differ by more than the rounding of the width, once each gives way by 2^-22.
+inline float below(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max(), kShare = 0x1p-22, kLeast = 0x1p-126;
+  const double lower = value - (std::fabs(value) * kShare + kLeast);
+  if (!(lower >= -kLargest)) return -std::numeric_limits<float>::infinity();
+  return static_cast<float>(std::min(lower, kLargest));
+}
+
+template <>
+struct ChoiceObserver<Slope> {
+  ChoiceBounds* bounds = nullptr;  // none wanted
+
+  void see(std::size_t, const Slope& a, const Slope& b) {
+    if (bounds == nullptr) return;
+    const Interval of_a = seen(a), of_b = seen(b);
+    bounds->a_lo[0] = below(of_a.lo), bounds->a_hi[0] = -below(-of_a.hi);
+    bounds->b_lo[0] = below(of_b.lo), bounds->b_hi[0] = -below(-of_b.hi);
+  }
+  void next() {
+    if (bounds != nullptr) ++bounds;
+  }
+};
+
+namespace {
+
+Slope coordinate(double lo, double hi, int axis) {
+  const Interval zero{0, 0}, one{1, 1};
+  Slope s = make_slope({lo, hi}, axis == 0 ? one : zero, axis == 1 ? one : zero, axis == 2 ? one : zero, 1, 0);
+  s.norm = 1;
+  s.nonnegative = lo >= 0;
+  return s;
+}
+
+SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, ChoiceBounds* choices, Workspace& workspace) {
+  Machine<Slope> machine(program, workspace, 1);
+  machine.observer().bounds = choices;
+  *machine.first_point() = {coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
+  machine.interpret();
+  const Slope& result = *machine.result();
+  return {{result.v.lo, result.v.hi}, result.norm, result.error * kUnit};
+}
+
+}  // namespace
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+namespace fathom::vm {
+
+SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  return HWY_NAMESPACE::slope(program, lo, hi, nullptr, workspace);
+}
+
+SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceBounds>& choices,
+                         Workspace& workspace) {
+  choices.resize(program.choices);
+  return HWY_NAMESPACE::slope(program, lo, hi, choices.data(), workspace);
+}
+
+}  // namespace fathom::vm
