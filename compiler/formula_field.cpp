@@ -29,11 +29,16 @@ struct Cell {
   Box box;
   vm::SlopeBound bound;
   std::shared_ptr<const vm::Part> part;  // what of the formula matters within the box
-  // The steepest on top of the queue; among equals the larger, so that the end does not depend on the queue.
+  // The steepest on top of the queue. Among those that are as steep but for rounding the smaller, which is nearer to
+  // where that slope is met; among jumps the larger, that many places are seen before one is too small to be cut.
   bool operator<(const Cell& other) const {
-    if (bound.lipschitz != other.bound.lipschitz) return bound.lipschitz < other.bound.lipschitz;
-    const glm::dvec3 a = box.hi - box.lo, b = other.box.hi - other.box.lo;
-    return std::max({a.x, a.y, a.z}) < std::max({b.x, b.y, b.z});
+    const auto slope = static_cast<float>(bound.lipschitz), other_slope = static_cast<float>(other.bound.lipschitz);
+    if (slope != other_slope) return slope < other_slope;
+    return std::isfinite(slope) ? longest_side() > other.longest_side() : longest_side() < other.longest_side();
+  }
+  double longest_side() const {
+    const glm::dvec3 size = box.hi - box.lo;
+    return std::max({size.x, size.y, size.z});
   }
 };
 
@@ -86,6 +91,7 @@ class Bisection {
 
   // What the cell that was looked at leaves of its part; the part itself where that is most of it.
   std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
+    if (part->choices == 0) return part;
     specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
     if (10 * specialiser_.choices_left(0) >= 9 * part->choices) return part;
     auto smaller = std::make_shared<vm::Part>();

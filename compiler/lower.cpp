@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 
 #include "compiler/shapes/node_table.h"
 
@@ -19,7 +20,12 @@ using vm::Opcode;
 struct Use {
   NodeId node;
   std::uint32_t point;
-  auto operator<=>(const Use&) const = default;
+  bool operator==(const Use&) const = default;
+};
+struct UseHash {
+  std::size_t operator()(Use use) const {
+    return std::hash<std::uint64_t>()(std::uint64_t{use.point} << 32 | use.node);
+  }
 };
 
 // What is known of a value before code is made for it.
@@ -49,6 +55,7 @@ class Lowering {
   void plan(Use root) {
     struct Visit {
       Use use;
+      Code code;
       std::vector<Use> operands;
       std::size_t next = 0;
     };
@@ -56,7 +63,10 @@ class Lowering {
     const auto enter = [&](Use use) {
       const auto [entry, fresh] = plans_.try_emplace(use);
       ++entry->second.uses;
-      if (fresh) path.push_back({use, operands(use, code(use.node))});
+      if (!fresh) return;
+      Code code = this->code(use.node);
+      std::vector<Use> operands = this->operands(use, code);
+      path.push_back({use, std::move(code), std::move(operands)});
     };
     enter(root);
     while (!path.empty() && plans_.size() <= max_instructions_) {
@@ -65,8 +75,7 @@ class Lowering {
         const Use operand = visit.operands[visit.next++];
         enter(operand);
       } else {
-        const Code code = this->code(visit.use.node);
-        plans_[visit.use].height = is_free(visit.use.node, code) ? 0 : height(code, visit.operands);
+        plans_[visit.use].height = is_free(visit.use.node, visit.code) ? 0 : height(visit.code, visit.operands);
         path.pop_back();
       }
     }
@@ -216,7 +225,7 @@ class Lowering {
   const Graph& graph_;
   const Source& source_;
   const std::size_t max_instructions_;
-  std::map<Use, Plan> plans_;
+  std::unordered_map<Use, Plan, UseHash> plans_;
   std::vector<Task> tasks_;
   std::map<std::tuple<std::uint32_t, Opcode, std::vector<double>>, std::uint32_t> points_;
   vm::Program program_;

@@ -29,16 +29,19 @@ Position Source::locate(std::uint32_t offset) const {
   offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
   const std::uint32_t start = *(after - 1);
-  return {static_cast<std::uint32_t>(after - line_starts_.begin()),
-          code_points_before(offset) - code_points_before(start) + 1};
+  const std::uint32_t before = offset - start < kStride ? count_code_points(start, offset)
+                                                        : code_points_before(offset) - code_points_before(start);
+  return {static_cast<std::uint32_t>(after - line_starts_.begin()), before + 1};
 }
 
 std::uint32_t Source::code_points_before(std::uint32_t offset) const {
   if (code_points_.empty()) return 0;
   const std::size_t stride = std::min(offset / kStride, code_points_.size() - 1);
-  const auto from = text_.begin() + static_cast<std::ptrdiff_t>(stride * kStride);
-  return code_points_[stride] +
-         static_cast<std::uint32_t>(std::count_if(from, text_.begin() + offset, begins_code_point));
+  return code_points_[stride] + count_code_points(static_cast<std::uint32_t>(stride * kStride), offset);
+}
+
+std::uint32_t Source::count_code_points(std::uint32_t from, std::uint32_t to) const {
+  return static_cast<std::uint32_t>(std::count_if(text_.begin() + from, text_.begin() + to, begins_code_point));
 }
 
 std::string_view Source::line(std::uint32_t number) const {

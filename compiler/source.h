@@ -32,6 +32,7 @@ class Source {
  private:
   std::string name_, text_;
   std::uint32_t code_points_before(std::uint32_t offset) const;
+  std::uint32_t count_code_points(std::uint32_t from, std::uint32_t to) const;
 
   std::vector<std::uint32_t> line_starts_;
   std::vector<std::uint32_t> code_points_;  // before every kStride-th byte: positions in long lines cost no more
