@@ -1,6 +1,8 @@
 // Formulas as fields: the bounds that are proved for them, and the boxes of what they displace.
 #include "compiler/formula_field.h"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -70,6 +72,39 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
     CHECK(!k.certified);
     CHECK(k.outside == compiler::Exactness::Estimate);
     CHECK(std::isfinite(k.lipschitz));
+  }
+}
+
+// Of hundreds of pieces, of which the parts that prove the bound hold a few.
+TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    Random random(seed);
+    std::string formula = "1";
+    double steepest = 0;
+    for (int i = 0; i < 200; ++i) {
+      const double x = random.uniform(-2, 2), y = random.uniform(-2, 2), slope = random.uniform(0.2, 3);
+      const char* const kind =
+          seed % 2 == 0 ? "max(abs(x - {0:.4f}), abs(y - {1:.4f}))" : "length(x - {0:.4f}, y - {1:.4f})";
+      const std::string place = fmt::format(fmt::runtime(kind), x, y);
+      formula = fmt::format("{}({}, {:.4f}*{} - 0.1)", i % 7 == 0 ? "max" : "min", formula,
+                            i % 7 == 0 ? -slope : slope, place);
+      steepest = std::max(steepest, slope);
+    }
+    INFO("seed " << seed);
+    const Scene scene =
+        scene_of(R"({"type": "expression", "half_size": [2, 2, 2], "formula": ")" + formula + R"("})");
+    const compiler::NodeId node = scene.graph.children(scene.root)[0];
+    const compiler::FormulaBound bound = compiler::bound_formula(scene.graph, node, Box::centred(dvec3(2)));
+    CHECK(bound.seen <= bound.lipschitz);
+    CHECK(bound.lipschitz <= steepest * 1.0001);
+    dvec3 before = random.in_box(2);
+    for (int i = 0; i < 2000; ++i) {
+      const dvec3 p = i % 2 == 0 ? random.in_box(2) : glm::clamp(before + random.in_box(0.01), dvec3(-2), dvec3(2));
+      const double value = judge_distance(scene.graph, node, p), last = judge_distance(scene.graph, node, before);
+      REQUIRE((value >= bound.least && value <= bound.most));
+      REQUIRE(std::abs(value - last) <= bound.lipschitz * glm::length(p - before) * (1 + 1e-9) + 1e-12);
+      before = p;
+    }
   }
 }
 

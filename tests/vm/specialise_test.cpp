@@ -12,6 +12,7 @@
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
+#include "tests/vm/formula.h"
 
 namespace fathom::test {
 namespace {
@@ -132,6 +133,44 @@ void cut(const vm::Code& whole, Random& random, Tally& tally) {
   }
 }
 
+// Formulas joined by what chooses, so that there is something to cut.
+std::vector<Step> random_choices(Random& random, int count) {
+  using vm::Opcode;
+  std::vector<Step> steps;
+  for (int i = 0; i < count; ++i) {
+    append_random_formula(random, random.below(5), steps);
+    steps.push_back({Opcode::Offset, {random.uniform(-1, 1)}});
+    if (i == 0) continue;
+    const double k = random.length(1e-3, 1);
+    static const Opcode kPlain[] = {Opcode::Min, Opcode::Max, Opcode::Subtract};
+    static const Opcode kBlends[] = {Opcode::SmoothMin, Opcode::SmoothMax, Opcode::SmoothSubtract};
+    if (random.chance(0.3)) {
+      steps.push_back({kBlends[random.below(3)], {k, 1 / (4 * k)}});
+    } else {
+      steps.push_back({kPlain[random.below(3)]});
+    }
+  }
+  return steps;
+}
+
+void random_box(Random& random, glm::dvec3& lo, glm::dvec3& hi) {
+  const double size = random.length(1e-3, 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = random.uniform(-2.5, 2.5);
+    hi[axis] = lo[axis] + size * random.uniform(0.2, 1);
+  }
+}
+
+glm::vec3 float_point_in(Random& random, glm::dvec3 lo, glm::dvec3 hi) {
+  glm::vec3 p;
+  for (int axis = 0; axis < 3; ++axis) {
+    p[axis] = static_cast<float>(random.uniform(lo[axis], hi[axis]));
+    const bool inside = static_cast<double>(p[axis]) >= lo[axis] && static_cast<double>(p[axis]) <= hi[axis];
+    if (!inside) p[axis] = static_cast<float>((lo[axis] + hi[axis]) / 2);
+  }
+  return p;
+}
+
 }  // namespace
 
 TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
@@ -149,6 +188,68 @@ TEST_CASE("specialise: parts of random scenes give the whole programs' bits in t
   }
   CHECK(tally.compared > 500'000);
   CHECK(tally.cut > 10'000);
+}
+
+TEST_CASE("specialise: parts by bounds of the exact function equal it, in double and in float",
+          "[specialise][slope]") {
+  vm::Workspace workspace;
+  vm::Specialiser specialiser;
+  int cut = 0, compared = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    Random random(seed);
+    const auto steps = random_choices(random, 2 + random.below(6));
+    const vm::VerifiedProgram program = formula(steps);
+    const auto subexpressions_of = subexpressions(steps);
+    const vm::Part whole = vm::whole(program);
+    glm::dvec3 lo, hi;
+    random_box(random, lo, hi);
+    const vm::SlopeBound bound = specialiser.look(whole, lo, hi, workspace);
+    specialiser.decide(-kInfinity, kInfinity);
+    vm::Part part;
+    specialiser.part(0, part);
+    INFO("seed " << seed << ": " << text_of(steps));
+    REQUIRE(sound(part));
+    cut += part.words.size() < whole.words.size();
+    // What is known of the part is known of the whole, and is no less.
+    const vm::SlopeBound same = vm::evaluate_slope(program, lo, hi, workspace);
+    CHECK((bound.lipschitz == same.lipschitz && bound.float_error == same.float_error));
+    const vm::SlopeBound again = vm::evaluate_slope(part, lo, hi, workspace);
+    CHECK(again.lipschitz <= bound.lipschitz);
+    CHECK(again.float_error <= bound.float_error);
+    for (int i = 0; i < 8; ++i) {
+      const glm::vec3 p = float_point_in(random, lo, hi);
+      if (!defined_at(subexpressions_of, glm::dvec3(p), workspace)) continue;
+      ++compared;
+      const double exact = vm::evaluate_distance(program, glm::dvec3(p), workspace);
+      CHECK(vm::evaluate_distance(part, glm::dvec3(p), workspace) == exact);
+      CHECK((exact >= again.value.lo && exact <= again.value.hi));
+      const vm::Points point = {&p.x, &p.y, &p.z};
+      float a, b;
+      vm::evaluate_distance(program, point, 1, &a, workspace);
+      vm::evaluate_distance(part, point, 1, &b, workspace);
+      CHECK(agrees(a, b, -kInfinity, kInfinity));
+      if (std::isfinite(again.float_error)) CHECK(std::abs(static_cast<double>(a) - exact) <= again.float_error);
+    }
+  }
+  CHECK(cut > 1000);
+  CHECK(compared > 8000);
+}
+
+// Two planes a width apart that double and float round to either side: what the exact blend still mixes must stay.
+TEST_CASE("specialise: operands that only float holds apart are kept for the exact function", "[specialise][slope]") {
+  vm::Workspace workspace;
+  const double k = 0.1 + 1e-9;  // float rounds it down to 0.1f
+  const double apart = static_cast<double>(static_cast<float>(k));
+  REQUIRE(apart < k * (1 + 1e-7));
+  for (const double gap : {apart, k, k * (1 + 1e-8), k * (1 + 1e-3)}) {
+    const auto program = formula(
+        {{vm::Opcode::X}, {vm::Opcode::X}, {vm::Opcode::Offset, {-gap}}, {vm::Opcode::SmoothMin, {k, 1 / (4 * k)}}});
+    vm::Specialiser specialiser;
+    const vm::Part whole = vm::whole(program);
+    specialiser.look(whole, glm::dvec3(0), glm::dvec3(0), workspace);
+    specialiser.decide(-kInfinity, kInfinity);
+    CHECK((specialiser.choices_left(0) == 0) == (gap > k * (1 + 1e-6)));
+  }
 }
 
 }  // namespace fathom::test
