@@ -47,8 +47,7 @@ class QuadtreeWorker {
         fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
         continue;
       }
-      vm::Part& child = parts_[static_cast<std::size_t>(level)];
-      specialiser.part(i, child);
+      const vm::Part& child = cut(part, specialiser, i, level);
       if (level + 1 < kLevels) {
         run(child, tile, level + 1);
       } else {
@@ -58,6 +57,14 @@ class QuadtreeWorker {
   }
 
  private:
+  // What of `part` matters in box i; the part itself where writing that down costs more than it saves.
+  const vm::Part& cut(const vm::Part& part, vm::Specialiser& specialiser, std::size_t i, int level) {
+    constexpr std::uint32_t kCheap = 16;  // choices
+    if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
+    vm::Part& child = parts_[static_cast<std::size_t>(level)];
+    specialiser.part(i, child);
+    return child;
+  }
   static Tile tile_of(Tile first, int edge, std::size_t i) {
     return {first.x + edge * static_cast<int>(i % kSide), first.y + edge * static_cast<int>(i / kSide)};
   }

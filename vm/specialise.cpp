@@ -10,6 +10,21 @@ namespace {
 
 static_assert(kEnclosedBoxes == 16);
 
+// Columns of the table (vm/opcode.h), at hand: parts are made of tens of thousands of instructions a picture.
+struct Row {
+  Opcode opcode;
+  Form form;
+  bool choice;
+  int cost;  // of a function
+};
+constexpr Row kRows[] = {
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
+  {Opcode::Name, Form::form, Choice::choice != Choice::None, cost},
+#include "vm/opcodes.def"
+#undef OP
+};
+const Row& row_of(std::uint32_t word) { return kRows[word & 0xff]; }
+
 // The rule of the choice at a word; its operands are not filled in.
 ChoiceLink link_of(const Code& code, std::uint32_t at) {
   const std::uint32_t word = code.words[at];
@@ -32,13 +47,12 @@ ChoiceLink link_of(const Code& code, std::uint32_t at) {
     case Opcode::SmoothSubtract:
       return link(ChoiceRule::Greatest, true, true);
     default:
-      return link(find_opcode(word & 0xff)->form == Form::Shape ? ChoiceRule::Least : ChoiceRule::Keep, false, false);
+      return link(row_of(word).form == Form::Shape ? ChoiceRule::Least : ChoiceRule::Keep, false, false);
   }
 }
 
-bool is_joined(std::uint32_t word) {
-  return find_opcode(word & 0xff)->form == Form::Shape && (operand_of(word) & kJoined) != 0;
-}
+bool is_function(Form form) { return form == Form::Unary || form == Form::Binary; }
+bool is_joined(std::uint32_t word) { return row_of(word).form == Form::Shape && (operand_of(word) & kJoined) != 0; }
 
 }  // namespace
 
@@ -77,16 +91,18 @@ bool Specialiser::read() {
 void Specialiser::link_choices() {
   const auto& nodes = expression_.nodes();
   under_.assign(nodes.size(), {kNone, 0});
-  links_.clear();
+  links_.clear(), hands_on_.clear();
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     const ExpressionNode& node = nodes[i];
     const std::uint32_t word = program_->words[node.at];
-    const OpcodeInfo& row = *find_opcode(word & 0xff);
+    const Row& row = row_of(word);
     if (node.choice != kNone) {
       ChoiceLink link = link_of(*program_, node.at);
       if (node.a != kNone) link.a = under_[node.a];
       if (node.b != kNone) link.b = under_[node.b];
       links_.push_back(link);
+      const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
+      hands_on_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});
       under_[i] = {node.choice, 0};
     } else if (row.form == Form::Machine) {
       under_[i] = under_[node.a];
@@ -139,17 +155,11 @@ void Specialiser::part(std::size_t box, Part& out) {
 std::uint32_t Specialiser::resolve(std::uint32_t id) const {
   while (true) {
     const ExpressionNode& node = expression_.nodes()[id];
-    if (node.choice == kNone || (keeps_a(node.choice) && keeps_b(node.choice))) return id;
-    const std::uint32_t word = program_->words[node.at];
-    if (is_joined(word)) {
-      if (!keeps_a(node.choice)) return id;
-      id = node.a;
-      continue;
-    }
-    const Sources sources = sources_of(word);
-    const bool first = keeps_a(node.choice);
-    if ((first ? sources.a : sources.b) != Source::Stack || (!first && links_[node.choice].opposite)) return id;
-    id = first ? node.a : node.b;
+    if (node.choice == kNone) return id;
+    const bool a = keeps_a(node.choice), b = keeps_b(node.choice);
+    const HandsOn hands_on = hands_on_[node.choice];
+    if ((a && b) || !(a ? hands_on.a : hands_on.b)) return id;
+    id = a ? node.a : node.b;
   }
 }
 
@@ -157,17 +167,19 @@ std::uint32_t Specialiser::resolve(std::uint32_t id) const {
 void Specialiser::count_uses() {
   const auto& nodes = expression_.nodes();
   uses_.assign(nodes.size(), {});
+  resolved_.resize(nodes.size());
   counted_.assign(1, expression_.root());
   const auto use_local = [&](std::uint32_t tee) {
     if (uses_[tee].left++ == 0) counted_.push_back(nodes[tee].a);
     uses_[tee].shared = uses_[tee].left > 1;
   };
   while (!counted_.empty()) {
-    const std::uint32_t id = resolve(counted_.back());
+    const std::uint32_t wanted = counted_.back(), id = resolve(wanted);
     counted_.pop_back();
+    resolved_[wanted] = id;
     const ExpressionNode& node = nodes[id];
     const std::uint32_t word = program_->words[node.at];
-    const OpcodeInfo& row = *find_opcode(word & 0xff);
+    const Row& row = row_of(word);
     if (row.opcode == Opcode::Load) {
       use_local(node.a);
     } else if (row.opcode == Opcode::Tee) {
@@ -187,10 +199,10 @@ void Specialiser::count_uses() {
 }
 
 void Specialiser::emit(std::uint32_t id) {
-  id = resolve(id);
+  id = expression_.locals() > 0 ? resolved_[id] : resolve(id);
   const ExpressionNode& node = expression_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
-  const OpcodeInfo& row = *find_opcode(word & 0xff);
+  const Row& row = row_of(word);
   if (row.form == Form::Unary || row.form == Form::Binary) return emit_operator(id);
   if (row.opcode == Opcode::Load) return use_local(node.a);
   if (row.opcode == Opcode::Tee) return use_local(id);
@@ -213,7 +225,7 @@ void Specialiser::emit_operator(std::uint32_t id) {
   const ExpressionNode& node = expression_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
   Sources sources = sources_of(word);
-  const bool binary = find_opcode(word & 0xff)->form == Form::Binary;
+  const bool binary = row_of(word).form == Form::Binary;
   const bool has_a = node.choice == kNone || keeps_a(node.choice);
   const bool has_b = binary && (node.choice == kNone || keeps_b(node.choice));
   if (binary && has_a != has_b) return emit_lone(id, has_a);
@@ -287,22 +299,30 @@ std::uint32_t Specialiser::number_of(Local& local) {
 }
 
 void Specialiser::write(Part& out) const {
-  out.words.clear(), out.wide.clear(), out.sources.clear();
+  std::size_t size = 0, at = 0;
+  for (const Emitted& e : emitted_) size += 1 + e.count;
+  out.words.resize(size), out.wide.resize(size), out.sources.clear();
   out.locals = locals_;
   out.cost = 0, out.choices = 0;
   std::int64_t values = 0, points = 1, most_values = 0, most_points = 1;
   for (std::size_t i = emitted_.size(); i-- > 0;) {
     const Emitted& e = emitted_[i];
-    out.words.push_back(e.word), out.wide.push_back(0);
-    const auto first = static_cast<std::ptrdiff_t>(e.immediate), last = first + e.count;
-    out.words.insert(out.words.end(), program_->words.begin() + first, program_->words.begin() + last);
-    out.wide.insert(out.wide.end(), program_->wide.begin() + first, program_->wide.begin() + last);
+    out.words[at] = e.word, out.wide[at] = 0, ++at;
+    for (std::uint32_t k = 0; k < e.count; ++k, ++at) {
+      out.words[at] = program_->words[e.immediate + k], out.wide[at] = program_->wide[e.immediate + k];
+    }
     out.sources.push_back(program_->sources[e.node]);
-    out.cost += instruction_cost(e.word);
-    out.choices += is_choice(e.word);
-    const StackEffect effect = effect_of(e.word);
-    most_values = std::max(most_values, values += effect.values_change);
-    most_points = std::max(most_points, points += effect.points_change);
+    const Row& row = row_of(e.word);
+    if (is_function(row.form)) {  // most of a formula
+      const Sources sources = sources_of(e.word);
+      out.cost += row.cost, out.choices += row.choice;
+      values += 1 - (sources.a == Source::Stack) - (row.form == Form::Binary && sources.b == Source::Stack);
+    } else {
+      const StackEffect effect = effect_of(e.word);
+      out.cost += instruction_cost(e.word), out.choices += is_choice(e.word);
+      values += effect.values_change, points += effect.points_change;
+    }
+    most_values = std::max(most_values, values), most_points = std::max(most_points, points);
   }
   out.max_values = static_cast<std::uint32_t>(most_values);
   out.max_points = static_cast<std::uint32_t>(most_points);

@@ -107,6 +107,10 @@ class Specialiser {
   std::vector<ChoiceLink> links_;           // [choice]
   std::vector<Interest> interest_;          // [choice]
   std::vector<KeptOperands> kept_;          // [choice]
+  struct HandsOn {
+    bool a, b;  // as they are, from the stack
+  };
+  std::vector<HandsOn> hands_on_;  // [choice] which operand's value is its own where only that one is kept
   alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
 
   // While a part is made: from the root down, so that the code comes out backwards.
@@ -115,6 +119,7 @@ class Specialiser {
   std::vector<Emitted> emitted_;
   std::vector<Local> uses_;  // [node] of a tee
   std::vector<std::uint32_t> counted_;
+  std::vector<std::uint32_t> resolved_;  // [node], of those counted
   std::uint32_t locals_ = 0;
 };
 
