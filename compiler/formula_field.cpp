@@ -89,11 +89,10 @@ class Bisection {
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
   }
 
-  // What the cell that was looked at leaves of its part; the part itself where that is most of it.
+  // What the cell that was looked at leaves of its part.
   std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
     if (part->choices == 0) return part;
     specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
-    if (10 * specialiser_.choices_left(0) >= 9 * part->choices) return part;
     auto smaller = std::make_shared<vm::Part>();
     specialiser_.part(0, *smaller);
     return smaller;

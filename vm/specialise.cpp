@@ -71,6 +71,7 @@ Part whole(const Code& code) {
 
 bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& workspace) {
   program_ = &program;
+  pairwise_ = false;
   if (!read()) return false;
   enclose(program, boxes, lo_.data(), hi_.data(), bounds_, workspace);
   return true;
@@ -78,6 +79,7 @@ bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& works
 
 SlopeBound Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   program_ = &program;
+  pairwise_ = true;
   is_read_ = false;  // most of those who ask want the bound alone
   return enclose_slope(program, lo, hi, bounds_, workspace);
 }
@@ -100,6 +102,7 @@ void Specialiser::link_choices() {
       ChoiceLink link = link_of(*program_, node.at);
       if (node.a != kNone) link.a = under_[node.a];
       if (node.b != kNone) link.b = under_[node.b];
+      link.always = pairwise_;
       links_.push_back(link);
       const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
       hands_on_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});

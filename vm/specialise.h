@@ -52,7 +52,9 @@ class Specialiser {
   bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
   // The same over one box, which is number 0, for the exact function as well: a part for limits of -infinity and
   // infinity equals the whole, exactly and in f32, wherever every operation of the whole is defined, so that what
-  // holds of the one holds of the other. The program is an expression; returned is what it does in the box.
+  // holds of the one holds of the other. The program is an expression; returned is what it does in the box. Operands
+  // are cut that lose to the other one: that others lie beyond what matters further down would make the part shorter,
+  // but it may be what narrows a range, and the bounds of parts are to be as good as the whole's.
   SlopeBound look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
   // What the value can be in box i.
@@ -102,6 +104,7 @@ class Specialiser {
   const Part* program_ = nullptr;
   Expression expression_;
   bool is_read_ = false;                    // the expression and the links are those of the program
+  bool pairwise_ = false;                   // no choice's limits are those of what uses it
   std::vector<ChoiceBounds> bounds_;        // [choice]
   std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
   std::vector<ChoiceLink> links_;           // [choice]
