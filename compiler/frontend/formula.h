@@ -23,9 +23,9 @@
 
 namespace fathom::compiler {
 
-// A function of the machine.
 struct FormulaFunction;
 
+// A function of the machine.
 struct FunctionSpec {
   std::string_view name;
   int arity;
