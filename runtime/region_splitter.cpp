@@ -145,7 +145,7 @@ bool RegionBuilder::Splitter::make_leaf(vm::Part& part, bool always, std::uint32
 std::uint32_t RegionBuilder::Splitter::intern(std::uint32_t start) {
   std::vector<std::uint32_t>& pool = piece_->pool;
   const std::size_t size = pool.size() - start;
-  const std::uint64_t hash = hash_of(pool.data() + start, size);
+  const std::uint64_t hash = vm::hash_of(std::span(pool).subspan(start));
   const auto [first, last] = piece_->program_at.equal_range(hash);
   for (auto it = first; it != last; ++it) {
     if (it->second + size <= start && std::equal(pool.begin() + start, pool.end(), pool.begin() + it->second)) {

@@ -17,15 +17,6 @@ inline constexpr float kFar = 0.25f;
 // Of the root's edge: how much larger a cell is taken than it is, for the rounding that finds a point's cell.
 inline constexpr double kCellMargin = 0x1p-20;
 
-inline std::uint64_t hash_of(const std::uint32_t* words, std::size_t count) {
-  std::uint64_t hash = count;
-  for (std::size_t i = 0; i < count; ++i) {
-    hash = (hash ^ words[i]) * 0x9e3779b97f4a7c15ull;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
 inline Regions::Node make_node(Regions::Kind kind, std::uint32_t payload, float value) {
   return {value, static_cast<std::uint32_t>(kind) << 30 | payload};
 }

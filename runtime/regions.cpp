@@ -46,6 +46,7 @@ float Regions::far_value(const Found& found, float x, float y, float z) const {
 
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
+  static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
   CHECK(count <= kMostPoints, "a batch of points is too large");
   std::size_t near = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
   std::fill_n(s.instructions.data(), count, 0);

@@ -39,7 +39,7 @@ struct RegionOptions {
   int room = 0;                    // the root is 2^room times as long as the scene's bounded parts
 };
 
-// Points evaluated together at most; more than the rays a thread has under way.
+// Points evaluated together at most: as many as a thread moves on at once (lanes.h).
 inline constexpr std::size_t kMostPoints = 768;
 
 // How often points were in leaves of each kind.

@@ -37,10 +37,11 @@ constexpr double kFirstPenalty = 2;
 // Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
 
-}  // namespace
-
 // Lanes of a field without regions: a block of the machine.
 constexpr int kBlock = 256;
+static_assert(Lanes<float>::kCapacity <= kMostPoints);
+
+}  // namespace
 
 template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching)

@@ -85,15 +85,7 @@ void append_instruction(const Part& part, std::uint32_t word, std::size_t at, st
   }
 }
 
-std::uint64_t hash_of(const std::vector<std::uint32_t>& words) {
-  std::uint64_t hash = words.size();
-  for (const std::uint32_t word : words) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
+// In the order in which a skeleton has them.
 std::vector<Step> distance_steps(const Part& part) {
   std::vector<Step> steps = untagged(part);
   sort_union(steps);

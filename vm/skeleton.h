@@ -7,7 +7,7 @@
 //
 //     const Constants constants(whole);                       // of all programs that are cut from it
 //     std::uint32_t at = skeletons.pack(part, constants, pool);
-//     evaluate_skeleton(skeletons.of(pool, at), constants, pool.data(), jobs, points, distance, workspace);
+//     evaluate_skeleton(skeletons[pool[at]], constants, pool.data(), jobs, points, distance, workspace);
 //     skeletons.unpack(whole, constants, pool.data(), at, part);  // the part again
 //
 // A skeleton is what distances take: it has no tags, its unions are in the order of their opcodes, and small shapes
@@ -27,6 +27,16 @@
 #include "vm/specialise.h"
 
 namespace fathom::vm {
+
+// Of words that may be equal to others.
+inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
+  std::uint64_t hash = words.size();
+  for (const std::uint32_t word : words) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
 
 inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is a whole number of quads
 
