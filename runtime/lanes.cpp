@@ -12,17 +12,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// Moves one register of lanes after another on.
+// Moves one register of lanes after another on; `move` returns those that have ended.
 template <class N, class S, class Move>
-HWY_INLINE std::size_t for_each_register(Lanes<S>& lanes, std::size_t count, const S* f, LaneNumbers& ended,
+HWY_INLINE std::size_t for_each_register(std::size_t count, const S* f, LaneNumbers& ended,
                                          const Move& move) {
   constexpr std::size_t kStep = sizeof(N) / sizeof(S);
   // One bit a lane, and one loop over them at the end, whose length the processor mispredicts once.
   std::uint64_t bits[Lanes<S>::kCapacity / 64] = {};
   for (std::size_t i = 0; i < count; i += kStep) {
-    move(i, load(f + i, static_cast<N*>(nullptr)));
-    const N verdict = load(&lanes.row[kVerdict][i], static_cast<N*>(nullptr));
-    bits[i / 64] |= std::uint64_t{lanes_of(verdict > number<N>(0))} << i % 64;
+    bits[i / 64] |= std::uint64_t{lanes_of(move(i, load(f + i, static_cast<N*>(nullptr))))} << i % 64;
   }
   std::size_t total = 0;
   for (std::size_t word = 0; word * 64 < count; ++word) {
@@ -36,16 +34,16 @@ HWY_INLINE std::size_t for_each_register(Lanes<S>& lanes, std::size_t count, con
 
 template <class N, class S>
 std::size_t tiered(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
-  return for_each_register<N>(lanes, count, f, ended, [&](std::size_t i, N value) HWY_ATTR {
+  return for_each_register<N>(count, f, ended, [&](std::size_t i, N value) HWY_ATTR {
     Tiered<N, S> step(lanes, i, rules);
-    step.run(value, rules);
+    return step.run(value, rules);
   });
 }
 
 template <class Step, class N, class S>
 std::size_t traced(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
-  return for_each_register<N>(lanes, count, f, ended,
-                              [&](std::size_t i, N value) HWY_ATTR { trace<Step, N>(lanes, i, rules, value); });
+  return for_each_register<N>(count, f, ended,
+                              [&](std::size_t i, N value) HWY_ATTR { return trace<Step, N>(lanes, i, rules, value); });
 }
 
 template <class N, class S>

@@ -4,9 +4,9 @@
 // A lane that walks was at t with g(t) = side * f > 0 and waits for the field at t_next:
 //
 //   Start --> Walk <--> Retreat        Retreat: the last step was too long; the plain safe one is under way
-//     |        |  |                    Refine: a crossing lies in [t, t_hi]
-//   Emerge     |  Refine --> Hit       Emerge: began on the wrong side of the surface, by rounding
-//              Miss, Certify
+//     |        |  |                    Cross: as Walk, by a step that is meant to cross the surface
+//   Emerge     |  Refine --> Hit       Refine: a crossing lies in [t, t_hi]
+//              Miss, Certify           Emerge: began on the wrong side of the surface, by rounding
 //
 // Not a public header: march.h is. Tested by: tests/runtime/march_test.cpp
 #pragma once
@@ -20,9 +20,9 @@
 namespace fathom::runtime {
 
 enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
-enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Retreat, Refine };
+enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Cross, Retreat, Refine };
 
-// What is kept of a lane.
+// What is kept of a lane. A step reads and writes most of it: every row costs.
 enum LaneRow : std::uint8_t {
   // Where the field is evaluated next.
   kX,
@@ -38,26 +38,29 @@ enum LaneRow : std::uint8_t {
   kTMax,
   kSide,   // 0 until the first evaluation when it has to be found out
   kPhase,  // a LanePhase
-  // The last accepted sample: place, value, and safe radius: nothing lies within (t - r, t + r). While refining t is
-  // the bracket's free end, r the first bracket's width. Once hit t is the root.
+  kTNext,  // of kX, kY, kZ
+  kEvaluations,
+  kVerdict,  // a LaneVerdict
+  // The last accepted sample: place, value, and safe radius: nothing lies within (t - r, t + r). Not set before the
+  // first is.
   kT,
   kG,
   kR,
-  kTNext,  // of kX, kY, kZ
-  kM,      // relaxation: expected slope of the safe radius along the ray
-  // While refining: the far end, the values the secant takes for both ends, and what g falls by over the first
-  // bracket.
-  kTHi,
-  kGHi,
-  kGLo,
-  kFall,
-  kWidth,  // of the bracket, once hit
-  kEvaluations,
-  kCrossing,  // 1: the step under way is meant to cross the surface
+  kM,         // relaxation: expected slope of the safe radius along the ray
   kPatience,  // samples to accept before the next attempt to cross
   kPenalty,   // patience after the next attempt that meets no surface; of FixedStep: above 1 once a step was too long
-  kVerdict,   // a LaneVerdict
-  kLaneRows
+  kLaneRows,
+  // While refining these rows hold the bracket: its ends, the values the secant takes for both, how long the first
+  // bracket was and what g falls by over it.
+  kTLo = kT,
+  kGLo = kG,
+  kSpan = kR,
+  kFall = kM,
+  kTHi = kPatience,
+  kGHi = kPenalty,
+  // Once hit: the root, and how wide its bracket is.
+  kRoot = kT,
+  kWidth = kR
 };
 
 // S: float or double. Counts and flags are numbers of that type, too: a register holds as many of each.

@@ -13,31 +13,16 @@ class Certifier final : public Marcher {
   using Marcher::Marcher;
 
  private:
-  void begin(const RayBlock& rays, std::size_t i) override {
-    certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0, 0);
+  void begin(RayBlock& rays) override {
+    while (rays.count > 0) {
+      const std::size_t i = --rays.count;
+      if (enters(rays, i)) certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0, 0);
+    }
   }
-  bool has_room() const override { return true; }
   void step() override {}
 };
 
 }  // namespace
-
-void Marcher::count(Arrival::Status status) {
-  switch (status) {
-    case Arrival::Status::Hit:
-      ++counters_.hits;
-      break;
-    case Arrival::Status::Miss:
-      ++counters_.misses;
-      break;
-    case Arrival::Status::Contact:
-      ++counters_.contacts;
-      break;
-    case Arrival::Status::Invalid:
-      ++counters_.invalid;
-      break;
-  }
-}
 
 void Marcher::add(std::uint32_t id, const Ray& ray) {
   CHECK(room() > 0, "a ray was added to a full marcher");
@@ -52,21 +37,8 @@ void Marcher::advance() {
 
 void Marcher::begin_waiting() {
   clip(waiting_, clipped_, field_.bound, field_.far);
-  for (; waiting_.count > 0 && has_room(); --waiting_.count) begin_last();
+  begin(waiting_);
   clipped_ = waiting_.count;
-}
-
-void Marcher::begin_last() {
-  const std::size_t i = waiting_.count - 1;
-  switch (waiting_.what_became_of(i)) {
-    case Clip::Within:
-      return begin(waiting_, i);
-    case Clip::Past:
-      ++counters_.clipped;
-      return arrive(waiting_.id[i], Arrival::Status::Miss);
-    case Clip::Invalid:
-      return arrive(waiting_.id[i], Arrival::Status::Invalid);
-  }
 }
 
 void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,

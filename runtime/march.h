@@ -76,9 +76,9 @@ class Marcher {
     std::uint32_t id;
   };
 
-  // Takes up the i-th of `rays`, which are clipped. live_ counts it when it is under way.
-  virtual void begin(const RayBlock& rays, std::size_t i) = 0;
-  virtual bool has_room() const = 0;
+  // Takes up `rays`, which are clipped, from the last on as long as there is room, and takes them from the block.
+  // live_ counts those that are under way.
+  virtual void begin(RayBlock& rays) = 0;
   // Moves the rays under way on by one evaluation.
   virtual void step() = 0;
 
@@ -88,6 +88,14 @@ class Marcher {
             rays.entry[i],
             rays.length[i],
             rays.id[i]};
+  }
+  // Whether the i-th of `rays` comes within the bound; one that does not has arrived.
+  bool enters(const RayBlock& rays, std::size_t i) {
+    const Clip fate = rays.what_became_of(i);
+    if (fate == Clip::Within) return true;
+    if (fate == Clip::Past) ++counters_.clipped;
+    arrive(rays.id[i], fate == Clip::Past ? Arrival::Status::Miss : Arrival::Status::Invalid);
+    return false;
   }
   // The fields of an Arrival, in order; it is made in its place.
   template <class... Fields>
@@ -108,9 +116,23 @@ class Marcher {
   StageClock clock_;
 
  private:
-  void count(Arrival::Status status);
+  void count(Arrival::Status status) {
+    switch (status) {
+      case Arrival::Status::Hit:
+        ++counters_.hits;
+        break;
+      case Arrival::Status::Miss:
+        ++counters_.misses;
+        break;
+      case Arrival::Status::Contact:
+        ++counters_.contacts;
+        break;
+      case Arrival::Status::Invalid:
+        ++counters_.invalid;
+        break;
+    }
+  }
   void begin_waiting();
-  void begin_last();
 
   RayBlock waiting_;         // the last one is the next to begin
   std::size_t clipped_ = 0;  // of those waiting, the first

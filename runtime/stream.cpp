@@ -1,7 +1,6 @@
 #include "runtime/stream.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace fathom::runtime {
 namespace {
@@ -24,12 +23,10 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   return rules;
 }
 
-// The largest S that is not above `value`.
+// An S that is not above `value`, by at most a unit in its last place.
 template <class S>
 S round_down(double value) {
-  const S rounded = static_cast<S>(value);
-  return static_cast<double>(rounded) > value ? std::nextafter(rounded, -std::numeric_limits<S>::infinity())
-                                              : rounded;
+  return static_cast<S>(sizeof(S) == sizeof(float) ? value * (1 - 0x1p-24) : value);
 }
 
 // Samples to accept after the first attempt to cross that met no surface.
@@ -53,7 +50,15 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
-void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
+void Stream<S>::begin(RayBlock& rays) {
+  while (rays.count > 0 && live_ < most_lanes_) {
+    const std::size_t i = --rays.count;
+    if (enters(rays, i)) take_up(rays, i);
+  }
+}
+
+template <class S>
+void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
   ++live_;
   std::size_t lane = lanes_used_;
   if (holes_.empty()) {
@@ -63,17 +68,18 @@ void Stream<S>::begin(const RayBlock& rays, std::size_t i) {
     holes_.pop_back();
   }
   S* const first = &lanes_->row[0][lane];
-  const auto put = [&](int row, double value) { first[row * Lanes<S>::kStride] = static_cast<S>(value); };
-  for (const LaneRow zero : {kTNext, kEvaluations, kWidth, kT, kG, kR, kPhase, kCrossing, kPatience}) put(zero, 0);
+  const auto put = [&](int row, S value) { first[row * static_cast<int>(Lanes<S>::kStride)] = value; };
   for (int axis = 0; axis < 3; ++axis) {
-    put(kX + axis, rays.origin[axis][i]);
-    put(kOx + axis, rays.origin[axis][i]);
-    put(kDx + axis, rays.direction[axis][i]);
+    const S origin = static_cast<S>(rays.origin[axis][i]);
+    put(kX + axis, origin);
+    put(kOx + axis, origin);
+    put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
   }
-  first[kTMax * Lanes<S>::kStride] = round_down<S>(rays.length[i]);
+  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kPatience}) put(zero, 0);
+  put(kTMax, round_down<S>(rays.length[i]));
   put(kSide, rays.side[i]);
-  first[kM * Lanes<S>::kStride] = seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1);
-  put(kPenalty, seeded_ ? kFirstPenalty : 1);
+  put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
+  put(kPenalty, seeded_ ? S(kFirstPenalty) : S(1));
   courses_[lane] = course_of(rays, i);
   instructions_[lane] = 0;
 }
@@ -137,8 +143,9 @@ void Stream<S>::finish(std::size_t i) {
     case LaneVerdict::Certify:
       return certify_from(course, side, what_is_left(i), evaluations, instructions);
     case LaneVerdict::Hit:
-      return arrive_as(Arrival::Status::Hit, static_cast<float>(number(kWidth)),
-                       course.entry + static_cast<double>(number(kT)));
+      return arrive_as(Arrival::Status::Hit,
+                       static_cast<float>(info(rules_.method).uses_epsilon ? rules_.epsilon : number(kWidth)),
+                       course.entry + static_cast<double>(number(kRoot)));
     case LaneVerdict::OutOfSteps:
       ++counters_.exhausted;
       return arrive_as(Arrival::Status::Miss, 0, 0);

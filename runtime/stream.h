@@ -18,8 +18,8 @@ class Stream final : public Marcher {
  private:
   static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
 
-  void begin(const RayBlock& rays, std::size_t i) override;
-  bool has_room() const override { return live_ < most_lanes_; }
+  void begin(RayBlock& rays) override;
+  void take_up(const RayBlock& rays, std::size_t i);
   void step() override;
   void close_holes();
   void evaluate();

@@ -56,32 +56,32 @@ class Tiered {
         field_band_(N::broadcast(rules.band)),
         resolution_(N::broadcast(rules.resolution)) {}
 
-  // f: the field at the lanes' points. What is computed for lanes that it does not concern is nowhere put.
-  HWY_INLINE void run(N f, const LaneRules<S>& rules) {
+  // f: the field at the lanes' points. What is computed for lanes that it does not concern is nowhere put. Returns
+  // those that have ended.
+  HWY_INLINE Mask run(N f, const LaneRules<S>& rules) {
     look(f, distance_error(a_, f, rules));
     const N phase = a_.get(kPhase);
     const Mask beginning = phase < code(LanePhase::Walk), refining = phase == code(LanePhase::Refine);
     const Mask retreating = phase == code(LanePhase::Retreat), walking = !(beginning | refining);
     // An exact 0 is a touch, as where a solid is cut from its like.
     const Mask inside = g_ < k(0), outside = g_ >= k(0);
-    const Mask crossing = a_.get(kCrossing) == k(1);
+    const Mask crossing = phase == code(LanePhase::Cross);
     const N gap = t_ - last_t_ - last_r_ - r_;  // what neither ball covers
 
     const Mask accepted = outside & (beginning | (walking & (retreating | (gap <= k(0)))));
     const Mask crossed = inside & walking & (crossing | retreating | (gap <= unseen_));
     const Mask failed = walking & (!(accepted | crossed)), bracketed = refining | crossed;
-    phase_ = select(accepted, code(LanePhase::Walk),
-                    select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase)));
+    phase_ = select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase));
     new_t_ = select(accepted, t_, last_t_);
+    new_g_ = select(accepted, g_, last_g_);
     new_r_ = select(accepted, r_, last_r_);
-    a_.put(kG, accepted, g_);
     const Mask stepped = accepted & walking;
     learn(stepped, failed);
     const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing);
     next_ = select(accepted, onwards, back);
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
     if (any(inside & beginning)) begin_inside(inside & beginning, phase);
-    finish(f);
+    return finish(f);
   }
 
  private:
@@ -92,9 +92,11 @@ class Tiered {
   }
 
   HWY_INLINE void look(N f, N error) {
-    // Without a branch: in most registers some lane begins, in as many none.
-    const N known = a_.get(kSide), side = select(known == k(0), select(f < k(0), k(-1), k(1)), known);
-    a_.put(kSide, side);
+    N side = a_.get(kSide);
+    if (any(side == k(0))) {
+      side = select(side == k(0), select(f < k(0), k(-1), k(1)), side);
+      a_.put(kSide, side);
+    }
     evaluations_ = a_.get(kEvaluations) + k(1);
     error_ = error;
     g_ = side * f;
@@ -112,9 +114,8 @@ class Tiered {
 
   // From the step that led here; one that was too long says nothing but that.
   HWY_INLINE void learn(Mask stepped, Mask failed) {
-    const N m = a_.get(kM), seen = (r_ - last_r_) / (t_ - last_t_);
+    const N m = a_.get(kM), seen = (r_ - last_r_) * rough_reciprocal(t_ - last_t_);
     m_ = select(stepped, min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM)), select(failed, k(-1), m));
-    a_.put(kM, m_);
   }
 
   // The next place after an accepted sample.
@@ -124,11 +125,12 @@ class Tiered {
     const Mask near = stepped & (g_ < band_) & (g_ < last_g_);
     const Mask waits = near & (patience > k(0)) & (r_ > error_), tries = near & (!waits);
     patience_ = select(waits, patience - k(1), patience);
-    const N relaxed = k(kReach) * r_ / (k(1) - m_);
+    const N relaxed = k(kReach) * r_ * rough_reciprocal(k(1) - m_);
     // Where the line through the last two samples would be well beyond the surface.
-    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) * (t_ - last_t_) / (last_g_ - g_);
+    const N run = t_ - last_t_, fall = last_g_ - g_;
+    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) * run * rough_reciprocal(fall);
     const N z = select(tries, max(relaxed, min(beyond, longest)), relaxed);
-    a_.put(kCrossing, select(tries & (beyond > relaxed), k(1), k(0)));
+    phase_ = select(accepted, select(tries & (beyond > relaxed), code(LanePhase::Cross), code(LanePhase::Walk)), phase_);
     // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
     // happens near the surface is for double to decide.
     const Mask coarse = near & (error_ > k(kCoarse) * field_band_);
@@ -140,8 +142,8 @@ class Tiered {
   HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
     const N penalty = a_.get(kPenalty);
     const Mask grazes = from_crossing & (penalty > k(kMostPenalty));
-    a_.put(kPatience, select(from_crossing, penalty, patience_));
-    a_.put(kPenalty, from_crossing, penalty + penalty);
+    patience_ = select(from_crossing, penalty, patience_);
+    penalty_ = select(from_crossing, penalty + penalty, penalty);
     undecided_ = undecided_ | grazes | (failed & is_stuck(last_t_, last_r_));
     return last_t_ + last_r_;
   }
@@ -153,8 +155,8 @@ class Tiered {
     undecided_ = undecided_ | (starting & coarse & (-g_ < error_));
     phase_ = select(starting, code(LanePhase::Emerge), phase_);
     hits_ = hits_ | emerging;
-    new_t_ = select(emerging, k(0), new_t_);
-    a_.put(kWidth, emerging, t_);
+    new_t_ = select(emerging, k(0), new_t_);  // kRoot
+    new_r_ = select(emerging, t_, new_r_);    // kWidth
     next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
   }
 
@@ -162,7 +164,7 @@ class Tiered {
   HWY_INLINE void refine(Mask bracketed, Mask lower, Mask crossed) {
     const N half = k(0.5);
     const N lo = select(lower, t_, last_t_), hi = select(lower, a_.get(kTHi), t_);
-    const N g_lo = select(lower, g_, select(crossed, last_g_, half * a_.get(kGLo)));
+    const N g_lo = select(lower, g_, select(crossed, last_g_, half * last_g_));
     const N g_hi = select(lower, half * a_.get(kGHi), g_);
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
     const N next = min(max(lo + g_lo / (g_lo - g_hi) * width, lo + aside), hi - aside);
@@ -171,41 +173,44 @@ class Tiered {
     const Mask root = lower & (g_ <= k(kRootError) * error_);
     const Mask found = bracketed & (root | (width <= done) | (next <= lo) | (next >= hi));
     // A root of what is nearly level is as uncertain as d_f divided by the slope.
-    const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), over = select(crossed, width, last_r_);
-    const N slack = k(kTypicalError) * error_ * over;
+    const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), span = select(crossed, width, last_r_);
+    const N slack = k(kTypicalError) * error_ * span;
     const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
     const Mask known = found & (!vague);
     undecided_ = undecided_ | vague;
     hits_ = hits_ | known;
 
-    a_.put(kTHi, hi);
-    a_.put(kGLo, g_lo);
-    a_.put(kGHi, g_hi);
-    a_.put(kWidth, select(root, done, width));
+    patience_ = select(bracketed, hi, patience_);  // kTHi
+    penalty_ = select(bracketed, g_hi, penalty_);  // kGHi
+    m_ = select(bracketed, fall, m_);              // kFall
+    new_g_ = select(bracketed, g_lo, new_g_);      // kGLo
     const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
-    new_t_ = select(known, best, select(bracketed, lo, new_t_));
-    new_r_ = select(bracketed, over, new_r_);
-    a_.put(kFall, fall);
+    new_t_ = select(known, best, select(bracketed, lo, new_t_));                            // kRoot or kTLo
+    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));     // kWidth or kSpan
     next_ = select(bracketed, next, next_);
   }
 
-  HWY_INLINE void finish(N f) {
+  HWY_INLINE Mask finish(N f) {
     a_.put(kEvaluations, evaluations_);
     a_.put(kPhase, phase_);
     a_.put(kT, new_t_);
+    a_.put(kG, new_g_);
     a_.put(kR, new_r_);
+    a_.put(kM, m_);
+    a_.put(kPatience, patience_);
+    a_.put(kPenalty, penalty_);
     const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
     N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
     verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
-    a_.finish(next_, select(finite, verdict, code(LaneVerdict::Invalid)));
+    return a_.finish(next_, select(finite, verdict, code(LaneVerdict::Invalid)));
   }
 
   LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
   N error_, g_, r_, t_;         // of the sample: d_f, value, safe radius, place
   N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lanes.h
-  N m_, patience_, band_, unseen_, evaluations_;
-  N phase_, new_t_, new_r_, next_;  // what is put at the end
+  N band_, unseen_, evaluations_;
+  N phase_, new_t_, new_g_, new_r_, m_, patience_, penalty_, next_;  // what is put at the end
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
 

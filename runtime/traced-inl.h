@@ -54,7 +54,7 @@ struct AutomaticStep {
 };
 
 template <class Step, class N, class S>
-HWY_INLINE void trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& rules, N f) {
+HWY_INLINE MaskOf<N> trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& rules, N f) {
   using Mask = MaskOf<N>;
   LaneView<N, Lanes<S>> a(lanes, first);
   const N zero = number<N>(0), evaluations = a.get(kEvaluations) + number<N>(1);
@@ -81,8 +81,7 @@ HWY_INLINE void trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S>& ru
   const N next = min(select(accepted, t + step, a.get(kT) + a.get(kR)), a.get(kTMax));
   a.put(kT, accepted, t);
   a.put(kR, accepted, r);
-  a.put(kWidth, N::broadcast(rules.epsilon));
-  a.finish(next, select(finite, verdict, code<N>(LaneVerdict::Invalid)));
+  return a.finish(next, select(finite, verdict, code<N>(LaneVerdict::Invalid)));
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE
