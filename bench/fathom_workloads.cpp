@@ -98,10 +98,7 @@ class ShadowRenderer {
         free_.push_back(hit_slots_[i]);
         continue;
       }
-      slot.ray.origin = spawn(hits_[i], points_[i], false);
-      slot.ray.direction = light_;
-      slot.ray.side = hits_[i].side;
-      slot.ray.slope = cosine;
+      slot.ray = leave(hits_[i], points_[i], light_, false);
       slot.shadow = true;
       marcher_->add(hit_slots_[i], slot.ray);
     }

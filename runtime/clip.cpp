@@ -45,7 +45,7 @@ HWY_INLINE void clip_register(RayBlock& rays, std::size_t i, const compiler::Box
     for (V& component : direction) component = hn::IfThenElse(unit, component, hn::Div(component, norm));
   }
 
-  V begin = hn::Zero(d), end = first_min(length, k(far));
+  V begin = hn::LoadU(d, rays.entry + i), end = first_min(length, k(far));
   Mask past = hn::Lt(k(box.empty() ? 0 : 1), k(1));
   for (int axis = 0; axis < 3; ++axis) {
     const V inverse = hn::Div(k(1), direction[axis]), lo = k(box.lo[axis]), hi = k(box.hi[axis]);

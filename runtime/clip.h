@@ -26,7 +26,7 @@ struct RayBlock {
   double origin[3][kPadded] = {};  // [axis][ray]; scene units
   double direction[3][kPadded] = {};
   double length[kPadded] = {};  // of the ray, from its origin
-  double entry[kPadded] = {};   // once clipped: from the ray's origin to where the stretch begins
+  double entry[kPadded] = {};   // what is clear; once clipped: from the ray's origin to where the stretch begins
   double fate[kPadded] = {};    // once clipped: a Clip
   float slope[kCapacity];
   std::int8_t side[kCapacity];
@@ -39,6 +39,7 @@ struct RayBlock {
       direction[axis][i] = ray.direction[axis];
     }
     length[i] = ray.t_max;
+    entry[i] = static_cast<double>(ray.clear);
     slope[i] = ray.slope;
     side[i] = static_cast<std::int8_t>(ray.side);
     id[i] = ray_id;
@@ -48,8 +49,8 @@ struct RayBlock {
 };
 
 // Directions become unit vectors; one that is to float precision stays as it is. Origins move to where the ray enters
-// the box and are then outside (side 1) when that is further on; lengths end where it leaves it or at `far`.
-// The rays from `first` on.
+// the box, or past what is clear, and are then outside (side 1) when that is further on; lengths end where it leaves
+// it or at `far`. The rays from `first` on.
 void clip(RayBlock& rays, std::size_t first, const compiler::Box& box, double far);
 
 }  // namespace fathom::runtime

@@ -25,16 +25,13 @@ inline SinCos sincos_turn(float u) {
   const float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * x + x;
   const float c =
       ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1;
-  switch (quadrant & 3) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
+  // No branch on the quadrant: nothing foretells it.
+  const float pair[2] = {s, c};
+  const auto q = static_cast<std::uint32_t>(quadrant);
+  const auto signed_by = [](float magnitude, std::uint32_t bit) {
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(magnitude) ^ bit << 30);
+  };
+  return {signed_by(pair[q & 1], q & 2), signed_by(pair[~q & 1], (q + 1) & 2)};
 }
 
 // e^x; relative error <= 2e-7. 0 below -87, infinity above 88.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "vm/check.h"
+#include "vm/convexity.h"
 
 namespace fathom::runtime {
 namespace {
@@ -35,6 +36,9 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   field.inv_lipschitz = static_cast<float>(1 / scene.lipschitz);
   field.magnitude = static_cast<float>(scene.magnitude);
   field.band = static_cast<float>(kBand * extent);
+  // What it costs to know how far the solid is convex pays where that is seldom no further than the distance.
+  constexpr double kConvexShare = 0.25;
+  field.convex = vm::convex_share(scene.distance) >= kConvexShare;
   // Where the bound does not end a ray, `far` has to: certify() needs an end.
   constexpr double kFarthest = 1e12;
   const bool bounded = scene.bound.empty() || scene.bound.finite();

@@ -22,6 +22,9 @@ struct Field {
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
+  // Whether float distances come with how far around the point the solid is convex (vm::evaluate_convex), which saves
+  // evaluations where most of the scene is of convex shapes. Not of regions or an evaluator.
+  bool convex;
 
   // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
   // same scene. May read and write past `count` up to a whole register.
@@ -31,6 +34,7 @@ struct Field {
   // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
+  bool knows_convex() const { return convex && !regions && evaluator == nullptr; }
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
   // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,

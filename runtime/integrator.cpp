@@ -158,7 +158,7 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   }
   path.direction = next.wi;
   if (next.through) path.absorption = inside ? glm::vec3(0) : material.absorption;
-  go_on(arrival.id, arrival, hit, point, next.through);
+  go_on(arrival.id, hit, point, next.through);
 }
 
 void Integrator::record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point,
@@ -182,13 +182,10 @@ bool Integrator::survives_roulette(Path& path) {
   return true;
 }
 
-void Integrator::go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit, const SurfacePoint& point,
-                       bool through) {
+void Integrator::go_on(std::uint32_t id, const Hit& hit, const SurfacePoint& point, bool through) {
   Path& path = paths_[id];
-  path.origin = spawn(hit, point, through);
-  Ray ray{path.origin, path.direction};
-  ray.side = through ? -arrival.side : arrival.side;
-  ray.slope = std::abs(glm::dot(point.normal, glm::vec3(path.direction)));
+  const Ray ray = leave(hit, point, path.direction, through);
+  path.origin = ray.origin;
   marcher_->add(id, ray);
 }
 

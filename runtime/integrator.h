@@ -76,7 +76,7 @@ class Integrator {
   void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
   void record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point, const Material& material);
   bool survives_roulette(Path& path);
-  void go_on(std::uint32_t id, const Arrival& arrival, const Hit& hit, const SurfacePoint& point, bool through);
+  void go_on(std::uint32_t id, const Hit& hit, const SurfacePoint& point, bool through);
   void leave_scene(const Arrival& arrival);
   void add_to_film(std::uint32_t id);  // and frees the id
 

@@ -12,16 +12,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// Moves one register of lanes after another on; `move` returns those that have ended.
+// Moves one register of lanes after another on; move(i), i being its first lane, returns those that have ended.
 template <class N, class S, class Move>
-HWY_INLINE std::size_t for_each_register(std::size_t count, const S* f, LaneNumbers& ended,
-                                         const Move& move) {
+HWY_INLINE std::size_t for_each_register(std::size_t count, LaneNumbers& ended, const Move& move) {
   constexpr std::size_t kStep = sizeof(N) / sizeof(S);
   // One bit a lane, and one loop over them at the end, whose length the processor mispredicts once.
   std::uint64_t bits[Lanes<S>::kCapacity / 64] = {};
-  for (std::size_t i = 0; i < count; i += kStep) {
-    bits[i / 64] |= std::uint64_t{lanes_of(move(i, load(f + i, static_cast<N*>(nullptr))))} << i % 64;
-  }
+  for (std::size_t i = 0; i < count; i += kStep) bits[i / 64] |= std::uint64_t{lanes_of(move(i))} << i % 64;
   std::size_t total = 0;
   for (std::size_t word = 0; word * 64 < count; ++word) {
     for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
@@ -33,40 +30,46 @@ HWY_INLINE std::size_t for_each_register(std::size_t count, const S* f, LaneNumb
 }
 
 template <class N, class S>
-std::size_t tiered(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
-  return for_each_register<N>(count, f, ended, [&](std::size_t i, N value) HWY_ATTR {
-    Tiered<N, S> step(lanes, i, rules);
-    return step.run(value, rules);
+HWY_INLINE N load_number(const S* from) {
+  return load(from, static_cast<N*>(nullptr));
+}
+
+template <class N, bool kConvex, class S>
+std::size_t tiered(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+  return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
+    Tiered<N, S, kConvex> step(lanes, i, rules);
+    return step.run(load_number<N>(at.f + i), load_number<N>((kConvex ? at.convex : at.f) + i), rules);
   });
 }
 
 template <class Step, class N, class S>
-std::size_t traced(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
-  return for_each_register<N>(count, f, ended,
-                              [&](std::size_t i, N value) HWY_ATTR { return trace<Step, N>(lanes, i, rules, value); });
+std::size_t traced(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+  return for_each_register<N, S>(
+      count, ended, [&](std::size_t i) HWY_ATTR { return trace<Step, N>(lanes, i, rules, load_number<N>(at.f + i)); });
 }
 
 template <class N, class S>
-std::size_t advance(Lanes<S>& lanes, std::size_t count, const S* f, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t advance(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
   switch (rules.method) {
     case Method::Sphere:
-      return traced<PlainStep, N>(lanes, count, f, rules, ended);
+      return traced<PlainStep, N>(lanes, count, at, rules, ended);
     case Method::Relaxed:
-      return traced<FixedStep, N>(lanes, count, f, rules, ended);
+      return traced<FixedStep, N>(lanes, count, at, rules, ended);
     case Method::Automatic:
-      return traced<AutomaticStep, N>(lanes, count, f, rules, ended);
+      return traced<AutomaticStep, N>(lanes, count, at, rules, ended);
     default:
-      return tiered<N>(lanes, count, f, rules, ended);
+      return at.convex != nullptr ? tiered<N, true>(lanes, count, at, rules, ended)
+                                  : tiered<N, false>(lanes, count, at, rules, ended);
   }
 }
 
-std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, Samples<float> at, const LaneRules<float>& rules,
                         LaneNumbers& ended) {
-  return advance<Batch>(lanes, count, f, rules, ended);
+  return advance<Batch>(lanes, count, at, rules, ended);
 }
-std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, Samples<double> at, const LaneRules<double>& rules,
                         LaneNumbers& ended) {
-  return advance<Real>(lanes, count, f, rules, ended);
+  return advance<Real>(lanes, count, at, rules, ended);
 }
 std::size_t batch_lanes() { return sizeof(Batch) / sizeof(float); }
 
@@ -81,13 +84,13 @@ HWY_EXPORT(batch_lanes);
 
 std::size_t register_lanes() { return HWY_DYNAMIC_DISPATCH(batch_lanes)(); }
 
-std::size_t advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+std::size_t advance(Lanes<float>& lanes, std::size_t count, Samples<float> at, const LaneRules<float>& rules,
                     LaneNumbers& ended) {
-  return HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, f, rules, ended);
+  return HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, at, rules, ended);
 }
-std::size_t advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+std::size_t advance(Lanes<double>& lanes, std::size_t count, Samples<double> at, const LaneRules<double>& rules,
                     LaneNumbers& ended) {
-  return HWY_STATIC_DISPATCH(advance_f64)(lanes, count, f, rules, ended);
+  return HWY_STATIC_DISPATCH(advance_f64)(lanes, count, at, rules, ended);
 }
 
 }  // namespace fathom::runtime

@@ -41,8 +41,8 @@ enum LaneRow : std::uint8_t {
   kTNext,  // of kX, kY, kZ
   kEvaluations,
   kVerdict,  // a LaneVerdict
-  // The last accepted sample: place, value, and safe radius: nothing lies within (t - r, t + r). Not set before the
-  // first is.
+  // The last accepted sample: place, value, and safe radius: nothing lies within [t, t + r). Not set before the first
+  // is.
   kT,
   kG,
   kR,
@@ -75,7 +75,7 @@ struct Lanes {
 // What the lanes must know of the field and the method, in the lanes' precision.
 template <class S>
 struct LaneRules {
-  S inv_lipschitz;
+  S lipschitz, inv_lipschitz;
   S band;        // near the surface: distances at which a crossing is tried, scene units
   S magnitude;   // scene units (compiler/bounds.h)
   S unit;        // d_f at unit scale
@@ -89,12 +89,19 @@ std::size_t register_lanes();
 
 using LaneNumbers = std::array<std::uint16_t, Lanes<float>::kCapacity>;
 
-// Moves `count` lanes on, given f at their x, y, z. Writes their verdicts, and to `ended` the numbers of those that
-// go no further, upwards; how many these are is what it returns. Reads f, and may write to lanes, past `count` up to
-// a whole register.
-std::size_t advance(Lanes<float>& lanes, std::size_t count, const float* f, const LaneRules<float>& rules,
+// What the field says of the lanes' x, y, z: its value and, of the tiered method alone, where it is known, how far
+// around the solid is convex (vm::evaluate_convex), else null. Read past the last lane up to a whole register.
+template <class S>
+struct Samples {
+  const S* f;
+  const S* convex;
+};
+
+// Moves `count` lanes on. Writes their verdicts, and to `ended` the numbers of those that go no further, upwards; how
+// many these are is what it returns. May write to lanes past `count` up to a whole register.
+std::size_t advance(Lanes<float>& lanes, std::size_t count, Samples<float> at, const LaneRules<float>& rules,
                     LaneNumbers& ended);
-std::size_t advance(Lanes<double>& lanes, std::size_t count, const double* f, const LaneRules<double>& rules,
+std::size_t advance(Lanes<double>& lanes, std::size_t count, Samples<double> at, const LaneRules<double>& rules,
                     LaneNumbers& ended);
 
 }  // namespace fathom::runtime

@@ -14,6 +14,7 @@ struct Ray {
   double t_max = std::numeric_limits<double>::infinity();  // scene units, beside the field's `far`
   int side = 0;                                            // +1 starts outside, -1 inside a solid; 0: find out
   float slope = -1;  // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
+  float clear = 0;   // nothing lies nearer than this along it, scene units; above 0 only outside solids
 };
 
 struct Arrival {

@@ -178,8 +178,11 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
                                vm::Workspace& workspace) const {
   CHECK(count <= kMostHits, "a batch of hits is too large");
   std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // leaf, point
+  std::array<float, kMostHits> depth;
   for (std::uint32_t i = 0; i < count; ++i) {
-    leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
+    const Found found = find(points.x[i], points.y[i], points.z[i]);
+    leaves[i] = {found.node.ref, i};
+    depth[i] = depth_within(found, points.x[i], points.y[i], points.z[i]);
   }
   std::sort(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t first = 0; first < count;) {
@@ -188,13 +191,29 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
     evaluate_surfaces_of(std::span(leaves).subspan(first, last - first), points, out, workspace);
     first = last;
   }
+  if (out.convex == nullptr) return;
+  for (std::size_t i = 0; i < count; ++i) out.convex[i] = std::min(out.convex[i], depth[i]);
+}
+
+// How far from the cell's sides the point is, times the Lipschitz constant: so far what holds in the cell holds.
+float Regions::depth_within(const Found& found, float x, float y, float z) const {
+  if (found.level < 0) return 0;
+  const float p[3] = {x, y, z};
+  const float edge = tree_.size / static_cast<float>(1u << found.level);
+  const std::array<std::uint32_t, 3> cell = found.cell_at(tree_.levels);
+  float depth = edge;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float in = p[axis] - (tree_.lo[axis] + static_cast<float>(cell[axis]) * edge);
+    depth = std::min(depth, std::min(in, edge - in));
+  }
+  return std::max(0.0f, depth) * tree_.lipschitz;
 }
 
 // Of points in leaves of one program. What is not near the surface at all, as rounding may have it, asks the whole
 // program.
 void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
-  alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz;
+  alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz, convex;
   alignas(64) std::array<std::uint32_t, kMostHits> surface;
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;
@@ -203,11 +222,12 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
   vm::Part part;
   part_of({0, same[0].first}, part);
   vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), {x.data(), y.data(), z.data()}, same.size(),
-                       {d.data(), gx.data(), gy.data(), gz.data(), surface.data()}, workspace);
+                       {d.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()}, workspace);
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;
     out.distance[point] = d[i], out.surface[point] = surface[i];
     out.gradient_x[point] = gx[i], out.gradient_y[point] = gy[i], out.gradient_z[point] = gz[i];
+    if (out.convex != nullptr) out.convex[point] = convex[i];
   }
 }
 

@@ -132,6 +132,7 @@ class Regions {
                              vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
+  float depth_within(const Found& found, float x, float y, float z) const;
   void part_of(const Node& node, vm::Part& part) const;
 
   vm::Code whole_;

@@ -9,6 +9,7 @@ template <class S>
 LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   constexpr bool kSingle = sizeof(S) == sizeof(float);
   LaneRules<S> rules{};
+  rules.lipschitz = static_cast<S>(field.lipschitz);
   rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
   rules.band = static_cast<S>(field.band);
   rules.magnitude = static_cast<S>(field.magnitude);
@@ -47,6 +48,7 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
       lanes_(new Lanes<S>()),
       seeded_(!info(rules_.method).uses_epsilon),
       most_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
+      knows_convex_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.knows_convex()),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
@@ -88,7 +90,11 @@ template <>
 void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
   const auto count = static_cast<std::size_t>(live_);
-  field_.evaluate({row[kX], row[kY], row[kZ]}, count, distance_.data(), scratch_, workspace_);
+  const vm::Points points{row[kX], row[kY], row[kZ]};
+  if (knows_convex_) {
+    return vm::evaluate_convex(*field_.distance, points, count, distance_.data(), convex_.data(), workspace_);
+  }
+  field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   if (field_.regions) {
     for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
   }
@@ -122,8 +128,9 @@ void Stream<S>::step() {
   counters_.evaluations += count;
   counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
   counters_.region_far = scratch_.counters.far, counters_.region_programs = scratch_.counters.specialised;
+  const Samples<S> at{distance_.data(), knows_convex_ ? convex_.data() : nullptr};
   LaneNumbers ended;
-  for (std::size_t i = runtime::advance(*lanes_, count, distance_.data(), rules_, ended); i-- > 0;) finish(ended[i]);
+  for (std::size_t i = runtime::advance(*lanes_, count, at, rules_, ended); i-- > 0;) finish(ended[i]);
 }
 
 template <class S>

@@ -30,9 +30,11 @@ class Stream final : public Marcher {
   std::unique_ptr<Lanes<S>> lanes_;
   const bool seeded_;                           // rays begin with the slope they are given; not what others do
   const int most_lanes_;                        // in use
+  const bool knows_convex_;
   const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
   std::array<Course, kLanes> courses_;          // [lane]
   alignas(64) std::array<S, kLanes> distance_;  // [lane]
+  alignas(64) std::array<S, kLanes> convex_;    // [lane]; of a field that knows
   std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
   std::size_t lanes_used_ = 0;      // with the holes
   RegionScratch scratch_;

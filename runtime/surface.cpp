@@ -18,16 +18,32 @@ constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
 // ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
 constexpr float kMostOffset = 32;
 
-glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
+// Of what is known to be clear so much is trusted: a ray must not begin where rounding may put the next surface.
+constexpr float kTrusted = 0.98f;
+// A ray that leaves a surface nearly along it, by this cosine, might meet it again by the normal's error.
+constexpr float kLeastLeaving = 0x1p-6f;
+
+// What the gradient says of the surface that was hit. It is the normal but where rounding or a crease has it look
+// away from the ray; there it is turned just far enough.
+struct Facing {
+  glm::vec3 normal;
+  bool exact;
+};
+Facing facing(glm::vec3 gradient, const Hit& hit) {
   const float length = std::sqrt(glm::dot(gradient, gradient));
-  if (!(length > 0 && length < INFINITY)) return hit.wo;
+  if (!(length > 0 && length < INFINITY)) return {hit.wo, false};
   const glm::vec3 normal = gradient * (static_cast<float>(hit.side) / length);
   const float cosine = glm::dot(normal, hit.wo);
-  if (cosine > 0) return normal;
-  // Rounding, or a crease: turned just far enough.
+  if (cosine > 0) return {normal, true};
   const glm::vec3 turned = normal + (kLeastCosine - cosine) * hit.wo;
   const float squared = glm::dot(turned, turned);
-  return squared > kLeastCosine * kLeastCosine ? turned / std::sqrt(squared) : hit.wo;
+  return {squared > kLeastCosine * kLeastCosine ? turned / std::sqrt(squared) : hit.wo, false};
+}
+
+// How far from the hit nothing comes in the way of rays that leave a convex solid.
+float clear_of(float convex, float size, float offset, const Field& field) {
+  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.magnitude);
+  return std::max(0.0f, kTrusted * (convex - 2 * error) * field.inv_lipschitz - offset);
 }
 
 }  // namespace
@@ -35,7 +51,7 @@ glm::vec3 oriented(glm::vec3 gradient, const Hit& hit) {
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace) {
   CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
-  alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz;
+  alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz, convex;
   alignas(64) std::array<std::uint32_t, kSurfaceBatch> surface;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     x[i] = static_cast<float>(hits[i].position.x);
@@ -43,7 +59,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     z[i] = static_cast<float>(hits[i].position.z);
   }
   const vm::Points places{x.data(), y.data(), z.data()};
-  const vm::SurfaceValues values{distance.data(), gx.data(), gy.data(), gz.data(), surface.data()};
+  const vm::SurfaceValues values{distance.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()};
   if (field.regions) {
     field.regions->evaluate_surface(places, hits.size(), values, workspace);
   } else {
@@ -52,20 +68,32 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   for (std::size_t i = 0; i < hits.size(); ++i) {
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
-    const float clear = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.magnitude);
+    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.magnitude);
     const float most = kMostOffset * field.band;
-    if (clear > most) {
+    if (least > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
       const vm::SurfaceValue exact = field.regions ? field.regions->evaluate_surface(hits[i].position, workspace)
                                                    : vm::evaluate_surface(scene.surface, hits[i].position, workspace);
       gradient = glm::vec3(exact.gradient);
       surface[i] = exact.surface;
+      convex[i] = 0;
     }
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
-    points[i].normal = oriented(gradient, hits[i]);
+    const Facing found = facing(gradient, hits[i]);
+    points[i].normal = found.normal;
     points[i].material = scene.surfaces[surface[i]].material;
-    points[i].offset = std::max(2 * hits[i].width, std::min(clear, most));
+    points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
+    points[i].clear = found.exact && hits[i].side > 0 ? clear_of(convex[i], size, points[i].offset, field) : 0;
   }
+}
+
+Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
+  Ray ray{spawn(hit, point, through), direction};
+  const float cosine = glm::dot(point.normal, glm::vec3(direction));
+  ray.side = through ? -hit.side : hit.side;
+  ray.slope = std::abs(cosine);
+  ray.clear = !through && cosine > kLeastLeaving ? point.clear : 0;
+  return ray;
 }
 
 }  // namespace fathom::runtime

@@ -9,6 +9,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "runtime/field.h"
+#include "runtime/ray.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
@@ -25,6 +26,10 @@ struct SurfacePoint {
   glm::vec3 normal;        // unit length, into the space the ray came through; dot(normal, wo) > 0
   std::uint32_t material;  // index into CompiledScene::materials
   float offset;            // how far along the normal a new ray has to start, scene units
+  // A ray that leaves into the space the ray came through meets nothing before this, scene units from where it
+  // starts: the part of the solid nearer than that is convex, and what leaves a convex solid does not come back to
+  // it.
+  float clear;
 };
 
 inline constexpr std::size_t kSurfaceBatch = 256;
@@ -39,5 +44,8 @@ inline glm::dvec3 spawn(const Hit& hit, const SurfacePoint& point, bool through)
   const double along = through ? -point.offset : point.offset;
   return hit.position + along * glm::dvec3(point.normal);
 }
+
+// The ray that leaves from there into `direction`, of unit length.
+Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through);
 
 }  // namespace fathom::runtime

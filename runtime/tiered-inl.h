@@ -7,6 +7,10 @@
 // (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023). The bracket shrinks by the Illinois
 // method: an end that stays twice running has its value halved, which pulls the secant towards it (Dowell and
 // Jarratt, "A Modified Regula Falsi Method", 1971).
+//
+// Where the field is known to be convex around a sample (vm/number/convex-inl.h), the line through it and the one
+// before is a lower bound of what follows: a step to where that line is 0 is safe, however long, and one that crosses
+// there passes over nothing. A line that rises is safe to where something else may come near.
 #if defined(FATHOM_RUNTIME_TIERED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_TIERED_INL
 #undef FATHOM_RUNTIME_TIERED_INL
@@ -29,7 +33,7 @@ inline constexpr double kLargestM = 0.9;
 // Within this many d_f of the surface, or the field's band when that is more, a crossing is tried.
 inline constexpr double kBandErrors = 16;
 // It is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side.
-inline constexpr double kOvershoot = 1.1, kOvershootErrors = 4;
+inline constexpr double kOvershoot = 1.1, kFarOvershoot = 1.01, kOvershootErrors = 4;
 // ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
 // widened by d_f may take it to twice that, no further.
 inline constexpr double kLongestCrossing = 16;
@@ -39,13 +43,16 @@ inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
 // would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
 // more evaluations than its budget.
 inline constexpr double kMostPenalty = 16, kBudget = 704;
+inline constexpr double kFarPenalty = 1;
+// What is convex without end is so this far, a number that can be reckoned with.
+inline constexpr double kEndless = 0x1p100;
 // A value this small a part of d_f holds no more digits of the root: a fiftieth of a unit in the last place at 1.
 inline constexpr double kRootError = 0x1p-8;
 // Of d_f, what float is usually off by; and how uncertain a root may be, relative to t or to the field's band, before
 // double looks at it. What is small beside 1 and seen from nearby needs it, where d_f is large for what is seen.
 inline constexpr double kTypicalError = 0.25, kTolerance = 0x1p-16, kBandShare = 0.125;
 
-template <class N, class S>
+template <class N, class S, bool kConvex>
 class Tiered {
  public:
   using Mask = MaskOf<N>;
@@ -56,9 +63,9 @@ class Tiered {
         field_band_(N::broadcast(rules.band)),
         resolution_(N::broadcast(rules.resolution)) {}
 
-  // f: the field at the lanes' points. What is computed for lanes that it does not concern is nowhere put. Returns
-  // those that have ended.
-  HWY_INLINE Mask run(N f, const LaneRules<S>& rules) {
+  // f: the field at the lanes' points; convex: how far around them it is so. What is computed for lanes that it does
+  // not concern is nowhere put. Returns those that have ended.
+  HWY_INLINE Mask run(N f, N convex, const LaneRules<S>& rules) {
     look(f, distance_error(a_, f, rules));
     const N phase = a_.get(kPhase);
     const Mask beginning = phase < code(LanePhase::Walk), refining = phase == code(LanePhase::Refine);
@@ -74,11 +81,13 @@ class Tiered {
     phase_ = select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase));
     new_t_ = select(accepted, t_, last_t_);
     new_g_ = select(accepted, g_, last_g_);
-    new_r_ = select(accepted, r_, last_r_);
     const Mask stepped = accepted & walking;
+    ahead_ = r_;
+    if constexpr (kConvex) look_ahead(convex, stepped, rules);
     learn(stepped, failed);
     const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing);
     next_ = select(accepted, onwards, back);
+    new_r_ = select(accepted, ahead_, last_r_);
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
     if (any(inside & beginning)) begin_inside(inside & beginning, phase);
     return finish(f);
@@ -112,25 +121,43 @@ class Tiered {
   // Steps that t can hardly hold lead nowhere.
   HWY_INLINE Mask is_stuck(N t, N z) const { return z <= resolution_ * max(t, error_); }
 
+  // How far ahead is free by the line through the last two samples, where both are of one convex function: where the
+  // last one's value was less than what else there is could have come down to there.
+  HWY_INLINE void look_ahead(N convex, Mask stepped, const LaneRules<S>& rules) {
+    const N unit = N::broadcast(rules.unit), known = min(convex, k(kEndless));
+    const N run = t_ - last_t_, errors = k(2) * error_ + unit * (run + last_g_);  // of both values
+    const N reach = known - unit * known - error_;
+    on_line_ = stepped & (a_.get(kSide) > k(0)) & (last_g_ + errors < reach - N::broadcast(rules.lipschitz) * run);
+    reach_ = reach * inv_lipschitz_;
+    const N drop = last_g_ - g_ + errors;
+    const N meets = select(drop > k(0), (g_ - error_) * run / drop, reach_);
+    ahead_ = select(on_line_, max(r_, min(meets, reach_)), r_);
+  }
+
   // From the step that led here; one that was too long says nothing but that.
   HWY_INLINE void learn(Mask stepped, Mask failed) {
-    const N m = a_.get(kM), seen = (r_ - last_r_) * rough_reciprocal(t_ - last_t_);
+    const N m = a_.get(kM), seen = (g_ - last_g_) * inv_lipschitz_ * rough_reciprocal(t_ - last_t_);
     m_ = select(stepped, min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM)), select(failed, k(-1), m));
   }
 
   // The next place after an accepted sample.
   HWY_INLINE N go_on(Mask accepted, Mask stepped) {
-    const N t_max = a_.get(kTMax), patience = a_.get(kPatience), longest = k(kLongestCrossing) * unseen_;
-    misses_ = accepted & (max(t_, t_ + r_) >= t_max);
-    const Mask near = stepped & (g_ < band_) & (g_ < last_g_);
-    const Mask waits = near & (patience > k(0)) & (r_ > error_), tries = near & (!waits);
+    const N t_max = a_.get(kTMax), patience = a_.get(kPatience);
+    misses_ = accepted & (max(t_, t_ + ahead_) >= t_max);
+    const Mask falls = stepped & (g_ < last_g_), near = falls & (g_ < band_);
+    const Mask nearing = kConvex ? near | (falls & on_line_) : near;
+    const Mask waits = nearing & (patience > k(0)) & (r_ > error_), tries = nearing & (!waits);
     patience_ = select(waits, patience - k(1), patience);
-    const N relaxed = k(kReach) * r_ * rough_reciprocal(k(1) - m_);
+    const N relaxed = max(ahead_, k(kReach) * r_ * rough_reciprocal(k(1) - m_));
     // Where the line through the last two samples would be well beyond the surface.
-    const N run = t_ - last_t_, fall = last_g_ - g_;
-    const N beyond = (k(kOvershoot) * g_ + k(kOvershootErrors) * error_) * run * rough_reciprocal(fall);
-    const N z = select(tries, max(relaxed, min(beyond, longest)), relaxed);
-    phase_ = select(accepted, select(tries & (beyond > relaxed), code(LanePhase::Cross), code(LanePhase::Walk)), phase_);
+    const N overshoot = kConvex ? select(near, k(kOvershoot), k(kFarOvershoot)) : k(kOvershoot);
+    const N beyond =
+        (overshoot * g_ + k(kOvershootErrors) * error_) * (t_ - last_t_) * rough_reciprocal(last_g_ - g_);
+    const N longest = k(kLongestCrossing) * unseen_;
+    const N crossing = min(beyond, kConvex ? select(on_line_, max(reach_, longest), longest) : longest);
+    const N z = select(tries, max(relaxed, crossing), relaxed);
+    phase_ =
+        select(accepted, select(tries & (beyond > relaxed), code(LanePhase::Cross), code(LanePhase::Walk)), phase_);
     // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
     // happens near the surface is for double to decide.
     const Mask coarse = near & (error_ > k(kCoarse) * field_band_);
@@ -140,10 +167,11 @@ class Tiered {
 
   // The plain step from the last accepted sample.
   HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
+    // An attempt from afar, along a line, says nothing of what is near.
     const N penalty = a_.get(kPenalty);
-    const Mask grazes = from_crossing & (penalty > k(kMostPenalty));
-    patience_ = select(from_crossing, penalty, patience_);
-    penalty_ = select(from_crossing, penalty + penalty, penalty);
+    const Mask near = from_crossing & (last_g_ < band_), grazes = near & (penalty > k(kMostPenalty));
+    patience_ = select(near, penalty, select(from_crossing, k(kFarPenalty), patience_));
+    penalty_ = select(near, penalty + penalty, penalty);
     undecided_ = undecided_ | grazes | (failed & is_stuck(last_t_, last_r_));
     return last_t_ + last_r_;
   }
@@ -185,8 +213,8 @@ class Tiered {
     m_ = select(bracketed, fall, m_);              // kFall
     new_g_ = select(bracketed, g_lo, new_g_);      // kGLo
     const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
-    new_t_ = select(known, best, select(bracketed, lo, new_t_));                            // kRoot or kTLo
-    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));     // kWidth or kSpan
+    new_t_ = select(known, best, select(bracketed, lo, new_t_));                         // kRoot or kTLo
+    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));  // kWidth or kSpan
     next_ = select(bracketed, next, next_);
   }
 
@@ -210,6 +238,8 @@ class Tiered {
   N error_, g_, r_, t_;         // of the sample: d_f, value, safe radius, place
   N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lanes.h
   N band_, unseen_, evaluations_;
+  Mask on_line_;     // of kConvex alone: whether the line through both holds
+  N reach_, ahead_;  // how far it does; how far is free
   N phase_, new_t_, new_g_, new_r_, m_, patience_, penalty_, next_;  // what is put at the end
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };

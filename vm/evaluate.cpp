@@ -72,26 +72,38 @@ HWY_INLINE Batch finite_or_zero(Batch a) {
   return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
 }
 
-void distance_batch(const Code& program, Points points, std::size_t count, float* distance,
-                    Workspace& workspace) {
+void distance_batch(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace) {
   for_each_block<Batch>(program, points, count, workspace,
                         [&](std::size_t begin, std::size_t size, std::size_t used, const Batch* result) HWY_ATTR {
                           store(size, used, distance + begin, [&](std::size_t i) HWY_ATTR { return result[i]; });
                         });
 }
 
-void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out,
-                   Workspace& workspace) {
-  using T = Tagged<Dual<Batch>>;
+void convex_batch(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                  Workspace& workspace) {
+  using T = Convex<Batch>;
   for_each_block<T>(program, points, count, workspace,
                     [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
-                      store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v; });
+                      store(size, used, distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v; });
+                      store(size, used, convex + begin, [&](std::size_t i) HWY_ATTR { return result[i].convex; });
+                    });
+}
+
+void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace) {
+  using T = Tagged<Convex<Dual<Batch>>>;
+  for_each_block<T>(program, points, count, workspace,
+                    [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
+                      store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v.v; });
                       store(size, used, out.gradient_x + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dx); });
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dx); });
                       store(size, used, out.gradient_y + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dy); });
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dy); });
                       store(size, used, out.gradient_z + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.dz); });
+                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dz); });
+                      if (out.convex != nullptr) {
+                        store(size, used, out.convex + begin,
+                              [&](std::size_t i) HWY_ATTR { return result[i].v.convex; });
+                      }
                       float surfaces[kSlot<T> * kLanes];
                       store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
                       std::transform(surfaces, surfaces + size, out.surface + begin,
@@ -106,11 +118,16 @@ HWY_AFTER_NAMESPACE();
 namespace fathom::vm {
 
 HWY_EXPORT(distance_batch);
+HWY_EXPORT(convex_batch);
 HWY_EXPORT(surface_batch);
 
-void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance,
-                       Workspace& workspace) {
+void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace) {
   HWY_DYNAMIC_DISPATCH(distance_batch)(program, points, count, distance, workspace);
+}
+
+void evaluate_convex(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                     Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(convex_batch)(program, points, count, distance, convex, workspace);
 }
 
 void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out,

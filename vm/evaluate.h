@@ -41,24 +41,30 @@ class Workspace {
 };
 
 // distance[i] = f(points[i]), float32, for i in [0, count).
-void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance,
-                       Workspace& workspace);
+void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
 
-// What is known of a batch of points beside the distance; five arrays of at least `count` entries.
+// The same distances, and how far around each point the solid is convex (vm/number/convex-inl.h): with L the program's
+// Lipschitz constant, at x within convex / L of the point p either f(x) >= convex - L |x - p|, or max(f, 0) is there
+// what one convex function is. At least |distance|; infinite when there is nothing else.
+void evaluate_convex(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                     Workspace& workspace);
+
+// What is known of a batch of points beside the distance; arrays of at least `count` entries.
 struct SurfaceValues {
   float* distance;
   float* gradient_x;  // df/dx of the winning branch; not normalised; zero where undefined, never NaN on finite input
   float* gradient_y;
   float* gradient_z;
   std::uint32_t* surface;  // the number of the `tag` that won, 0 in a program without tags
+  float* convex = nullptr;  // as of evaluate_convex; null where nobody asks
 };
-void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out,
-                      Workspace& workspace);
+void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace);
 
 struct SurfaceValue {
   double distance;
   glm::dvec3 gradient;
   std::uint32_t surface;
+  double convex = 0;
 };
 
 // The same in double, one point at a time, with the program's unrounded constants.
@@ -78,8 +84,8 @@ Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspac
 struct AlongLine {
   Range value, derivative;
 };
-AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
-                         double end, Workspace& workspace);
+AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                         Workspace& workspace);
 
 // What a program can do over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite where nothing
 // is known, as where the value may jump.

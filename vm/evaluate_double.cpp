@@ -22,12 +22,13 @@ SurfaceValue surface(const Code& program, glm::dvec3 p, Workspace& workspace) {
   using D = Dual<Real>;
   const Real zero{0}, one{1};
   const Vec3<D> point{{{p.x}, one, zero, zero}, {{p.y}, zero, one, zero}, {{p.z}, zero, zero, one}};
-  const auto result = run_once<Tagged<D>>(program, point, workspace);
-  const D& d = result.v;
+  const auto result = run_once<Tagged<Convex<D>>>(program, point, workspace);
+  const D& d = result.v.v;
   const auto finite_or_zero = [](Real a) { return std::isfinite(a.v) ? a.v : 0; };
   return {d.v.v,
           {finite_or_zero(d.dx), finite_or_zero(d.dy), finite_or_zero(d.dz)},
-          result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v)};
+          result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v),
+          result.v.convex.v};
 }
 
 Range range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {

@@ -13,8 +13,10 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
+#include "vm/convexity.h"
 #include "vm/evaluate.h"
 #include "vm/semantics-inl.h"
 
@@ -77,24 +79,70 @@ namespace fathom::vm::HWY_NAMESPACE {
 #undef OP_Binary
 #undef OP_Machine
 
-// How a value type relates to the points shapes run on: a Tagged value's points carry no tag. A fresh value belongs
-// to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing to choose the
-// machine works on the number alone, and the (left) operand's tag stays.
-inline constexpr double kNoSurface = -1;
+// How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and how
+// meanings are applied to it. `convex`: of a shape that is.
 template <class T>
 struct ValueTraits {
   using Point = T;
-  static HWY_INLINE T lift(const Point& value) { return value; }
-  static HWY_INLINE T& number(T& value) { return value; }
-  static HWY_INLINE const T& number(const T& value) { return value; }
+  static constexpr bool kConvex = false;
+  static HWY_INLINE T lift(const Point& value, bool = false) { return value; }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const Constant<T>* k) {
+    return Op::apply(a, k);
+  }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const T& b, const Constant<T>* k) {
+    return Op::apply(a, b, k);
+  }
   static HWY_INLINE void tag(T&, std::uint32_t) {}
 };
 template <class T>
-struct ValueTraits<Tagged<T>> {
+struct ValueTraits<Convex<T>> {
   using Point = T;
-  static HWY_INLINE Tagged<T> lift(const T& value) { return {value, constant<T>(kNoSurface)}; }
-  static HWY_INLINE T& number(Tagged<T>& value) { return value.v; }
-  static HWY_INLINE const T& number(const Tagged<T>& value) { return value.v; }
+  static constexpr bool kConvex = true;
+  static HWY_INLINE Convex<T> lift(const T& value, bool convex = false) {
+    if (convex) return {value, constant<T>(std::numeric_limits<double>::infinity())};
+    return plain(value);
+  }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Constant<T>* k) {
+    Convex<T> result = plain(Op::apply(a.v, k));
+    if constexpr (std::is_same_v<Op, ScaleOp>) result.convex = max(a.convex * k[0], result.convex);
+    if constexpr (std::is_same_v<Op, OffsetOp>) {
+      // A solid that shrinks shows what lay within it, of which nothing was known.
+      result.convex = select(k[0] < constant<T>(0.0), result.convex, max(a.convex - k[0], result.convex));
+    }
+    return result;
+  }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Convex<T>& b, const Constant<T>* k) {
+    if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
+    Convex<T> result = plain(Op::apply(a.v, b.v, k));
+    if constexpr (std::is_same_v<Op, MeetOp>) result.convex = max(convex_intersection(a, b), result.convex);
+    return result;
+  }
+  static HWY_INLINE void tag(Convex<T>&, std::uint32_t) {}
+};
+// A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing
+// to choose the machine works on the number alone, and the (left) operand's tag stays.
+inline constexpr double kNoSurface = -1;
+template <class T>
+struct ValueTraits<Tagged<T>> {
+  using Number = ValueTraits<T>;
+  using Point = typename Number::Point;
+  static constexpr bool kConvex = Number::kConvex;
+  static HWY_INLINE Tagged<T> lift(const Point& value, bool convex = false) {
+    return {Number::lift(value, convex), constant<T>(kNoSurface)};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Constant<T>* k) {
+    return {Number::template apply<Op>(a.v, k), a.surface};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Tagged<T>& b, const Constant<T>* k) {
+    if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
+    return {Number::template apply<Op>(a.v, b.v, k), a.surface};
+  }
   static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) {
     value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);
   }
@@ -134,7 +182,9 @@ inline constexpr std::size_t kSlot = 1;
 template <>
 inline constexpr std::size_t kSlot<Batch> = 16;
 template <>
-inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 4;
+inline constexpr std::size_t kSlot<Convex<Batch>> = 16;
+template <>
+inline constexpr std::size_t kSlot<Tagged<Convex<Dual<Batch>>>> = 4;
 
 // Whether all numbers of a slot always matter.
 template <class T>
@@ -203,7 +253,7 @@ class Machine {
 
   // Runs the program on the block of points at first_point(); its values are at result() afterwards.
   void interpret() {
-    Cursor c{0, points_, values_ - kBlock, 0};
+    Cursor c{0, points_, values_ - kBlock, 0, 1};
     const std::size_t size = program_.size;
     while (c.at != size) {
       const std::uint32_t word = program_.words[c.at];
@@ -231,6 +281,7 @@ class Machine {
         // clang-format on
         case Opcode::Drop:
           c.point -= kBlock;
+          c.affine >>= 1;
           break;
         case Opcode::Tee:
           copy(locals_ + operand_of(word) * kBlock, c.top);
@@ -247,13 +298,16 @@ class Machine {
   }
 
  private:
-  // Where the program is. It is no member: nothing points to it, and so it stays in registers, where a store to a slot
-  // could be thought to change what lies in memory.
+  // Where the program is. It is no member: nothing points to it, and so it stays in registers, where a store to a
+  // slot could be thought to change what lies in memory.
   struct Cursor {
     std::size_t at;        // next word
     Place* point;          // top of the point stack
     T* top;                // top of the value stack
     std::size_t in_table;  // the next immediate
+    // A bit for each point on the stack, of the top one the lowest: whether affine maps alone have led to it, which
+    // keep what is convex so. Of Convex values alone; what lies deeper than 64 is thought bent.
+    std::uint64_t affine;
   };
 
   // Immediate counts as compile-time constants.
@@ -289,6 +343,10 @@ class Machine {
   template <class Op, int Count>
   HWY_INLINE void apply_point(Cursor& c) {
     const auto immediates = take<Count>(c);
+    if constexpr (Traits::kConvex) {
+      constexpr std::uint64_t kAffine = keeps_convex(Op::kOpcode) ? 1 : 0;
+      c.affine = c.affine << 1 | (c.affine & kAffine);
+    }
     const Place* from = c.point;
     Place* to = c.point += kBlock;
     for_used([&](std::size_t i) HWY_ATTR { to[i] = Places::template map<Op>(from[i], immediates.k); });
@@ -309,9 +367,10 @@ class Machine {
         return;
       }
     }
+    const bool convex = is_convex(Op::kOpcode) && c.affine & 1;
     for_used([&](std::size_t i) HWY_ATTR {
-      const T value =
-          Traits::lift(Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words));
+      const T value = Traits::lift(
+          Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words), convex);
       if (joined) observer_.see(i, to[i], value);
       to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
     });
@@ -331,11 +390,7 @@ class Machine {
     Operand a = operand(c, sources.a, sources.local, spares_);
     const auto immediates = take<Count>(c);
     T* to = c.top += kBlock;
-    for_used([&](std::size_t i) HWY_ATTR {
-      T value = a.next();
-      Traits::number(value) = Op::apply(Traits::number(value), immediates.k);
-      to[i] = value;
-    });
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::template apply<Op>(a.next(), immediates.k); });
   }
   template <class Op, int Count>
   HWY_INLINE void apply_binary(Cursor& c) {
@@ -349,14 +404,8 @@ class Machine {
     T* to = c.top += kBlock;
     for_used([&](std::size_t i) HWY_ATTR {
       const T &x = a.next(), &y = b.next();
-      if constexpr (Op::kChoice == Choice::None) {
-        T value = x;
-        Traits::number(value) = Op::apply(Traits::number(value), Traits::number(y), immediates.k);
-        to[i] = value;
-      } else {
-        observer_.see(i, x, y);
-        to[i] = Op::apply(x, y, immediates.k);
-      }
+      if constexpr (Op::kChoice != Choice::None) observer_.see(i, x, y);
+      to[i] = Traits::template apply<Op>(x, y, immediates.k);
     });
     if constexpr (Op::kChoice != Choice::None) observer_.next();
   }

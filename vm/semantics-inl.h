@@ -17,6 +17,7 @@
 #include "vm/domain-inl.h"
 #include "vm/number/along-inl.h"
 #include "vm/number/batch-inl.h"
+#include "vm/number/convex-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/interval_elementary-inl.h"
 #include "vm/number/number-inl.h"
@@ -305,6 +306,23 @@ HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k
   // the mean of both and not 1.5 times b's less half of a's.
   const T h = max(constant<T>(0.0), k - abs(b - a));
   return max(a, b) + h * h * inv4k;
+}
+
+template <class T>
+HWY_INLINE Convex<T> smooth_min(const Convex<T>& a, const Convex<T>& b, Constant<T> k, Constant<T> inv4k) {
+  return blend(smooth_min(a.v, b.v, k, inv4k), a, b, k, min(a, b));
+}
+template <class T>
+HWY_INLINE Convex<T> smooth_max(const Convex<T>& a, const Convex<T>& b, Constant<T> k, Constant<T> inv4k) {
+  return blend(smooth_max(a.v, b.v, k, inv4k), a, b, k, max(a, b));
+}
+template <class T>
+HWY_INLINE Tagged<T> smooth_min(const Tagged<T>& a, const Tagged<T>& b, Constant<T> k, Constant<T> inv4k) {
+  return {smooth_min(a.v, b.v, k, inv4k), min(a, b).surface};
+}
+template <class T>
+HWY_INLINE Tagged<T> smooth_max(const Tagged<T>& a, const Tagged<T>& b, Constant<T> k, Constant<T> inv4k) {
+  return {smooth_max(a.v, b.v, k, inv4k), max(a, b).surface};
 }
 
 // Where the surfaces are within `radius` of each other's edge, the plane at 45 degrees through their edge's

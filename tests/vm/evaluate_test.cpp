@@ -37,14 +37,15 @@ Cloud spicy_cloud(Random& random, std::size_t count) {
   return cloud;
 }
 
-// All that evaluate_surface gives, one word each: distance, gradient, surface. [point][5]
+// All that evaluate_surface gives, one word each: distance, gradient, convex, surface. [point][6]
 std::vector<std::uint32_t> surface_bits(const vm::VerifiedProgram& program, vm::Points points, std::size_t count,
                                         vm::Workspace& workspace) {
-  std::vector<float> d(count), gx(count), gy(count), gz(count);
+  std::vector<float> d(count), gx(count), gy(count), gz(count), convex(count);
   std::vector<std::uint32_t> s(count), bits;
-  vm::evaluate_surface(program, points, count, {d.data(), gx.data(), gy.data(), gz.data(), s.data()}, workspace);
+  vm::evaluate_surface(program, points, count, {d.data(), gx.data(), gy.data(), gz.data(), s.data(), convex.data()},
+                       workspace);
   for (std::size_t i = 0; i < count; ++i) {
-    for (float f : {d[i], gx[i], gy[i], gz[i]}) bits.push_back(bits_of(f));
+    for (float f : {d[i], gx[i], gy[i], gz[i], convex[i]}) bits.push_back(bits_of(f));
     bits.push_back(s[i]);
   }
   return bits;
@@ -102,7 +103,7 @@ TEST_CASE("one point at a time or many, on any instruction set: the same bits", 
         CHECK(std::equal(many.begin(), many.end(), distances.begin() + static_cast<std::ptrdiff_t>(first)));
         if (count % 5 > 1) continue;
         const auto full = surface_bits(program, cloud.from(first), count, workspace);
-        CHECK(std::equal(full.begin(), full.end(), surfaces.begin() + static_cast<std::ptrdiff_t>(5 * first)));
+        CHECK(std::equal(full.begin(), full.end(), surfaces.begin() + static_cast<std::ptrdiff_t>(6 * first)));
       }
     }
   }
@@ -118,7 +119,7 @@ TEST_CASE("the surface's distance is the distance, bit for bit", "[evaluate]") {
     const auto distances = distance_bits(program, cloud.from(0), cloud.size(), workspace);
     const auto surfaces = surface_bits(program, cloud.from(0), cloud.size(), workspace);
     int differ = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) differ += distances[i] != surfaces[5 * i];
+    for (std::size_t i = 0; i < cloud.size(); ++i) differ += distances[i] != surfaces[6 * i];
     INFO("scene " << n);
     CHECK(differ == 0);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -152,8 +153,8 @@ TEST_CASE("a NaN point leaves its neighbours alone", "[evaluate]") {
       Cloud with = cloud;
       with.x[poisoned] = with.y[poisoned] = with.z[poisoned] = kNan;
       auto after = surface_bits(program, with.from(0), kPoints, workspace);
-      std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(5 * poisoned), 5,
-                  after.begin() + static_cast<std::ptrdiff_t>(5 * poisoned));
+      std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(6 * poisoned), 6,
+                  after.begin() + static_cast<std::ptrdiff_t>(6 * poisoned));
       INFO("scene " << n << ", point " << poisoned);
       CHECK(after == before);
     }
@@ -283,7 +284,7 @@ TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][
       }
       if (verdict.margin > 1e-3) {
         const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-        CHECK(surface_bits(program, {&x, &y, &z}, 1, workspace)[4] == verdict.surface);
+        CHECK(surface_bits(program, {&x, &y, &z}, 1, workspace)[5] == verdict.surface);
       }
     }
   }

@@ -61,17 +61,17 @@ HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) {
 }
 // Where both are equal the surface with the lower number wins, in whatever order the operands come.
 template <class T, class Mask>
-HWY_INLINE Tagged<T> choose(Mask a_wins, Mask b_wins, const Tagged<T>& a, const Tagged<T>& b) {
+HWY_INLINE Constant<T> choose(Mask a_wins, Mask b_wins, const Tagged<T>& a, const Tagged<T>& b) {
   const Constant<T> at_tie = min(a.surface, b.surface);
-  return {select(a_wins, a.v, b.v), select(a_wins, a.surface, select(b_wins, b.surface, at_tie))};
+  return select(a_wins, a.surface, select(b_wins, b.surface, at_tie));
 }
 template <class T>
 HWY_INLINE Tagged<T> min(const Tagged<T>& a, const Tagged<T>& b) {
-  return choose(a.v < b.v, b.v < a.v, a, b);
+  return {min(a.v, b.v), choose(a.v < b.v, b.v < a.v, a, b)};
 }
 template <class T>
 HWY_INLINE Tagged<T> max(const Tagged<T>& a, const Tagged<T>& b) {
-  return choose(b.v < a.v, a.v < b.v, a, b);
+  return {max(a.v, b.v), choose(b.v < a.v, a.v < b.v, a, b)};
 }
 
 template <class T>
