@@ -55,10 +55,7 @@ class ShadowRenderer {
     free_.pop_back();
     const CameraRay ray = camera_.ray(x_ + 0.5, y_ + 0.5);
     Slot& begun = slots_[slot];
-    begun.ray.origin = ray.origin;
-    begun.ray.direction = ray.direction;
-    begun.ray.side = 0;
-    begun.ray.slope = -1;
+    begun.ray = {ray.origin, ray.direction};
     begun.pixel = static_cast<std::uint32_t>(next_++);
     begun.shadow = false;
     marcher_->add(slot, begun.ray);

@@ -44,12 +44,14 @@ std::size_t tiered(Lanes<S>& lanes, std::size_t count, Samples<S> at, const Lane
 
 template <class Step, class N, class S>
 std::size_t traced(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
-  return for_each_register<N, S>(
-      count, ended, [&](std::size_t i) HWY_ATTR { return trace<Step, N>(lanes, i, rules, load_number<N>(at.f + i)); });
+  return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
+    return trace<Step, N>(lanes, i, rules, load_number<N>(at.f + i));
+  });
 }
 
 template <class N, class S>
-std::size_t advance(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t advance(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules,
+                    LaneNumbers& ended) {
   switch (rules.method) {
     case Method::Sphere:
       return traced<PlainStep, N>(lanes, count, at, rules, ended);

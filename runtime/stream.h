@@ -28,8 +28,8 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
-  const bool seeded_;                           // rays begin with the slope they are given; not what others do
-  const int most_lanes_;                        // in use
+  const bool seeded_;     // rays begin with the slope they are given; not what others do
+  const int most_lanes_;  // in use
   const bool knows_convex_;
   const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
   std::array<Course, kLanes> courses_;          // [lane]

@@ -91,24 +91,24 @@ void convex_batch(const Code& program, Points points, std::size_t count, float* 
 
 void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace) {
   using T = Tagged<Convex<Dual<Batch>>>;
-  for_each_block<T>(program, points, count, workspace,
-                    [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
-                      store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v.v; });
-                      store(size, used, out.gradient_x + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dx); });
-                      store(size, used, out.gradient_y + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dy); });
-                      store(size, used, out.gradient_z + begin,
-                            [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dz); });
-                      if (out.convex != nullptr) {
-                        store(size, used, out.convex + begin,
-                              [&](std::size_t i) HWY_ATTR { return result[i].v.convex; });
-                      }
-                      float surfaces[kSlot<T> * kLanes];
-                      store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
-                      std::transform(surfaces, surfaces + size, out.surface + begin,
-                                     [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
-                    });
+  for_each_block<T>(
+      program, points, count, workspace,
+      [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
+        store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v.v; });
+        store(size, used, out.gradient_x + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dx); });
+        store(size, used, out.gradient_y + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dy); });
+        store(size, used, out.gradient_z + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dz); });
+        if (out.convex != nullptr) {
+          store(size, used, out.convex + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.convex; });
+        }
+        float surfaces[kSlot<T> * kLanes];
+        store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
+        std::transform(surfaces, surfaces + size, out.surface + begin,
+                       [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
+      });
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE
