@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "vm/opcode_rows.h"
+
 namespace fathom::vm {
 
 bool Expression::read(const Code& code) {
-  nodes_.clear(), choices_.clear(), values_.clear(), places_.clear(), place_of_.clear();
+  nodes_.clear(), choices_.clear(), tees_.clear(), values_.clear(), places_.clear(), place_of_.clear();
   points_.assign(1, {kNone, 0});
   places_.push_back({kNone, kNone});
   defined_.assign(code.locals, kNone);
   locals_ = code.locals;
-  for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
+  for (std::size_t at = 0; at < code.size; at += 1 + immediates_of(code.words[at])) {
     if (!read_instruction(code, static_cast<std::uint32_t>(at))) return false;
   }
   return true;
@@ -18,7 +20,7 @@ bool Expression::read(const Code& code) {
 
 bool Expression::read_instruction(const Code& code, std::uint32_t at) {
   const std::uint32_t word = code.words[at], self = static_cast<std::uint32_t>(nodes_.size());
-  const OpcodeInfo& row = *find_opcode(word & 0xff);
+  const OpcodeRow& row = row_of(word);
   ExpressionNode node{at};
   bool sound = true, makes_value = true;
   switch (row.form) {
@@ -44,7 +46,7 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at) {
       }
       if (sources.a == Source::Stack) sound = take(node.a) && sound;
       if (sources.a == Source::Local) sound = use_local(sources.local, node.a) && sound;
-      if (row.choice != Choice::None) node.choice = static_cast<std::uint32_t>(choices_.size());
+      if (row.choice) node.choice = static_cast<std::uint32_t>(choices_.size());
       break;
     }
     case Form::Machine:
@@ -53,7 +55,10 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at) {
       } else {
         sound = take(node.a);
       }
-      if (row.opcode == Opcode::Tee) defined_[operand_of(word)] = self;
+      if (row.opcode == Opcode::Tee) {
+        defined_[operand_of(word)] = self;
+        tees_.push_back(self);
+      }
       if (row.opcode == Opcode::Drop) {
         node.point = points_.back().node;
         points_.pop_back();
