@@ -129,7 +129,7 @@ vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
   constexpr std::size_t kUnlimited = 10'000'000;
   std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
   CHECK(program.has_value(), "a formula's program is as long as the formula");
-  auto verified = vm::verify(fuse(*program));
+  auto verified = vm::verify(fuse(std::move(*program)));
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }
