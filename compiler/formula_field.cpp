@@ -93,6 +93,7 @@ class Bisection {
   std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
     if (part->choices == 0) return part;
     specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+    if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;  // next to nothing would go
     auto smaller = std::make_shared<vm::Part>();
     specialiser_.part(0, *smaller);
     return smaller;

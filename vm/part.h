@@ -32,7 +32,8 @@ class PartWriter {
   // The part has at most twice as many words and instructions as the program, which must outlive it.
   void begin(const Part& program) {
     program_ = &program;
-    words_.resize(2 * program.words.size()), wide_.resize(words_.size()), sources_.resize(2 * program.sources.size());
+    const std::size_t size = std::max(words_.size(), 2 * program.words.size());
+    words_.resize(size), wide_.resize(size), sources_.resize(size);
     at_ = words_.size(), source_at_ = sources_.size();
     values_ = most_values_ = points_ = most_points_ = 1;  // as at the end
     cost_ = 0, choices_ = 0;
@@ -40,29 +41,38 @@ class PartWriter {
 
   // An opcode word and `count` immediates, which are at `from` in the program; made of its instruction `node`.
   void put(std::uint32_t node, std::uint32_t word, std::uint32_t from, std::uint32_t count) {
-    at_ -= 1 + count;
-    words_[at_] = word, wide_[at_] = 0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      words_[at_ + 1 + k] = program_->words[from + k], wide_[at_ + 1 + k] = program_->wide[from + k];
-    }
-    sources_[--source_at_] = program_->sources[node];
     const OpcodeRow& row = row_of(word);
-    if (is_function(row.form)) {  // most of a formula
-      const Sources sources = sources_of(word);
-      cost_ += static_cast<std::uint64_t>(row.cost), choices_ += row.choice;
-      values_ += (sources.a == Source::Stack) + (row.form == Form::Binary && sources.b == Source::Stack) - 1;
-    } else {
-      const StackEffect effect = effect_of(word);
-      cost_ += instruction_cost(word), choices_ += is_choice(word);
-      values_ -= effect.values_change, points_ -= effect.points_change;
-    }
+    if (is_function(row.form)) return put_function(node, word, row, from, count);
+    write(node, word, from, count);
+    const StackEffect effect = effect_of(word);
+    cost_ += instruction_cost(word), choices_ += is_choice(word);
+    values_ -= effect.values_change, points_ -= effect.points_change;
     most_values_ = std::max(most_values_, values_), most_points_ = std::max(most_points_, points_);
+  }
+
+  // The same of a function, the row of the word; most of a formula.
+  void put_function(std::uint32_t node, std::uint32_t word, const OpcodeRow& row, std::uint32_t from,
+                    std::uint32_t count) {
+    write(node, word, from, count);
+    const Sources sources = sources_of(word);
+    cost_ += static_cast<std::uint64_t>(row.cost), choices_ += row.choice;
+    values_ += (sources.a == Source::Stack) + (row.form == Form::Binary && sources.b == Source::Stack) - 1;
+    most_values_ = std::max(most_values_, values_);
   }
 
   // What was written, from its beginning.
   void finish(std::uint32_t locals, Part& out) const;
 
  private:
+  void write(std::uint32_t node, std::uint32_t word, std::uint32_t from, std::uint32_t count) {
+    at_ -= 1 + count;
+    words_[at_] = word, wide_[at_] = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      words_[at_ + 1 + k] = program_->words[from + k], wide_[at_ + 1 + k] = program_->wide[from + k];
+    }
+    sources_[--source_at_] = program_->sources[node];
+  }
+
   const Part* program_ = nullptr;
   std::vector<std::uint32_t> words_;
   std::vector<double> wide_;

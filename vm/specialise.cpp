@@ -212,7 +212,7 @@ void Specialiser::emit(std::uint32_t id) {
   const ExpressionNode& node = expression_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
   const OpcodeRow& row = row_of(word);
-  if (is_function(row.form)) return emit_operator(id);
+  if (is_function(row.form)) return emit_operator(id, node, word, row);
   if (row.opcode == Opcode::Load) return use_local(node.a);
   if (row.opcode == Opcode::Tee) return use_local(id);
   if (is_joined(word) && !keeps_a(node.choice)) {
@@ -229,23 +229,23 @@ void Specialiser::emit_whole(std::uint32_t id) {
 }
 
 // A function of numbers, or a choice of which one operand is left that lies on no stack or changes its sign.
-void Specialiser::emit_operator(std::uint32_t id) {
-  const ExpressionNode& node = expression_.nodes()[id];
-  const std::uint32_t word = program_->words[node.at];
+void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word,
+                                const OpcodeRow& row) {
   if (node.choice != kNone) {
     const bool has_a = keeps_a(node.choice);
     if (has_a != keeps_b(node.choice)) return emit_lone(id, has_a);
   }
   Sources sources = sources_of(word);
-  const std::uint32_t immediates = immediates_of(word);
-  std::uint32_t local = 0;
+  const std::uint32_t immediates =
+      static_cast<std::uint32_t>(row.immediates) + (sources.a == Source::Constant) + (sources.b == Source::Constant);
   // What comes last in the code is taken first, and written first.
+  std::uint32_t local = 0;
   const std::size_t first = waiting_;
-  if (row_of(word).form == Form::Binary) sources.b = take(sources.b, node.b, local);
+  if (row.form == Form::Binary) sources.b = take(sources.b, node.b, local);
   sources.a = take(sources.a, node.a, local);
   if (waiting_ == first + 2) std::swap(tasks_[first], tasks_[first + 1]);
   sources.local = local;
-  writer_.put(id, (word & 0xff) | operand_of(sources) << 8, node.at + 1, immediates);
+  writer_.put_function(id, (word & 0xff) | operand_of(sources) << 8, row, node.at + 1, immediates);
 }
 
 // The operand that is left of a choice.

@@ -87,7 +87,7 @@ class Specialiser {
   void push(std::uint32_t node, Task::What what) { tasks_[waiting_++] = {node, what}; }
   void emit(std::uint32_t id);
   void emit_whole(std::uint32_t id);
-  void emit_operator(std::uint32_t id);
+  void emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word, const OpcodeRow& row);
   void emit_lone(std::uint32_t id, bool first);
   Source take(Source source, std::uint32_t operand, std::uint32_t& local);
   void use_local(std::uint32_t tee);
