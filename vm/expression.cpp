@@ -10,18 +10,17 @@ bool Expression::read(const Code& code) {
   begin(code);
   std::uint32_t self = 0;
   for (std::size_t at = 0; at < code.size; at += 1 + immediates_of(code.words[at])) {
+    if (self == nodes_.size()) nodes_.resize(2 * nodes_.size() + 64);
     if (!read_instruction(code, static_cast<std::uint32_t>(at), self++)) return false;
   }
   nodes_.resize(self);
   return true;
 }
 
-// What is written by number has its room from here on: no program has more instructions than words.
 void Expression::begin(const Code& code) {
-  nodes_.resize(code.size), place_of_.resize(code.size);
   values_.resize(code.max_values + 1);
   height_ = 0;
-  choices_.clear(), tees_.clear(), places_.clear();
+  choices_.clear(), tees_.clear(), places_.clear(), place_of_.clear();
   points_.assign(1, {kNone, 0});
   places_.push_back({kNone, kNone});
   defined_.assign(code.locals, kNone);
@@ -72,7 +71,7 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint3
   }
   const std::uint32_t place = points_.back().place;
   nodes_[self] = node;
-  place_of_[self] = place;
+  place_of_.push_back(place);
   if (row.form != Form::Point) values_[height_++] = {self, place};
   return sound;
 }

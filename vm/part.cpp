@@ -15,6 +15,16 @@ Part whole(const Code& code) {
   return part;
 }
 
+void PartWriter::make_room(std::size_t words) {
+  const auto grow = [](auto& list, std::size_t& at, std::size_t least) {
+    const std::size_t more = list.size() + least + 64;
+    list.insert(list.begin(), more, {});
+    at += more;
+  };
+  std::size_t wide_at = at_;
+  grow(words_, at_, words), grow(wide_, wide_at, words), grow(sources_, source_at_, 1);
+}
+
 void PartWriter::finish(std::uint32_t locals, Part& out) const {
   const auto tail = [](const auto& from, std::size_t at, auto& to) {
     to.assign(from.begin() + static_cast<std::ptrdiff_t>(at), from.end());

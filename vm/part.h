@@ -29,11 +29,9 @@ Part whole(const Code& code);
 // Writes a part of a program from its last instruction to its first, as cutting comes upon them.
 class PartWriter {
  public:
-  // The part has at most twice as many words and instructions as the program, which must outlive it.
+  // The program must outlive what is written of it.
   void begin(const Part& program) {
     program_ = &program;
-    const std::size_t size = std::max(words_.size(), 2 * program.words.size());
-    words_.resize(size), wide_.resize(size), sources_.resize(size);
     at_ = words_.size(), source_at_ = sources_.size();
     values_ = most_values_ = points_ = most_points_ = 1;  // as at the end
     cost_ = 0, choices_ = 0;
@@ -65,6 +63,7 @@ class PartWriter {
 
  private:
   void write(std::uint32_t node, std::uint32_t word, std::uint32_t from, std::uint32_t count) {
+    if (at_ < 1 + count || source_at_ == 0) make_room(1 + count);
     at_ -= 1 + count;
     words_[at_] = word, wide_[at_] = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -72,6 +71,9 @@ class PartWriter {
     }
     sources_[--source_at_] = program_->sources[node];
   }
+
+  // For so many words and an instruction before what is written.
+  void make_room(std::size_t words);
 
   const Part* program_ = nullptr;
   std::vector<std::uint32_t> words_;

@@ -64,9 +64,9 @@ bool Specialiser::read() {
   } else {
     link_choices();
   }
-  const std::size_t nodes = expression_.nodes().size();
-  tasks_.resize(std::max(tasks_.size(), 2 * nodes + 2));
-  uses_.resize(std::max(uses_.size(), nodes)), local_.resize(uses_.size());
+  const std::vector<std::uint32_t>& tees = expression_.tees();
+  if (!tees.empty()) number_.resize(expression_.nodes().size());
+  for (std::uint32_t i = 0; i < tees.size(); ++i) number_[tees[i]] = i;
   return true;
 }
 
@@ -127,7 +127,7 @@ std::uint32_t Specialiser::choices_left(std::size_t box) const {
 void Specialiser::part(std::size_t box, Part& out) {
   box_ = static_cast<std::uint32_t>(box);
   locals_ = 0;
-  if (expression_.locals() > 0) begin_locals();
+  if (!expression_.tees().empty()) begin_locals();
   writer_.begin(*program_);
   waiting_ = 0;
   push(expression_.root(), Task::Value);
@@ -162,14 +162,14 @@ std::uint32_t Specialiser::resolve(std::uint32_t id) const {
 void Specialiser::count_uses() {
   const auto& nodes = expression_.nodes();
   needed_.assign(nodes.size(), 0);
-  for (const std::uint32_t tee : expression_.tees()) uses_[tee] = {};
+  uses_.assign(expression_.tees().size(), {});
   need(expression_.root(), pairwise_ ? 1 : 0xffff);
   for (std::uint32_t id = expression_.root() + 1; id-- > 0;) {
     const ExpressionNode& node = nodes[id];
     const std::uint32_t word = program_->words[node.at];
     const OpcodeRow& row = row_of(word);
     std::uint32_t boxes = needed_[id];
-    if (row.opcode == Opcode::Tee) boxes |= uses_[id].boxes;
+    if (row.opcode == Opcode::Tee) boxes |= uses_[number_[id]].boxes;
     if (boxes == 0) continue;
     const std::uint32_t a = node.choice == kNone ? boxes : boxes & kept_[node.choice].a;
     const std::uint32_t b = node.choice == kNone ? boxes : boxes & kept_[node.choice].b;
@@ -189,23 +189,26 @@ void Specialiser::count_uses() {
 // The value at its place on the stack.
 void Specialiser::need(std::uint32_t node, std::uint32_t boxes) {
   needed_[node] = static_cast<std::uint16_t>(needed_[node] | boxes);
-  if (row_of(program_->words[expression_.nodes()[node].at]).opcode != Opcode::Tee) return;
-  for (; boxes != 0; boxes &= boxes - 1) ++uses_[node].count[static_cast<std::size_t>(std::countr_zero(boxes))];
+  const bool tee = row_of(program_->words[expression_.nodes()[node].at]).opcode == Opcode::Tee;
+  if (tee) count_use(uses_[number_[node]], boxes);
 }
 
 void Specialiser::need_operand(Source source, std::uint32_t node, std::uint32_t boxes) {
   if (source == Source::Stack) return need(node, boxes);
   if (source != Source::Local) return;
-  uses_[node].boxes |= boxes;
-  for (; boxes != 0; boxes &= boxes - 1) ++uses_[node].count[static_cast<std::size_t>(std::countr_zero(boxes))];
+  Uses& uses = uses_[number_[node]];
+  uses.boxes |= boxes;
+  count_use(uses, boxes);
+}
+
+void Specialiser::count_use(Uses& uses, std::uint32_t boxes) {
+  for (; boxes != 0; boxes &= boxes - 1) ++uses.count[static_cast<std::size_t>(std::countr_zero(boxes))];
 }
 
 void Specialiser::begin_locals() {
   if (!is_counted_) count_uses();
-  for (const std::uint32_t tee : expression_.tees()) {
-    const std::uint32_t count = uses_[tee].count[box_];
-    local_[tee] = {count, count > 1, kNone};
-  }
+  local_.clear();
+  for (const Uses& uses : uses_) local_.push_back({uses.count[box_], uses.count[box_] > 1, kNone});
 }
 
 void Specialiser::emit(std::uint32_t id) {
@@ -276,7 +279,7 @@ void Specialiser::emit_lone(std::uint32_t id, bool first) {
 // Where an operator takes an operand from now: a local that is used nowhere before is computed in its place.
 Source Specialiser::take(Source source, std::uint32_t operand, std::uint32_t& local) {
   if (source == Source::Local) {
-    Local& l = local_[operand];
+    Local& l = local_[number_[operand]];
     if (--l.left > 0) {
       local = number_of(l);
       return source;
@@ -289,13 +292,13 @@ Source Specialiser::take(Source source, std::uint32_t operand, std::uint32_t& lo
 }
 
 void Specialiser::use_local(std::uint32_t tee) {
-  Local& local = local_[tee];
+  Local& local = local_[number_[tee]];
   if (--local.left == 0) return define_local(tee);
   writer_.put(tee, opcode_word(Opcode::Load, number_of(local)), 0, 0);
 }
 
 void Specialiser::define_local(std::uint32_t tee) {
-  Local& local = local_[tee];
+  Local& local = local_[number_[tee]];
   if (local.shared) writer_.put(tee, opcode_word(Opcode::Tee, number_of(local)), 0, 0);
   push(expression_.nodes()[tee].a, Task::Value);
 }

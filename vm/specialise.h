@@ -83,8 +83,12 @@ class Specialiser {
   void count_uses();
   void need(std::uint32_t node, std::uint32_t boxes);
   void need_operand(Source source, std::uint32_t node, std::uint32_t boxes);
+  static void count_use(Uses& uses, std::uint32_t boxes);
   void begin_locals();
-  void push(std::uint32_t node, Task::What what) { tasks_[waiting_++] = {node, what}; }
+  void push(std::uint32_t node, Task::What what) {
+    if (waiting_ == tasks_.size()) tasks_.resize(2 * waiting_ + 64);
+    tasks_[waiting_++] = {node, what};
+  }
   void emit(std::uint32_t id);
   void emit_whole(std::uint32_t id);
   void emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word, const OpcodeRow& row);
@@ -112,14 +116,15 @@ class Specialiser {
 
   // Counted once for the parts of all boxes, which differ in what they need.
   bool is_counted_ = false;
+  std::vector<std::uint32_t> number_;  // [node] of a tee, its number among them
   std::vector<std::uint16_t> needed_;  // [node] a bit for each box
-  std::vector<Uses> uses_;             // [node] of a tee
+  std::vector<Uses> uses_;             // [tee]
 
   // While a part is made: from the root down, so that the code comes out backwards.
   std::uint32_t box_ = 0;
   std::vector<Task> tasks_;
   std::size_t waiting_ = 0;
-  std::vector<Local> local_;  // [node] of a tee
+  std::vector<Local> local_;  // [tee]
   std::uint32_t locals_ = 0;
   PartWriter writer_;
 };
