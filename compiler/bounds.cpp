@@ -28,6 +28,8 @@ Knowledge of_primitive(const NodeSpec& row, Params params) {
 Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
   const NodeSpec& row = spec(graph.kind(id));
   if (row.know == nullptr) return of_primitive(row, graph.params(id));
+  // What is known of a number, which is nothing, takes nothing of what it is made of; formulas have thousands.
+  if (row.category == Category::Function) return row.know(graph.params(id), {});
   std::vector<Knowledge> children;
   for (const NodeId child : graph.children(id)) children.push_back(known[child]);
   return row.know(graph.params(id), children);

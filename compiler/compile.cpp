@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "compiler/blends.h"
 #include "compiler/bounds.h"
 #include "compiler/fits_float.h"
 #include "compiler/frontend/elaborate.h"
@@ -16,6 +17,7 @@
 #include "compiler/origin.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
+#include "compiler/passes/signs.h"
 #include "compiler/shapes/node_table.h"
 #include "vm/opcode.h"
 
@@ -45,7 +47,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   if (on_pass) on_pass(kOrigin, scene);
   if (options.stop_after == kOrigin) return scene;
   for (const Pass& pass : passes()) {
-    if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
+    if (!(keep_paint && pass.run == unpaint) && has_work(pass, scene)) scene = pass.run(scene);
     if (on_pass) on_pass(pass.name, scene);
     if (options.stop_after == pass.name) break;
   }
@@ -90,7 +92,7 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
                       {"a node used under different transforms is evaluated once for each; use it less often"});
     return std::nullopt;
   }
-  auto verified = vm::verify(fused ? fuse(*program) : std::move(*program));
+  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program));
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
     report_limit(scene, *error, diagnostics);
     return std::nullopt;
@@ -129,11 +131,37 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
 }  // namespace
 
 std::span<const Pass> passes() {
+  constexpr auto paint = [](Kind kind) { return kind == Kind::Paint; };
+  constexpr auto transform = [](Kind kind) { return kind == Kind::Transform; };
+  constexpr auto function = [](Kind kind) { return spec(kind).category == Category::Function; };
+  constexpr auto folds = [](Kind kind) {
+    return is_blend(kind) || keeps_signs(kind) || kind == Kind::Round || kind == Kind::Transform ||
+           kind == Kind::Complement || kind == Kind::Scaled;
+  };
+  constexpr auto list = [](Kind kind) {
+    return kind == Kind::Union || kind == Kind::Intersection || kind == Kind::Subtraction;
+  };
+  constexpr auto commutes = [](Kind kind) {
+    return kind == Kind::Add || kind == Kind::Multiply || kind == Kind::Minimum || kind == Kind::Maximum ||
+           kind == Kind::Union || kind == Kind::Intersection || kind == Kind::Subtraction;
+  };
   static constexpr Pass kPasses[] = {
-      {"unpaint", unpaint}, {"fold", fold},   {"arithmetic", arithmetic},         {"affine", affine},
-      {"flatten", flatten}, {"share", share}, {"cull", cull, Pass::Leaves::Sign},
+      {"unpaint", unpaint, paint},
+      {"fold", fold, folds},
+      {"arithmetic", arithmetic, function},
+      {"affine", affine, transform},
+      {"flatten", flatten, list},
+      {"share", share, commutes},
+      {"cull", cull, list, Pass::Leaves::Sign},
   };
   return kPasses;
+}
+
+bool has_work(const Pass& pass, const Scene& scene) {
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    if (pass.changes(scene.graph.kind(id))) return true;
+  }
+  return false;
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {

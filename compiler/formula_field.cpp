@@ -93,6 +93,7 @@ class Bisection {
   std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
     if (part->choices == 0) return part;
     specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+    if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;  // next to nothing would go
     auto smaller = std::make_shared<vm::Part>();
     specialiser_.part(0, *smaller);
     return smaller;
@@ -129,7 +130,7 @@ vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
   constexpr std::size_t kUnlimited = 10'000'000;
   std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
   CHECK(program.has_value(), "a formula's program is as long as the formula");
-  auto verified = vm::verify(fuse(*program));
+  auto verified = vm::verify(fuse(std::move(*program)));
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }

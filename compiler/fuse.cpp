@@ -20,14 +20,15 @@ struct Step {
   Form form() const { return vm::info(opcode).form; }
 };
 
-std::vector<Step> steps_of(const vm::Program& program) {
+std::vector<Step> steps_of(vm::Program& program) {
   std::vector<Step> steps;
+  steps.reserve(program.debug.size());
   for (std::size_t at = 0; at < program.words.size();) {
     const std::uint32_t word = program.words[at];
     const std::size_t end = at + vm::instruction_length(word);
     const vm::OpcodeInfo& row = *vm::find_opcode(word & 0xff);
     const std::size_t own = at + 1 + static_cast<std::size_t>(vm::leading_immediates(word));
-    Step step{row.opcode, vm::operand_of(word), {}, program.debug[steps.size()]};
+    Step step{row.opcode, vm::operand_of(word), {}, std::move(program.debug[steps.size()])};
     for (std::size_t i = at + 1; i < end; ++i) {
       const bool integer = i >= own && vm::is_integer_immediate(row, static_cast<int>(i - own));
       step.immediates.push_back(integer ? program.words[i] : program.wide[i]);
@@ -124,7 +125,7 @@ class Fusing {
 
 }  // namespace
 
-vm::Program fuse(const vm::Program& program) {
+vm::Program fuse(vm::Program program) {
   std::vector<Step> steps = steps_of(program);
   Fusing fusing(steps.size());
   for (Step& step : steps) fusing.add(std::move(step));

@@ -9,6 +9,6 @@ namespace fathom::compiler {
 
 // `program` keeps the verifier's rules and has its debug entries, as that of lower() does. What is fused already
 // stays.
-vm::Program fuse(const vm::Program& program);
+vm::Program fuse(vm::Program program);
 
 }  // namespace fathom::compiler

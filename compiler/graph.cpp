@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <unordered_map>
 
 #include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
@@ -10,6 +12,8 @@
 
 namespace fathom::compiler {
 namespace {
+
+constexpr NodeId kFree = 0xffffffff;  // no node, in the table
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   // The finaliser of splitmix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -71,24 +75,35 @@ class PlaceNames {
 
 NodeId Graph::add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const Origin& origin) {
   // Copies: the spans may point into this graph, whose storage is about to move. Adding 0.0 turns -0.0 into 0.0.
-  std::vector<double> own_params(params.begin(), params.end());
-  for (double& param : own_params) param += 0.0;
-  const std::vector<NodeId> own_children(children.begin(), children.end());
-  for (const NodeId child : own_children) CHECK(child < nodes_.size(), "a child is made before its parent");
+  new_params_.assign(params.begin(), params.end());
+  for (double& param : new_params_) param += 0.0;
+  new_children_.assign(children.begin(), children.end());
+  for (const NodeId child : new_children_) CHECK(child < nodes_.size(), "a child is made before its parent");
 
-  const std::uint64_t hash = hash_of(kind, own_params, own_children);
-  const auto [first, last] = by_hash_.equal_range(hash);
-  for (auto it = first; it != last; ++it) {
-    if (equal(it->second, kind, own_params, own_children)) return it->second;
+  if (table_.size() < 2 * (nodes_.size() + 1)) grow_table();
+  const std::uint64_t hash = hash_of(kind, new_params_, new_children_);
+  std::size_t place = hash & (table_.size() - 1);
+  for (; table_[place] != kFree; place = (place + 1) & (table_.size() - 1)) {
+    const NodeId id = table_[place];
+    if (nodes_[id].hash == hash && equal(id, kind, new_params_, new_children_)) return id;
   }
   const auto id = static_cast<NodeId>(nodes_.size());
-  nodes_.push_back({kind, static_cast<std::uint32_t>(params_.size()), static_cast<std::uint32_t>(own_params.size()),
-                    static_cast<std::uint32_t>(children_.size()), static_cast<std::uint32_t>(own_children.size()),
-                    origin});
-  params_.insert(params_.end(), own_params.begin(), own_params.end());
-  children_.insert(children_.end(), own_children.begin(), own_children.end());
-  by_hash_.emplace(hash, id);
+  nodes_.push_back({kind, static_cast<std::uint32_t>(params_.size()), static_cast<std::uint32_t>(new_params_.size()),
+                    static_cast<std::uint32_t>(children_.size()), static_cast<std::uint32_t>(new_children_.size()),
+                    hash, origin});
+  params_.insert(params_.end(), new_params_.begin(), new_params_.end());
+  children_.insert(children_.end(), new_children_.begin(), new_children_.end());
+  table_[place] = id;
   return id;
+}
+
+void Graph::grow_table() {
+  table_.assign(std::max<std::size_t>(64, 2 * table_.size()), kFree);
+  for (NodeId id = 0; id < nodes_.size(); ++id) {
+    std::size_t place = nodes_[id].hash & (table_.size() - 1);
+    while (table_[place] != kFree) place = (place + 1) & (table_.size() - 1);
+    table_[place] = id;
+  }
 }
 
 std::span<const double> Graph::params(NodeId id) const {

@@ -14,7 +14,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "compiler/source.h"
@@ -196,14 +195,19 @@ class Graph {
   struct Node {
     Kind kind;
     std::uint32_t first_param, param_count, first_child, child_count;
+    std::uint64_t hash;
     Origin origin;
   };
   bool equal(NodeId id, Kind kind, std::span<const double> params, std::span<const NodeId> children) const;
+  void grow_table();
 
   std::vector<Node> nodes_;
   std::vector<double> params_;
   std::vector<NodeId> children_;
-  std::unordered_multimap<std::uint64_t, NodeId> by_hash_;
+  // By hash, twice as many places as nodes or more: a node is at the first free place from that of its hash.
+  std::vector<NodeId> table_;
+  std::vector<double> new_params_;  // of the node that add() is asked for
+  std::vector<NodeId> new_children_;
 };
 
 // A graph and the node that stands for the whole scene.

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
-#include <numeric>
+#include <memory>
+#include <optional>
+#include <span>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "compiler/shapes/node_table.h"
 
@@ -28,23 +31,52 @@ struct UseHash {
   }
 };
 
-// What is known of a value before code is made for it.
-struct Plan {
+// A value of the program to be, and what is known of it before code is made for it.
+struct Value {
+  Use use;
   std::uint32_t uses = 0;
-  std::uint32_t height = 1;  // value slots its evaluation needs, fused
-  std::optional<std::uint32_t> local;
+  std::uint32_t height = 1;                               // value slots its evaluation needs, fused
+  std::uint32_t first_operand = 0, operand_count = kNew;  // in the table of operands
+  std::optional<std::uint32_t> local = std::nullopt;
+
+  static constexpr std::uint32_t kNew = 0xffffffff;  // not yet looked into
+};
+using ValueId = std::uint32_t;
+
+// How the nodes of one lowering are evaluated. Without parameters all nodes of a kind are alike, as the functions of
+// formulas are, of which there are thousands.
+class Codes {
+ public:
+  explicit Codes(const Graph& graph) : graph_(graph), shared_(kKindCount) {}
+
+  std::shared_ptr<const Code> operator()(NodeId node) {
+    const Kind kind = graph_.kind(node);
+    if (!graph_.params(node).empty()) return make(kind, graph_.params(node));
+    std::shared_ptr<const Code>& shared = shared_[static_cast<std::size_t>(kind)];
+    if (!shared) shared = make(kind, {});
+    return shared;
+  }
+
+ private:
+  static std::shared_ptr<const Code> make(Kind kind, Params params) {
+    return std::make_shared<const Code>(spec(kind).code(params));
+  }
+
+  const Graph& graph_;
+  std::vector<std::shared_ptr<const Code>> shared_;  // [kind]
 };
 
 class Lowering {
  public:
   Lowering(const Graph& graph, const Source& source, std::size_t max_instructions)
-      : graph_(graph), source_(source), max_instructions_(max_instructions) {}
+      : graph_(graph), source_(source), max_instructions_(max_instructions), codes_(graph) {}
 
   std::optional<vm::Program> run(NodeId root) {
-    plan({root, 0});
-    if (plans_.size() > max_instructions_) return std::nullopt;
+    const ValueId value = value_of({root, 0});
+    plan(value);
+    if (values_.size() > max_instructions_) return std::nullopt;
     program_.source_name = source_.name();
-    emit({root, 0});
+    emit(value);
     if (program_.debug.size() > max_instructions_) return std::nullopt;
     return std::move(program_);
   }
@@ -52,30 +84,28 @@ class Lowering {
  private:
   // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be
   // as deep as it has nodes, so neither this nor emit() recurses.
-  void plan(Use root) {
+  void plan(ValueId root) {
     struct Visit {
-      Use use;
-      Code code;
-      std::vector<Use> operands;
-      std::size_t next = 0;
+      ValueId value;
+      std::shared_ptr<const Code> code;
+      std::uint32_t next = 0;
     };
     std::vector<Visit> path;
-    const auto enter = [&](Use use) {
-      const auto [entry, fresh] = plans_.try_emplace(use);
-      ++entry->second.uses;
-      if (!fresh) return;
-      Code code = this->code(use.node);
-      std::vector<Use> operands = this->operands(use, code);
-      path.push_back({use, std::move(code), std::move(operands)});
+    const auto enter = [&](ValueId id) {
+      ++values_[id].uses;
+      if (values_[id].operand_count != Value::kNew) return;
+      path.push_back({id, codes_(values_[id].use.node)});
+      list_operands(id, *path.back().code);
     };
     enter(root);
-    while (!path.empty() && plans_.size() <= max_instructions_) {
+    while (!path.empty() && values_.size() <= max_instructions_) {
       Visit& visit = path.back();
-      if (visit.next < visit.operands.size()) {
-        const Use operand = visit.operands[visit.next++];
-        enter(operand);
+      const std::span<const ValueId> operands = operands_of(visit.value);
+      if (visit.next < operands.size()) {
+        enter(operands[visit.next++]);
       } else {
-        plans_[visit.use].height = is_free(visit.use.node, visit.code) ? 0 : height(visit.code, visit.operands);
+        Value& value = values_[visit.value];
+        value.height = is_free(value.use.node, *visit.code) ? 0 : height(*visit.code, operands);
         path.pop_back();
       }
     }
@@ -86,14 +116,12 @@ class Lowering {
     return graph_.children(node).empty() && code.after.size() == 1 && vm::info(code.after[0].opcode).cost == 0;
   }
 
-  Code code(NodeId node) const { return spec(graph_.kind(node)).code(graph_.params(node)); }
-
-  std::uint32_t height(const Code& code, const std::vector<Use>& operands) const {
-    const std::vector<std::size_t> order = evaluation_order(code, operands);
+  std::uint32_t height(const Code& code, std::span<const ValueId> operands) {
+    order_evaluation(code, operands);
     std::uint32_t result = 1;
-    for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t i = 0; i < order_.size(); ++i) {
       // After the first, a fold holds one value while it evaluates the next.
-      result = std::max(result, plans_.at(operands[order[i]]).height + (i == 0 ? 0 : 1));
+      result = std::max(result, values_[order_[i]].height + (i == 0 ? 0 : 1));
     }
     // What follows may push one value of its own.
     const bool pushes = std::any_of(code.after.begin(), code.after.end(),
@@ -101,17 +129,29 @@ class Lowering {
     return std::max(result, pushes && !operands.empty() ? 2u : 1u);
   }
 
+  ValueId value_of(Use use) {
+    const auto [entry, fresh] = ids_.try_emplace(use, static_cast<ValueId>(values_.size()));
+    if (fresh) values_.push_back({use});
+    return entry->second;
+  }
+
   // A combinator's children at the caller's point; an only child at each of the node's points.
-  std::vector<Use> operands(Use use, const Code& code) {
+  void list_operands(ValueId id, const Code& code) {
+    const Use use = values_[id].use;
+    const auto first = static_cast<std::uint32_t>(operands_.size());
     const std::span<const NodeId> children = graph_.children(use.node);
-    std::vector<Use> result;
     if (children.size() == 1) {
-      for (const std::vector<Instruction>& chain : code.points)
-        result.push_back({children[0], mapped(use.point, chain)});
+      for (const std::vector<Instruction>& chain : code.points) {
+        operands_.push_back(value_of({children[0], mapped(use.point, chain)}));
+      }
     } else {
-      for (NodeId child : children) result.push_back({child, use.point});
+      for (const NodeId child : children) operands_.push_back(value_of({child, use.point}));
     }
-    return result;
+    values_[id].first_operand = first;
+    values_[id].operand_count = static_cast<std::uint32_t>(operands_.size()) - first;
+  }
+  std::span<const ValueId> operands_of(ValueId id) const {
+    return std::span(operands_).subspan(values_[id].first_operand, values_[id].operand_count);
   }
 
   // The number of the point that a chain of instructions makes of `point`.
@@ -123,90 +163,96 @@ class Lowering {
     return point;
   }
 
-  // Which operand goes first. The one that needs most stack first keeps the stack low (Sethi & Ullman, "The
-  // generation of optimal code for arithmetic expressions", 1970); what folds from the left keeps its order but for
-  // the first two.
-  std::vector<std::size_t> evaluation_order(const Code& code, const std::vector<Use>& operands) const {
-    std::vector<std::size_t> order(operands.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto higher = [&](std::size_t a, std::size_t b) {
-      return plans_.at(operands[a]).height > plans_.at(operands[b]).height;
-    };
+  // Puts the operands into the order of their evaluation. The one that needs most stack first keeps the stack low
+  // (Sethi & Ullman, "The generation of optimal code for arithmetic expressions", 1970); what folds from the left
+  // keeps its order but for the first two, of which true says that they are swapped.
+  bool order_evaluation(const Code& code, std::span<const ValueId> operands) {
+    order_.assign(operands.begin(), operands.end());
+    const auto higher = [&](ValueId a, ValueId b) { return values_[a].height > values_[b].height; };
     if (code.any_order) {
-      std::stable_sort(order.begin(), order.end(), higher);
-    } else if (order.size() > 1 && !code.swapped_join.empty() && higher(1, 0)) {
-      std::swap(order[0], order[1]);
+      std::stable_sort(order_.begin(), order_.end(), higher);
+      return false;
     }
-    return order;
+    const bool swapped = order_.size() > 1 && !code.swapped_join.empty() && higher(order_[1], order_[0]);
+    if (swapped) std::swap(order_[0], order_[1]);
+    return swapped;
   }
 
-  // What is still to be done, in the order of a stack: evaluate `use`; append `instructions` for its node; or
-  // remember its value in a local.
-  enum class Step { Visit, Append, Share };
+  // What is still to be done, in the order of a stack: evaluate the value; append `instructions` of its code; forget
+  // the points that these made; take the least of two values; or remember the value in a local.
+  enum class Step { Visit, Append, Drop, Least, Share };
   struct Task {
-    Use use;
+    ValueId value;
     Step step = Step::Visit;
-    std::vector<Instruction> instructions = {};
+    std::shared_ptr<const Code> code = nullptr;  // keeps the instructions
+    const std::vector<Instruction>* instructions = nullptr;
   };
 
-  void emit(Use root) {
+  void emit(ValueId root) {
     tasks_.push_back({root});
     while (!tasks_.empty() && program_.debug.size() <= max_instructions_) {
-      Task task = std::move(tasks_.back());
+      const Task task = std::move(tasks_.back());
       tasks_.pop_back();
-      if (task.step == Step::Visit) {
-        visit(task.use);
-      } else if (task.step == Step::Append) {
-        for (const Instruction& instruction : task.instructions) append(task.use.node, instruction);
-      } else {
-        Plan& plan = plans_.at(task.use);
-        plan.local = program_.locals++;
-        append(task.use.node, {Opcode::Tee, {}, *plan.local});
-      }
+      perform(task);
     }
   }
 
-  void visit(Use use) {
-    const Plan& plan = plans_.at(use);
-    if (plan.local) return append(use.node, {Opcode::Load, {}, *plan.local});
-    const Code code = this->code(use.node);
-    std::vector<Task> steps;
-    if (graph_.children(use.node).size() > 1) {
-      steps = combine(use, code);
+  void perform(const Task& task) {
+    Value& value = values_[task.value];
+    switch (task.step) {
+      case Step::Visit:
+        return visit(task.value);
+      case Step::Append:
+        for (const Instruction& instruction : *task.instructions) append(value.use.node, instruction);
+        return;
+      case Step::Drop:
+        for (std::size_t i = 0; i < task.instructions->size(); ++i) append(value.use.node, {Opcode::Drop});
+        return;
+      case Step::Least:
+        return append(value.use.node, {Opcode::Min});
+      case Step::Share:
+        value.local = program_.locals++;
+        return append(value.use.node, {Opcode::Tee, {}, *value.local});
+    }
+  }
+
+  void visit(ValueId id) {
+    const Value& value = values_[id];
+    const NodeId node = value.use.node;
+    if (value.local) return append(node, {Opcode::Load, {}, *value.local});
+    const std::shared_ptr<const Code> code = codes_(node);
+    const auto first = static_cast<std::ptrdiff_t>(tasks_.size());
+    if (graph_.children(node).size() > 1) {
+      combine(id, code);
     } else {
-      steps = alter(use, code);
+      alter(id, code);
     }
-    if (plan.uses > 1 && !is_free(use.node, code)) steps.push_back({use, Step::Share});
-    tasks_.insert(tasks_.end(), std::make_move_iterator(steps.rbegin()), std::make_move_iterator(steps.rend()));
+    if (value.uses > 1 && !is_free(node, *code)) tasks_.push_back({id, Step::Share});
+    std::reverse(tasks_.begin() + first, tasks_.end());  // the first on top
   }
 
-  std::vector<Task> alter(Use use, const Code& code) {
-    const std::vector<Use> all = operands(use, code);
-    std::vector<Task> steps;
+  void alter(ValueId id, const std::shared_ptr<const Code>& code) {
+    const std::span<const ValueId> all = operands_of(id);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const std::vector<Instruction>& chain = code.points[i];
-      steps.push_back({use, Step::Append, chain});
-      steps.push_back({all[i]});
-      steps.push_back({use, Step::Append, std::vector<Instruction>(chain.size(), {Opcode::Drop})});
-      if (i > 0) steps.push_back({use, Step::Append, {{Opcode::Min}}});
+      const std::vector<Instruction>& chain = code->points[i];
+      if (!chain.empty()) tasks_.push_back({id, Step::Append, code, &chain});
+      tasks_.push_back({all[i]});
+      if (!chain.empty()) tasks_.push_back({id, Step::Drop, code, &chain});
+      if (i > 0) tasks_.push_back({id, Step::Least});
     }
     // A combinator of one is that one.
-    if (spec(graph_.kind(use.node)).category != Category::Combinator)
-      steps.push_back({use, Step::Append, code.after});
-    return steps;
+    const bool combinator = spec(graph_.kind(values_[id].use.node)).category == Category::Combinator;
+    if (!combinator) tasks_.push_back({id, Step::Append, code, &code->after});
   }
 
-  std::vector<Task> combine(Use use, const Code& code) {
-    const std::vector<Use> all = operands(use, code);
-    const std::vector<std::size_t> order = evaluation_order(code, all);
-    const bool swapped = !code.any_order && order[0] == 1;
-    std::vector<Task> steps = {{all[order[0]]}};
-    if (swapped) steps.push_back({use, Step::Append, code.swapped_first});
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      steps.push_back({all[order[i]]});
-      steps.push_back({use, Step::Append, swapped && i == 1 ? code.swapped_join : code.after});
+  void combine(ValueId id, const std::shared_ptr<const Code>& code) {
+    const bool swapped = order_evaluation(*code, operands_of(id));
+    tasks_.push_back({order_[0]});
+    if (swapped) tasks_.push_back({id, Step::Append, code, &code->swapped_first});
+    for (std::size_t i = 1; i < order_.size(); ++i) {
+      tasks_.push_back({order_[i]});
+      tasks_.push_back({id, Step::Append, code, swapped && i == 1 ? &code->swapped_join : &code->after});
     }
-    return steps;
   }
 
   void append(NodeId node, const Instruction& instruction) {
@@ -225,7 +271,11 @@ class Lowering {
   const Graph& graph_;
   const Source& source_;
   const std::size_t max_instructions_;
-  std::unordered_map<Use, Plan, UseHash> plans_;
+  Codes codes_;
+  std::vector<Value> values_;
+  std::vector<ValueId> operands_;  // of all values
+  std::unordered_map<Use, ValueId, UseHash> ids_;
+  std::vector<ValueId> order_;  // as order_evaluation() left it
   std::vector<Task> tasks_;
   std::map<std::tuple<std::uint32_t, Opcode, std::vector<double>>, std::uint32_t> points_;
   vm::Program program_;

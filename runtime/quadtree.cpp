@@ -27,9 +27,12 @@ class QuadtreeWorker {
  public:
   QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
       : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {
-    for (int x = 0; x < slice.width; ++x) columns_.push_back(glm::vec3(slice.point(x, 0)));
-    for (int y = 0; y < slice.height; ++y) rows_.push_back(glm::vec3(slice.point(0, y)));
-    for (int axis = 0; axis < 3; ++axis) by_column_[axis] = columns_.front()[axis] != columns_.back()[axis];
+    for (int axis = 0; axis < 3; ++axis) {
+      auto &columns = columns_[static_cast<std::size_t>(axis)], &rows = rows_[static_cast<std::size_t>(axis)];
+      for (int x = 0; x < slice.width; ++x) columns.push_back(static_cast<float>(slice.point(x, 0)[axis]));
+      for (int y = 0; y < slice.height; ++y) rows.push_back(static_cast<float>(slice.point(0, y)[axis]));
+      by_column_[static_cast<std::size_t>(axis)] = columns.front() != columns.back();
+    }
   }
 
   // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
@@ -76,19 +79,16 @@ class QuadtreeWorker {
       const Tile tile = tile_of(first, edge, i);
       const int x0 = std::min(tile.x, slice_.width - 1), y0 = std::min(tile.y, slice_.height - 1);
       const int x1 = std::min(tile.x + edge, slice_.width) - 1, y1 = std::min(tile.y + edge, slice_.height) - 1;
-      const glm::vec3 a = place(x0, y0), b = place(std::max(x0, x1), std::max(y0, y1));
-      for (int axis = 0; axis < 3; ++axis) {
-        lo_[axis][i] = std::min(a[axis], b[axis]), hi_[axis][i] = std::max(a[axis], b[axis]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float a = place(axis, x0, y0), b = place(axis, std::max(x0, x1), std::max(y0, y1));
+        lo_[axis][i] = std::min(a, b), hi_[axis][i] = std::max(a, b);
       }
     }
   }
 
-  glm::vec3 place(int x, int y) const {
-    glm::vec3 p = rows_[static_cast<std::size_t>(y)];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (by_column_[axis]) p[axis] = columns_[static_cast<std::size_t>(x)][axis];
-    }
-    return p;
+  // A coordinate of a pixel.
+  float place(std::size_t axis, int x, int y) const {
+    return by_column_[axis] ? columns_[axis][static_cast<std::size_t>(x)] : rows_[axis][static_cast<std::size_t>(y)];
   }
   float* row(int y) { return field_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice_.width); }
 
@@ -103,10 +103,14 @@ class QuadtreeWorker {
     alignas(64) std::array<std::array<float, kEdge * kEdge>, 3> points;
     alignas(64) std::array<float, kEdge * kEdge> values;
     std::size_t count = 0;
-    for (int y = tile.y; y < y1; ++y) {
-      for (int x = tile.x; x < x1; ++x, ++count) {
-        const glm::vec3 p = place(x, y);
-        for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][count] = p[axis];
+    for (int y = tile.y; y < y1; ++y, count += static_cast<std::size_t>(x1 - tile.x)) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        float* to = points[axis].data() + count;
+        if (by_column_[axis]) {
+          std::copy(columns_[axis].data() + tile.x, columns_[axis].data() + x1, to);
+        } else {
+          std::fill(to, to + (x1 - tile.x), rows_[axis][static_cast<std::size_t>(y)]);
+        }
       }
     }
     vm::evaluate_distance(part, {points[0].data(), points[1].data(), points[2].data()}, count, values.data(),
@@ -118,8 +122,9 @@ class QuadtreeWorker {
   const Slice& slice_;
   const bool sign_;
   std::vector<float>& field_;
-  std::vector<glm::vec3> columns_, rows_;  // where the first row's pixels are, and the first column's
-  bool by_column_[3];                      // [axis] whether it changes along a row
+  // [axis] where the first row's pixels are, and the first column's, and whether it changes along a row.
+  std::array<std::vector<float>, 3> columns_, rows_;
+  std::array<bool, 3> by_column_{};
   vm::Workspace workspace_;
   std::array<vm::Specialiser, kLevels> specialisers_;
   std::array<vm::Part, kLevels> parts_;

@@ -59,14 +59,19 @@ struct ChoiceBounds {
   alignas(64) float b_hi[kEnclosedBoxes];
 };
 
+// The same in one box.
+struct ChoiceRange {
+  float a_lo, a_hi, b_lo, b_hi;
+};
+
 // The result is within [lo[box], hi[box]], arrays of kEnclosedBoxes. `choices` gets one entry for each instruction
 // that is_choice() (vm/opcode.h), in program order; kept between calls, it is not allocated anew.
 void enclose(const Code& program, const Boxes& boxes, float* lo, float* hi, std::vector<ChoiceBounds>& choices,
              Workspace& workspace);
 
-// evaluate_slope(), and the bounds of every choice's operands at [0]. These hold for f32 as above and for the exact
+// evaluate_slope(), and the ranges of every choice's operands. These hold for f32 as above and for the exact
 // values, the program's constants unrounded; both at points where every operation of the program is defined.
-SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceBounds>& choices,
+SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceRange>& choices,
                          Workspace& workspace);
 
 }  // namespace fathom::vm

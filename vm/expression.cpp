@@ -2,35 +2,45 @@
 
 #include <algorithm>
 
+#include "vm/opcode_rows.h"
+
 namespace fathom::vm {
 
 bool Expression::read(const Code& code) {
-  nodes_.clear(), choices_.clear(), values_.clear(), places_.clear(), place_of_.clear();
+  begin(code);
+  std::uint32_t self = 0;
+  for (std::size_t at = 0; at < code.size; at += 1 + immediates_of(code.words[at])) {
+    if (self == nodes_.size()) nodes_.resize(2 * nodes_.size() + 64);
+    if (!read_instruction(code, static_cast<std::uint32_t>(at), self++)) return false;
+  }
+  nodes_.resize(self);
+  return true;
+}
+
+void Expression::begin(const Code& code) {
+  values_.resize(code.max_values + 1);
+  height_ = 0;
+  choices_.clear(), tees_.clear(), places_.clear(), place_of_.clear();
   points_.assign(1, {kNone, 0});
   places_.push_back({kNone, kNone});
   defined_.assign(code.locals, kNone);
   locals_ = code.locals;
-  for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
-    if (!read_instruction(code, static_cast<std::uint32_t>(at))) return false;
-  }
-  return true;
 }
 
-bool Expression::read_instruction(const Code& code, std::uint32_t at) {
-  const std::uint32_t word = code.words[at], self = static_cast<std::uint32_t>(nodes_.size());
-  const OpcodeInfo& row = *find_opcode(word & 0xff);
+bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint32_t self) {
+  const std::uint32_t word = code.words[at];
+  const OpcodeRow& row = row_of(word);
   ExpressionNode node{at};
-  bool sound = true, makes_value = true;
+  bool sound = true;
   switch (row.form) {
     case Form::Point:
       points_.push_back({self, place_after(code, at)});
-      makes_value = false;
       break;
     case Form::Shape:
       if (operand_of(word) & kJoined) {
         sound = take(node.a);
         node.b = self;
-        node.choice = static_cast<std::uint32_t>(choices_.size());
+        enter_choice(node, self);
       }
       break;
     case Form::Outline:
@@ -44,33 +54,36 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at) {
       }
       if (sources.a == Source::Stack) sound = take(node.a) && sound;
       if (sources.a == Source::Local) sound = use_local(sources.local, node.a) && sound;
-      if (row.choice != Choice::None) node.choice = static_cast<std::uint32_t>(choices_.size());
+      if (row.choice) enter_choice(node, self);
       break;
     }
     case Form::Machine:
-      if (row.opcode == Opcode::Load) {
-        sound = use_local(operand_of(word), node.a);
-      } else {
-        sound = take(node.a);
+      sound = row.opcode == Opcode::Load ? use_local(operand_of(word), node.a) : take(node.a);
+      if (row.opcode == Opcode::Tee) {
+        defined_[operand_of(word)] = self;
+        tees_.push_back(self);
       }
-      if (row.opcode == Opcode::Tee) defined_[operand_of(word)] = self;
       if (row.opcode == Opcode::Drop) {
         node.point = points_.back().node;
         points_.pop_back();
       }
       break;
   }
-  if (node.choice != kNone) choices_.push_back(self);
-  nodes_.push_back(node);
-  place_of_.push_back(points_.back().place);
-  if (makes_value) values_.push_back({self, points_.back().place});
+  const std::uint32_t place = points_.back().place;
+  nodes_[self] = node;
+  place_of_.push_back(place);
+  if (row.form != Form::Point) values_[height_++] = {self, place};
   return sound;
+}
+
+void Expression::enter_choice(ExpressionNode& node, std::uint32_t self) {
+  node.choice = static_cast<std::uint32_t>(choices_.size());
+  choices_.push_back(self);
 }
 
 // The top value, computed at the top point.
 bool Expression::take(std::uint32_t& operand) {
-  const Value value = values_.back();
-  values_.pop_back();
+  const Value value = values_[--height_];
   operand = value.node;
   return value.place == points_.back().place;
 }

@@ -28,6 +28,7 @@ class Expression {
 
   const std::vector<ExpressionNode>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& choices() const { return choices_; }  // [choice] its node
+  const std::vector<std::uint32_t>& tees() const { return tees_; }        // nodes, in program order
   std::uint32_t root() const { return static_cast<std::uint32_t>(nodes_.size() - 1); }
   std::uint32_t locals() const { return locals_; }
 
@@ -35,16 +36,19 @@ class Expression {
   struct Value {
     std::uint32_t node, place;
   };
-  bool read_instruction(const Code& code, std::uint32_t at);
+  void begin(const Code& code);
+  bool read_instruction(const Code& code, std::uint32_t at, std::uint32_t self);
+  void enter_choice(ExpressionNode& node, std::uint32_t self);
   bool take(std::uint32_t& operand);
   bool use_local(std::uint32_t local, std::uint32_t& operand);
   std::uint32_t place_after(const Code& code, std::uint32_t at);
 
   std::vector<ExpressionNode> nodes_;
-  std::vector<std::uint32_t> choices_;
+  std::vector<std::uint32_t> choices_, tees_;
   std::uint32_t locals_ = 0;
   // While reading. A place is a point as a chain of Point instructions makes it; equal chains are one place.
   std::vector<Value> values_;
+  std::size_t height_ = 0;  // of values_
   struct Point {
     std::uint32_t node, place;
   };

@@ -2,6 +2,7 @@
 #include "vm/settle.h"
 
 #include <limits>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/settle.cpp"
@@ -134,6 +135,20 @@ HWY_EXPORT(settle_all);
 void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
                     float least, float most, Interest* interest, KeptOperands* kept) {
   HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, interest, kept);
+}
+
+void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept) {
+  for (std::size_t j = 0; j < count; ++j) {
+    const ChoiceLink& link = links[j];
+    const ChoiceRange& of = ranges[j];
+    float a_over_b = -1, b_over_a = -1;  // at least
+    if (link.rule != ChoiceRule::Keep) {
+      const float b_lo = link.opposite ? -of.b_hi : of.b_lo, b_hi = link.opposite ? -of.b_lo : of.b_hi;
+      a_over_b = of.a_lo - b_hi, b_over_a = b_lo - of.a_hi;
+      if (link.rule == ChoiceRule::Greatest) std::swap(a_over_b, b_over_a);
+    }
+    kept[j] = {!(a_over_b > link.width), !(b_over_a > link.width)};
+  }
 }
 
 }  // namespace fathom::vm

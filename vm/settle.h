@@ -43,4 +43,7 @@ inline constexpr std::uint32_t kNone = 0xffffffff;
 void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
                     float least, float most, Interest* interest, KeptOperands* kept);
 
+// The same of one box, a choice by itself: an operand goes that loses to the other one. Results are bit 0.
+void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept);
+
 }  // namespace fathom::vm

@@ -22,16 +22,15 @@ inline float below(double value) {
 
 template <>
 struct ChoiceObserver<Slope> {
-  ChoiceBounds* bounds = nullptr;  // none wanted
+  ChoiceRange* range = nullptr;  // none wanted
 
   void see(std::size_t, const Slope& a, const Slope& b) {
-    if (bounds == nullptr) return;
+    if (range == nullptr) return;
     const Interval of_a = seen(a), of_b = seen(b);
-    bounds->a_lo[0] = below(of_a.lo), bounds->a_hi[0] = -below(-of_a.hi);
-    bounds->b_lo[0] = below(of_b.lo), bounds->b_hi[0] = -below(-of_b.hi);
+    *range = {below(of_a.lo), -below(-of_a.hi), below(of_b.lo), -below(-of_b.hi)};
   }
   void next() {
-    if (bounds != nullptr) ++bounds;
+    if (range != nullptr) ++range;
   }
 };
 
@@ -45,9 +44,9 @@ Slope coordinate(double lo, double hi, int axis) {
   return s;
 }
 
-SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, ChoiceBounds* choices, Workspace& workspace) {
+SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, ChoiceRange* choices, Workspace& workspace) {
   Machine<Slope> machine(program, workspace, 1);
-  machine.observer().bounds = choices;
+  machine.observer().range = choices;
   *machine.first_point() = {coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
   machine.interpret();
   const Slope& result = *machine.result();
@@ -64,7 +63,7 @@ SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Wor
   return HWY_NAMESPACE::slope(program, lo, hi, nullptr, workspace);
 }
 
-SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceBounds>& choices,
+SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceRange>& choices,
                          Workspace& workspace) {
   choices.resize(program.choices);
   return HWY_NAMESPACE::slope(program, lo, hi, choices.data(), workspace);

@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "vm/check.h"
+#include "vm/opcode_rows.h"
 
 namespace fathom::vm {
 namespace {
 
 static_assert(kEnclosedBoxes == 16);
-
-// Columns of the table (vm/opcode.h), at hand: parts are made of tens of thousands of instructions a picture.
-struct Row {
-  Opcode opcode;
-  Form form;
-  bool choice;
-  int cost;  // of a function
-};
-constexpr Row kRows[] = {
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
-  {Opcode::Name, Form::form, Choice::choice != Choice::None, cost},
-#include "vm/opcodes.def"
-#undef OP
-};
-const Row& row_of(std::uint32_t word) { return kRows[word & 0xff]; }
 
 // The rule of the choice at a word; its operands are not filled in.
 ChoiceLink link_of(const Code& code, std::uint32_t at) {
@@ -51,23 +38,7 @@ ChoiceLink link_of(const Code& code, std::uint32_t at) {
   }
 }
 
-bool is_function(Form form) { return form == Form::Unary || form == Form::Binary; }
-bool is_joined(std::uint32_t word) { return row_of(word).form == Form::Shape && (operand_of(word) & kJoined) != 0; }
-
 }  // namespace
-
-Part whole(const Code& code) {
-  Part part;
-  part.words.assign(code.words, code.words + code.size);
-  part.wide.assign(code.wide, code.wide + code.size);
-  part.locals = code.locals, part.max_values = code.max_values, part.max_points = code.max_points;
-  part.choices = code.choices;
-  for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
-    part.sources.push_back(static_cast<std::uint32_t>(at));
-    part.cost += instruction_cost(code.words[at]);
-  }
-  return part;
-}
 
 bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& workspace) {
   program_ = &program;
@@ -81,31 +52,48 @@ SlopeBound Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, 
   program_ = &program;
   pairwise_ = true;
   is_read_ = false;  // most of those who ask want the bound alone
-  return enclose_slope(program, lo, hi, bounds_, workspace);
+  return enclose_slope(program, lo, hi, ranges_, workspace);
 }
 
 bool Specialiser::read() {
   is_read_ = expression_.read(*program_);
-  if (is_read_) link_choices();
-  return is_read_;
+  if (!is_read_) return false;
+  links_.clear(), hands_on_.clear();
+  if (pairwise_) {
+    link_pairs();
+  } else {
+    link_choices();
+  }
+  const std::vector<std::uint32_t>& tees = expression_.tees();
+  if (!tees.empty()) number_.resize(expression_.nodes().size());
+  for (std::uint32_t i = 0; i < tees.size(); ++i) number_[tees[i]] = i;
+  return true;
+}
+
+void Specialiser::link_pairs() {
+  for (const std::uint32_t id : expression_.choices()) link_choice(id);
+}
+
+// The choice at a node, its operands' choices not filled in.
+ChoiceLink& Specialiser::link_choice(std::uint32_t id) {
+  const std::uint32_t at = expression_.nodes()[id].at, word = program_->words[at];
+  const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
+  ChoiceLink& link = links_.emplace_back(link_of(*program_, at));
+  hands_on_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});
+  return link;
 }
 
 void Specialiser::link_choices() {
   const auto& nodes = expression_.nodes();
   under_.assign(nodes.size(), {kNone, 0});
-  links_.clear(), hands_on_.clear();
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     const ExpressionNode& node = nodes[i];
     const std::uint32_t word = program_->words[node.at];
-    const Row& row = row_of(word);
+    const OpcodeRow& row = row_of(word);
     if (node.choice != kNone) {
-      ChoiceLink link = link_of(*program_, node.at);
+      ChoiceLink& link = link_choice(i);
       if (node.a != kNone) link.a = under_[node.a];
       if (node.b != kNone) link.b = under_[node.b];
-      link.always = pairwise_;
-      links_.push_back(link);
-      const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
-      hands_on_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});
       under_[i] = {node.choice, 0};
     } else if (row.form == Form::Machine) {
       under_[i] = under_[node.a];
@@ -122,7 +110,10 @@ void Specialiser::link_choices() {
 
 void Specialiser::decide(float least, float most) {
   CHECK(is_read_ || read(), "what is to be cut is an expression");
-  interest_.resize(links_.size()), kept_.resize(links_.size());
+  kept_.resize(links_.size());
+  is_counted_ = false;
+  if (pairwise_) return settle_pairs(links_.data(), ranges_.data(), links_.size(), kept_.data());
+  interest_.resize(links_.size());
   settle_choices(links_.data(), bounds_.data(), links_.size(), under_[expression_.root()], least, most,
                  interest_.data(), kept_.data());
 }
@@ -135,22 +126,22 @@ std::uint32_t Specialiser::choices_left(std::size_t box) const {
 
 void Specialiser::part(std::size_t box, Part& out) {
   box_ = static_cast<std::uint32_t>(box);
-  emitted_.clear();
   locals_ = 0;
-  if (expression_.locals() > 0) count_uses();
-  tasks_.assign(1, {expression_.root(), Task::Value});
-  while (!tasks_.empty()) {
-    const Task task = tasks_.back();
-    tasks_.pop_back();
+  if (!expression_.tees().empty()) begin_locals();
+  writer_.begin(*program_);
+  waiting_ = 0;
+  push(expression_.root(), Task::Value);
+  while (waiting_ > 0) {
+    const Task task = tasks_[--waiting_];
     if (task.what == Task::Value) {
-      emit(task.node);
+      emit(resolve(task.node));
     } else if (task.what == Task::Local) {
       define_local(task.node);
     } else {
       emit_whole(task.node);
     }
   }
-  write(out);
+  writer_.finish(locals_, out);
 }
 
 // Where the value of a node comes from once the choices on the way are settled; the node itself when it computes
@@ -166,83 +157,98 @@ std::uint32_t Specialiser::resolve(std::uint32_t id) const {
   }
 }
 
-// How often each local is used in this box; its first use in the order of the code is its definition.
+// How often each local is used in each box; its first use in the order of the code is its definition. Users come
+// after what they use, so one pass from the last node to the first sees all uses of a node before it.
 void Specialiser::count_uses() {
   const auto& nodes = expression_.nodes();
-  uses_.assign(nodes.size(), {});
-  resolved_.resize(nodes.size());
-  counted_.assign(1, expression_.root());
-  const auto use_local = [&](std::uint32_t tee) {
-    if (uses_[tee].left++ == 0) counted_.push_back(nodes[tee].a);
-    uses_[tee].shared = uses_[tee].left > 1;
-  };
-  while (!counted_.empty()) {
-    const std::uint32_t wanted = counted_.back(), id = resolve(wanted);
-    counted_.pop_back();
-    resolved_[wanted] = id;
+  needed_.assign(nodes.size(), 0);
+  uses_.assign(expression_.tees().size(), {});
+  need(expression_.root(), pairwise_ ? 1 : 0xffff);
+  for (std::uint32_t id = expression_.root() + 1; id-- > 0;) {
     const ExpressionNode& node = nodes[id];
     const std::uint32_t word = program_->words[node.at];
-    const Row& row = row_of(word);
-    if (row.opcode == Opcode::Load) {
-      use_local(node.a);
-    } else if (row.opcode == Opcode::Tee) {
-      use_local(id);
-    } else if (row.form == Form::Machine || is_joined(word)) {
-      if (row.form == Form::Machine || keeps_a(node.choice)) counted_.push_back(node.a);
-    } else if (row.form == Form::Unary || row.form == Form::Binary) {
+    const OpcodeRow& row = row_of(word);
+    std::uint32_t boxes = needed_[id];
+    if (row.opcode == Opcode::Tee) boxes |= uses_[number_[id]].boxes;
+    if (boxes == 0) continue;
+    const std::uint32_t a = node.choice == kNone ? boxes : boxes & kept_[node.choice].a;
+    const std::uint32_t b = node.choice == kNone ? boxes : boxes & kept_[node.choice].b;
+    if (is_function(row.form)) {
       const Sources sources = sources_of(word);
-      const bool a = node.choice == kNone || keeps_a(node.choice);
-      const bool b = row.form == Form::Binary && (node.choice == kNone || keeps_b(node.choice));
-      if (a && sources.a == Source::Stack) counted_.push_back(node.a);
-      if (a && sources.a == Source::Local) use_local(node.a);
-      if (b && sources.b == Source::Stack) counted_.push_back(node.b);
-      if (b && sources.b == Source::Local) use_local(node.b);
+      need_operand(sources.a, node.a, a);
+      if (row.form == Form::Binary) need_operand(sources.b, node.b, b);
+    } else if (row.opcode == Opcode::Load) {
+      need_operand(Source::Local, node.a, boxes);
+    } else if (row.form == Form::Machine || is_joined(word)) {
+      need(node.a, a);
     }
   }
+  is_counted_ = true;
+}
+
+// The value at its place on the stack.
+void Specialiser::need(std::uint32_t node, std::uint32_t boxes) {
+  needed_[node] = static_cast<std::uint16_t>(needed_[node] | boxes);
+  const bool tee = row_of(program_->words[expression_.nodes()[node].at]).opcode == Opcode::Tee;
+  if (tee) count_use(uses_[number_[node]], boxes);
+}
+
+void Specialiser::need_operand(Source source, std::uint32_t node, std::uint32_t boxes) {
+  if (source == Source::Stack) return need(node, boxes);
+  if (source != Source::Local) return;
+  Uses& uses = uses_[number_[node]];
+  uses.boxes |= boxes;
+  count_use(uses, boxes);
+}
+
+void Specialiser::count_use(Uses& uses, std::uint32_t boxes) {
+  for (; boxes != 0; boxes &= boxes - 1) ++uses.count[static_cast<std::size_t>(std::countr_zero(boxes))];
+}
+
+void Specialiser::begin_locals() {
+  if (!is_counted_) count_uses();
+  local_.clear();
+  for (const Uses& uses : uses_) local_.push_back({uses.count[box_], uses.count[box_] > 1, kNone});
 }
 
 void Specialiser::emit(std::uint32_t id) {
-  id = expression_.locals() > 0 ? resolved_[id] : resolve(id);
   const ExpressionNode& node = expression_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
-  const Row& row = row_of(word);
-  if (row.form == Form::Unary || row.form == Form::Binary) return emit_operator(id);
+  const OpcodeRow& row = row_of(word);
+  if (is_function(row.form)) return emit_operator(id, node, word, row);
   if (row.opcode == Opcode::Load) return use_local(node.a);
   if (row.opcode == Opcode::Tee) return use_local(id);
-  if (is_joined(word) && !keeps_a(node.choice)) return emit_word(id, word & ~(kJoined << 8));
+  if (is_joined(word) && !keeps_a(node.choice)) {
+    return writer_.put(id, word & ~(kJoined << 8), node.at + 1, immediates_of(word));
+  }
   emit_whole(id);
-  if (row.opcode == Opcode::Drop) tasks_.push_back({node.point, Task::Instruction});
-  if (node.a != kNone) tasks_.push_back({node.a, Task::Value});
+  if (row.opcode == Opcode::Drop) push(node.point, Task::Instruction);
+  if (node.a != kNone) push(node.a, Task::Value);
 }
 
-void Specialiser::emit_word(std::uint32_t id, std::uint32_t word) {
-  const std::uint32_t at = expression_.nodes()[id].at;
-  const auto length = static_cast<std::uint32_t>(instruction_length(program_->words[at]));
-  emitted_.push_back({id, word, at + 1, length - 1});
+void Specialiser::emit_whole(std::uint32_t id) {
+  const std::uint32_t at = expression_.nodes()[id].at, word = program_->words[at];
+  writer_.put(id, word, at + 1, immediates_of(word));
 }
-
-void Specialiser::emit_whole(std::uint32_t id) { emit_word(id, program_->words[expression_.nodes()[id].at]); }
 
 // A function of numbers, or a choice of which one operand is left that lies on no stack or changes its sign.
-void Specialiser::emit_operator(std::uint32_t id) {
-  const ExpressionNode& node = expression_.nodes()[id];
-  const std::uint32_t word = program_->words[node.at];
+void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word,
+                                const OpcodeRow& row) {
+  if (node.choice != kNone) {
+    const bool has_a = keeps_a(node.choice);
+    if (has_a != keeps_b(node.choice)) return emit_lone(id, has_a);
+  }
   Sources sources = sources_of(word);
-  const bool binary = row_of(word).form == Form::Binary;
-  const bool has_a = node.choice == kNone || keeps_a(node.choice);
-  const bool has_b = binary && (node.choice == kNone || keeps_b(node.choice));
-  if (binary && has_a != has_b) return emit_lone(id, has_a);
-  const std::size_t instruction = emitted_.size();
-  emit_whole(id);
+  const std::uint32_t immediates =
+      static_cast<std::uint32_t>(row.immediates) + (sources.a == Source::Constant) + (sources.b == Source::Constant);
+  // What comes last in the code is taken first, and written first.
   std::uint32_t local = 0;
-  // What comes last in the code is taken first.
-  Task tasks[2];
-  int count = 0;
-  if (has_b) sources.b = take(sources.b, node.b, local, tasks, count);
-  sources.a = take(sources.a, node.a, local, tasks, count);
+  const std::size_t first = waiting_;
+  if (row.form == Form::Binary) sources.b = take(sources.b, node.b, local);
+  sources.a = take(sources.a, node.a, local);
+  if (waiting_ == first + 2) std::swap(tasks_[first], tasks_[first + 1]);
   sources.local = local;
-  emitted_[instruction].word = (word & 0xff) | operand_of(sources) << 8;
-  while (count-- > 0) tasks_.push_back(tasks[count]);
+  writer_.put_function(id, (word & 0xff) | operand_of(sources) << 8, row, node.at + 1, immediates);
 }
 
 // The operand that is left of a choice.
@@ -254,81 +260,52 @@ void Specialiser::emit_lone(std::uint32_t id, bool first) {
   const std::uint32_t operand = first ? node.a : node.b;
   const bool negate = !first && links_[node.choice].opposite;
   const std::uint32_t constant = node.at + 1 + (!first && sources.a == Source::Constant ? 1 : 0);
-  if (negate) emitted_.push_back({id, opcode_word(Opcode::Negate), 0, 0});
+  if (negate) writer_.put(id, opcode_word(Opcode::Negate), 0, 0);
   switch (source) {
     case Source::Stack:
-      return tasks_.push_back({operand, Task::Value});
+      return push(operand, Task::Value);
     case Source::Local:
       return use_local(operand);
     case Source::Constant:
-      return emitted_.push_back({id, opcode_word(Opcode::Constant), constant, 1});
+      return writer_.put(id, opcode_word(Opcode::Constant), constant, 1);
     default: {
       const auto axis = static_cast<std::uint32_t>(source) - static_cast<std::uint32_t>(Source::X);
       const auto opcode = static_cast<Opcode>(static_cast<std::uint32_t>(Opcode::X) + axis);
-      return emitted_.push_back({id, opcode_word(opcode), 0, 0});
+      return writer_.put(id, opcode_word(opcode), 0, 0);
     }
   }
 }
 
 // Where an operator takes an operand from now: a local that is used nowhere before is computed in its place.
-Source Specialiser::take(Source source, std::uint32_t operand, std::uint32_t& local, Task* tasks, int& count) {
+Source Specialiser::take(Source source, std::uint32_t operand, std::uint32_t& local) {
   if (source == Source::Local) {
-    Local& l = uses_[operand];
+    Local& l = local_[number_[operand]];
     if (--l.left > 0) {
       local = number_of(l);
       return source;
     }
-    tasks[count++] = {operand, Task::Local};
+    push(operand, Task::Local);
     return Source::Stack;
   }
-  if (source == Source::Stack) tasks[count++] = {operand, Task::Value};
+  if (source == Source::Stack) push(operand, Task::Value);
   return source;
 }
 
 void Specialiser::use_local(std::uint32_t tee) {
-  Local& local = uses_[tee];
+  Local& local = local_[number_[tee]];
   if (--local.left == 0) return define_local(tee);
-  emitted_.push_back({tee, opcode_word(Opcode::Load, number_of(local)), 0, 0});
+  writer_.put(tee, opcode_word(Opcode::Load, number_of(local)), 0, 0);
 }
 
 void Specialiser::define_local(std::uint32_t tee) {
-  if (uses_[tee].shared) emitted_.push_back({tee, opcode_word(Opcode::Tee, number_of(uses_[tee])), 0, 0});
-  tasks_.push_back({expression_.nodes()[tee].a, Task::Value});
+  Local& local = local_[number_[tee]];
+  if (local.shared) writer_.put(tee, opcode_word(Opcode::Tee, number_of(local)), 0, 0);
+  push(expression_.nodes()[tee].a, Task::Value);
 }
 
 std::uint32_t Specialiser::number_of(Local& local) {
   if (local.number == kNone) local.number = locals_++;
   return local.number;
-}
-
-void Specialiser::write(Part& out) const {
-  std::size_t size = 0, at = 0;
-  for (const Emitted& e : emitted_) size += 1 + e.count;
-  out.words.resize(size), out.wide.resize(size), out.sources.clear();
-  out.locals = locals_;
-  out.cost = 0, out.choices = 0;
-  std::int64_t values = 0, points = 1, most_values = 0, most_points = 1;
-  for (std::size_t i = emitted_.size(); i-- > 0;) {
-    const Emitted& e = emitted_[i];
-    out.words[at] = e.word, out.wide[at] = 0, ++at;
-    for (std::uint32_t k = 0; k < e.count; ++k, ++at) {
-      out.words[at] = program_->words[e.immediate + k], out.wide[at] = program_->wide[e.immediate + k];
-    }
-    out.sources.push_back(program_->sources[e.node]);
-    const Row& row = row_of(e.word);
-    if (is_function(row.form)) {  // most of a formula
-      const Sources sources = sources_of(e.word);
-      out.cost += row.cost, out.choices += row.choice;
-      values += 1 - (sources.a == Source::Stack) - (row.form == Form::Binary && sources.b == Source::Stack);
-    } else {
-      const StackEffect effect = effect_of(e.word);
-      out.cost += instruction_cost(e.word), out.choices += is_choice(e.word);
-      values += effect.values_change, points += effect.points_change;
-    }
-    most_values = std::max(most_values, values), most_points = std::max(most_points, points);
-  }
-  out.max_values = static_cast<std::uint32_t>(most_values);
-  out.max_points = static_cast<std::uint32_t>(most_points);
 }
 
 }  // namespace fathom::vm

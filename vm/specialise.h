@@ -27,23 +27,10 @@
 
 #include "vm/enclose.h"
 #include "vm/expression.h"
+#include "vm/part.h"
 #include "vm/settle.h"
 
 namespace fathom::vm {
-
-// A shorter program and where its instructions are in the whole one.
-struct Part {
-  std::vector<std::uint32_t> words;
-  std::vector<double> wide;            // [word]
-  std::vector<std::uint32_t> sources;  // [instruction] offset of the opcode word it came from, in the whole program
-  std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
-  std::uint64_t cost = 0;  // multiply-adds per point, by the table's estimate
-
-  operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
-};
-
-// The whole program as a part of itself.
-Part whole(const Code& code);
 
 class Specialiser {
  public:
@@ -69,43 +56,54 @@ class Specialiser {
   void part(std::size_t box, Part& out);
 
  private:
-  struct Emitted {
-    std::uint32_t node, word;        // what it comes from; the opcode word to write
-    std::uint32_t immediate, count;  // its immediates, words of the program
-  };
+  // What is still to be written, in the order of a stack.
   struct Task {
     std::uint32_t node;
     // Its value; the value of the local that it, a tee, defines; or the instruction alone.
     enum What : std::uint8_t { Value, Local, Instruction } what;
   };
+  // What uses a tee's local.
+  struct Uses {
+    std::array<std::uint32_t, kEnclosedBoxes> count;  // [box] the tee's own place on the stack counts, too
+    std::uint32_t boxes;                              // a bit for each in which it is used elsewhere
+  };
   struct Local {
-    std::uint32_t left = 0;  // uses not yet written
-    bool shared = false;
-    std::uint32_t number = kNone;
+    std::uint32_t left;  // uses not yet written
+    bool shared;
+    std::uint32_t number;
   };
 
   bool read();
   void link_choices();
+  void link_pairs();
+  ChoiceLink& link_choice(std::uint32_t id);
   bool keeps_a(std::uint32_t choice) const { return kept_[choice].a >> box_ & 1; }
   bool keeps_b(std::uint32_t choice) const { return kept_[choice].b >> box_ & 1; }
   std::uint32_t resolve(std::uint32_t id) const;
   void count_uses();
+  void need(std::uint32_t node, std::uint32_t boxes);
+  void need_operand(Source source, std::uint32_t node, std::uint32_t boxes);
+  static void count_use(Uses& uses, std::uint32_t boxes);
+  void begin_locals();
+  void push(std::uint32_t node, Task::What what) {
+    if (waiting_ == tasks_.size()) tasks_.resize(2 * waiting_ + 64);
+    tasks_[waiting_++] = {node, what};
+  }
   void emit(std::uint32_t id);
-  void emit_word(std::uint32_t id, std::uint32_t word);
   void emit_whole(std::uint32_t id);
-  void emit_operator(std::uint32_t id);
+  void emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word, const OpcodeRow& row);
   void emit_lone(std::uint32_t id, bool first);
-  Source take(Source source, std::uint32_t operand, std::uint32_t& local, Task* tasks, int& count);
+  Source take(Source source, std::uint32_t operand, std::uint32_t& local);
   void use_local(std::uint32_t tee);
   void define_local(std::uint32_t tee);
   std::uint32_t number_of(Local& local);
-  void write(Part& out) const;
 
   const Part* program_ = nullptr;
   Expression expression_;
   bool is_read_ = false;                    // the expression and the links are those of the program
   bool pairwise_ = false;                   // no choice's limits are those of what uses it
   std::vector<ChoiceBounds> bounds_;        // [choice]
+  std::vector<ChoiceRange> ranges_;         // [choice] in their place where choices are settled by pairs
   std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
   std::vector<ChoiceLink> links_;           // [choice]
   std::vector<Interest> interest_;          // [choice]
@@ -116,14 +114,19 @@ class Specialiser {
   std::vector<HandsOn> hands_on_;  // [choice] which operand's value is its own where only that one is kept
   alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
 
+  // Counted once for the parts of all boxes, which differ in what they need.
+  bool is_counted_ = false;
+  std::vector<std::uint32_t> number_;  // [node] of a tee, its number among them
+  std::vector<std::uint16_t> needed_;  // [node] a bit for each box
+  std::vector<Uses> uses_;             // [tee]
+
   // While a part is made: from the root down, so that the code comes out backwards.
   std::uint32_t box_ = 0;
   std::vector<Task> tasks_;
-  std::vector<Emitted> emitted_;
-  std::vector<Local> uses_;  // [node] of a tee
-  std::vector<std::uint32_t> counted_;
-  std::vector<std::uint32_t> resolved_;  // [node], of those counted
+  std::size_t waiting_ = 0;
+  std::vector<Local> local_;  // [tee]
   std::uint32_t locals_ = 0;
+  PartWriter writer_;
 };
 
 }  // namespace fathom::vm

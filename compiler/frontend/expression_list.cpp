@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <deque>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -75,16 +77,20 @@ std::vector<std::string_view> operation_names() {
   return names;
 }
 
-constexpr std::string_view kBlanks = " \t\r\v\f";
+bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+// Appends the words of a line.
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
+  for (std::size_t at = 0; at < line.size();) {
+    if (is_blank(line[at])) {
+      ++at;
+      continue;
+    }
+    std::size_t end = at + 1;
+    while (end < line.size() && !is_blank(line[end])) ++end;
     words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlanks, end);
+    at = end;
   }
-  return words;
 }
 
 // Takes the first line off `rest`.
@@ -101,10 +107,26 @@ std::string_view without_mark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-bool is_comment(const std::vector<std::string_view>& words) { return words.empty() || words[0].starts_with('#'); }
+using Words = std::span<const std::string_view>;
+
+bool is_comment(Words words) { return words.empty() || words[0].starts_with('#'); }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool in_name(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '$'; }
+
+std::string filled_in(std::string_view formula, const std::array<std::string_view, 2>& operands) {
+  std::string out;
+  out.reserve(2 * formula.size() + 2 * (operands[0].size() + operands[1].size()));
+  for (std::size_t at = 0; at < formula.size(); ++at) {
+    if (formula[at] == '{') {
+      out += operands[formula[at + 1] == '1'];
+      at += 2;
+    } else {
+      out += formula[at];
+    }
+  }
+  return out;
+}
 
 class ListReader {
  public:
@@ -113,16 +135,25 @@ class ListReader {
   std::optional<syntax::File> read() {
     std::string_view rest = without_mark(text_);
     while (!rest.empty()) {
-      std::vector<std::string_view> words = words_of(take_line(rest));
-      if (is_comment(words)) continue;
-      taken_.emplace(words[0]);
-      lines_.push_back(std::move(words));
+      const std::size_t first = words_.size();
+      split_words(take_line(rest), words_);
+      if (is_comment(Words(words_).subspan(first))) {
+        words_.resize(first);
+        continue;
+      }
+      taken_.insert(words_[first]);
+      ends_.push_back(words_.size());
     }
-    if (lines_.empty()) {
+    if (ends_.empty()) {
       diagnostics_.error("E0606", {}, "the list has no operation in it", "",
                          {"the smallest list that means something is `_0 var-x`"});
     }
-    for (const auto& words : lines_) read_line(words);
+    names_.reserve(ends_.size()), formula_.reserve(ends_.size());
+    std::size_t first = 0;
+    for (const std::size_t end : ends_) {
+      read_line(Words(words_).subspan(first, end - first), end == words_.size());
+      first = end;
+    }
     if (diagnostics_.has_errors()) return std::nullopt;
     return syntax::File{scene()};
   }
@@ -134,7 +165,7 @@ class ListReader {
   }
   static Span join(Span from, Span to) { return {from.begin, to.end}; }
 
-  void read_line(const std::vector<std::string_view>& words) {
+  void read_line(Words words, bool last) {
     const Span place = join(span(words.front()), span(words.back()));
     std::string formula = words.size() < 2 ? no_operation(words[0]) : formula_of(words, place);
     const auto [entry, fresh] = names_.emplace(words[0], formula_name(words[0]));
@@ -142,11 +173,11 @@ class ListReader {
       diagnostics_.error("E0604", span(words[0]), fmt::format("`{}` is given twice", words[0]), "",
                          {"every line needs a name of its own"});
     }
-    const bool last = &words == &lines_.back();
-    formula_.push_back({place, last ? std::move(formula) : fmt::format("{} = {}", entry->second, formula)});
+    if (!last) formula.insert(0, " = ").insert(0, entry->second);
+    formula_.push_back({place, std::move(formula)});
   }
 
-  std::string formula_of(const std::vector<std::string_view>& words, Span place) {
+  std::string formula_of(Words words, Span place) {
     const std::string_view name = words[1];
     const Operation* operation = find_operation(name);
     if (operation == nullptr && name != kConst) return unknown_operation(name);
@@ -157,10 +188,10 @@ class ListReader {
       return "0";
     }
     if (operation == nullptr) return constant(words[2]);
-    std::array<std::string, 2> operands;
+    std::array<std::string_view, 2> operands;
     for (std::size_t i = 0; i < wanted; ++i) operands[i] = resolve(words[i + 2]);
     has_z_ = has_z_ || name == "var-z";
-    return fmt::format(fmt::runtime(operation->formula), operands[0], operands[1]);
+    return filled_in(operation->formula, operands);
   }
 
   std::string no_operation(std::string_view name) {
@@ -190,10 +221,10 @@ class ListReader {
     return "0";
   }
 
-  std::string resolve(std::string_view word) {
+  std::string_view resolve(std::string_view word) {
     const auto found = names_.find(word);
     if (found != names_.end()) return found->second;
-    const bool later = taken_.contains(std::string(word));
+    const bool later = taken_.contains(word);
     diagnostics_.error("E0603", span(word), fmt::format("`{}` has no value {}", word, later ? "yet" : "here"), "",
                        {later ? "an operand must be the name of a line above" : "no line has this name"});
     return "0";
@@ -202,8 +233,9 @@ class ListReader {
   // The name itself where formulas can have it, else one made up.
   std::string formula_name(std::string_view name) {
     if (misfit_name(name, functions_).empty()) return std::string(name);
-    std::string made = fmt::format("line{}", names_.size() + 1);
-    while (!taken_.insert(made).second) made += '_';
+    std::string& made = made_.emplace_back(fmt::format("line{}", names_.size() + 1));
+    while (taken_.contains(made)) made += '_';
+    taken_.insert(made);
     return made;
   }
 
@@ -243,9 +275,11 @@ class ListReader {
 
   const std::string& text_;
   Diagnostics& diagnostics_;
-  std::vector<std::vector<std::string_view>> lines_;         // their words
+  std::vector<std::string_view> words_;                      // of all lines
+  std::vector<std::size_t> ends_;                            // [line] of its words
   std::unordered_map<std::string_view, std::string> names_;  // of the lines so far: as the formula calls them
-  std::unordered_set<std::string> taken_;                    // names that lines have, or that were made up
+  std::unordered_set<std::string_view> taken_;               // names that lines have, or that were made up
+  std::deque<std::string> made_;                             // the latter
   std::vector<Line> formula_;
   const std::vector<FormulaFunction> functions_ = formula_functions(machine_functions());
   bool has_z_ = false;
@@ -257,7 +291,8 @@ bool is_expression_list(std::string_view text) {
   bool comment = false;
   text = without_mark(text);
   while (!text.empty()) {
-    const std::vector<std::string_view> words = words_of(take_line(text));
+    std::vector<std::string_view> words;
+    split_words(take_line(text), words);
     if (is_comment(words)) {
       comment = comment || !words.empty();
       continue;

@@ -30,7 +30,8 @@ const NamedConstant* find_constant(std::string_view name) {
 }
 
 const FormulaFunction* find_function(std::span<const FormulaFunction> functions, std::string_view name) {
-  const auto same = [&](const FormulaFunction& row) { return row.name == name; };
+  // Asked of every name: most differ in the first character.
+  const auto same = [&](const FormulaFunction& row) { return row.name[0] == name[0] && row.name == name; };
   const auto found = std::find_if(functions.begin(), functions.end(), same);
   return found == functions.end() ? nullptr : &*found;
 }
@@ -43,7 +44,9 @@ std::vector<std::string_view> names_of(const std::vector<FormulaFunction>& funct
 
 std::vector<std::string_view> known_names(const FormulaContext& context) {
   std::vector<std::string_view> names = context.scope.known_names();
+  const auto scope = static_cast<std::ptrdiff_t>(names.size());
   for (const auto& [name, node] : context.definitions) names.push_back(name);
+  std::sort(names.begin() + scope, names.end());  // the same on every machine
   for (const NamedConstant& row : kConstants) names.push_back(row.name);
   if (context.has_point) names.insert(names.end(), {"x", "y", "z"});
   return names;

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/frontend/formula_builder.h"
@@ -16,6 +16,11 @@
 
 namespace fathom::compiler {
 
+struct NameHash {
+  using is_transparent = void;
+  std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+};
+
 // What the lines of a formula share.
 struct FormulaContext {
   const Scope& scope;
@@ -23,7 +28,7 @@ struct FormulaContext {
   bool has_point;  // whether there are x, y and z
   Diagnostics& diagnostics;
   FormulaBuilder builder = {};
-  std::map<std::string, FormulaId, std::less<>> definitions = {};
+  std::unordered_map<std::string, FormulaId, NameHash, std::equal_to<>> definitions = {};
   bool good = true;  // whether the result can be used
 };
 

@@ -1,6 +1,6 @@
 // The passes over the DAG. One pass = one file = one function = one name for `fathom dump --after`.
-// Each leaves the field as it was, but for rounding in double; level and cull leave its sign, and its being a distance.
-// Tested by: tests/compiler/passes_test.cpp
+// Each leaves the field as it was, but for rounding in double; level and cull leave its sign, and its being a
+// distance. Tested by: tests/compiler/passes_test.cpp
 #pragma once
 
 #include <span>
@@ -13,11 +13,14 @@ namespace fathom::compiler {
 struct Pass {
   std::string_view name;
   Scene (*run)(const Scene&);
+  bool (*changes)(Kind);  // whether it can do anything to a node of the kind; without such nodes it is left out
   enum class Leaves { Field, Sign } leaves = Leaves::Field;  // what of the scene stays as it was
 };
 
 // What is done to the distance, in order. The surface program keeps its Paint and takes the others.
 std::span<const Pass> passes();
+// Whether the scene has a node that the pass can do anything to.
+bool has_work(const Pass& pass, const Scene& scene);
 
 // Divides the operands of unions, intersections and cuts by their Lipschitz constants where these differ, so that the
 // steep one of them slows no ray down but its own. Only where the sign of the value is all that counts: below an

@@ -1,6 +1,7 @@
 #include "compiler/shapes/node_table.h"
 
 #include <iterator>
+#include <unordered_map>
 
 #include "compiler/shapes/rows.h"
 #include "vm/check.h"
@@ -18,13 +19,22 @@ std::vector<NodeSpec> make_table() {
   return table;
 }
 
-const NodeSpec* find(std::string_view name, bool functions) {
+using Names = std::unordered_map<std::string_view, const NodeSpec*>;
+
+// The rows by name: those of functions, or those of nodes of scenes.
+Names make_names(bool functions) {
+  Names names;
   for (const NodeSpec& row : node_table()) {
-    if (row.name == name && row.category != Category::Internal && (row.category == Category::Function) == functions) {
-      return &row;
+    if (row.category != Category::Internal && (row.category == Category::Function) == functions) {
+      names.emplace(row.name, &row);
     }
   }
-  return nullptr;
+  return names;
+}
+
+const NodeSpec* find(const Names& names, std::string_view name) {
+  const auto found = names.find(name);
+  return found == names.end() ? nullptr : found->second;
 }
 
 }  // namespace
@@ -53,7 +63,14 @@ const NodeSpec& spec(Kind kind) {
   return *row;
 }
 
-const NodeSpec* find_node(std::string_view name) { return find(name, false); }
-const NodeSpec* find_function(std::string_view name) { return find(name, true); }
+const NodeSpec* find_node(std::string_view name) {
+  static const Names names = make_names(false);
+  return find(names, name);
+}
+
+const NodeSpec* find_function(std::string_view name) {
+  static const Names names = make_names(true);
+  return find(names, name);
+}
 
 }  // namespace fathom::compiler

@@ -83,6 +83,21 @@ TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
   }
 }
 
+TEST_CASE("a pass changes no scene in which it has no work", "[passes]") {
+  for (const Pass& pass : compiler::passes()) {
+    int idle = 0;
+    for (std::uint64_t seed = 0; seed < 600; ++seed) {
+      const Scene scene = scene_of(seed, true);
+      if (compiler::has_work(pass, scene)) continue;
+      ++idle;
+      INFO(pass.name << ", seed " << seed);
+      CHECK(print(pass.run(scene)) == print(scene));
+    }
+    INFO(pass.name);
+    CHECK(idle > 10);
+  }
+}
+
 // All but those that leave no more than the sign.
 TEST_CASE("all passes together leave the field as it was, and so does lowering", "[passes][lower]") {
   vm::Workspace workspace;

@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+#include "vm/opcode_rows.h"
+
 namespace fathom::test {
 
 using vm::Choice;
@@ -38,6 +40,21 @@ TEST_CASE("every opcode has its own row and mnemonic", "[opcode]") {
   CHECK(vm::find_opcode(static_cast<std::uint32_t>(vm::kOpcodeCount)) == nullptr);
   CHECK(vm::find_opcode(255) == nullptr);
   CHECK(vm::find_opcode(256) == nullptr);
+}
+
+TEST_CASE("the columns at hand are the table's, and count the words of every instruction", "[opcode]") {
+  for_each_opcode([](std::uint32_t i, const OpcodeInfo& row) {
+    const vm::OpcodeRow& at_hand = vm::row_of(i);
+    CHECK((at_hand.opcode == row.opcode && at_hand.form == row.form));
+    CHECK(at_hand.choice == (row.choice != Choice::None));
+    CHECK((at_hand.immediates == row.immediates && at_hand.cost == row.cost));
+    // All sources of both operands with and without a local; moved and joined; up to 63 groups.
+    for (std::uint32_t operand = 0; operand < 128; ++operand) {
+      const std::uint32_t word = vm::opcode_word(row.opcode, operand);
+      CHECK(1 + vm::immediates_of(word) == vm::instruction_length(word));
+      CHECK((vm::is_joined(word) || at_hand.choice) == vm::is_choice(word));
+    }
+  });
 }
 
 TEST_CASE("immediates are counted, named and told apart", "[opcode]") {

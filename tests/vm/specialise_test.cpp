@@ -171,6 +171,16 @@ glm::vec3 float_point_in(Random& random, glm::dvec3 lo, glm::dvec3 hi) {
   return p;
 }
 
+// Numbers of which some are close to each other, some infinite.
+float random_end(Random& random) {
+  static const float kEnds[] = {-kInfinity, -1, -0.5f, 0, 0.25f, 0.5f, 1, kInfinity};
+  return kEnds[random.below(8)] + static_cast<float>(random.below(3)) * 0x1p-24f;
+}
+void random_range(Random& random, float& lo, float& hi) {
+  lo = random_end(random), hi = random_end(random);
+  if (lo > hi) std::swap(lo, hi);
+}
+
 }  // namespace
 
 TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
@@ -250,6 +260,35 @@ TEST_CASE("specialise: operands that only float holds apart are kept for the exa
     specialiser.decide(-kInfinity, kInfinity);
     CHECK((specialiser.choices_left(0) == 0) == (gap > k * (1 + 1e-6)));
   }
+}
+
+TEST_CASE("specialise: choices settled by pairs are those settled where each is of interest everywhere",
+          "[specialise]") {
+  Random random(11);
+  std::vector<vm::ChoiceLink> links;
+  std::vector<vm::ChoiceRange> ranges;
+  std::vector<vm::ChoiceBounds> bounds;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto rule = static_cast<vm::ChoiceRule>(random.below(3));
+    const float width = random.chance(0.5) ? 0 : 0.25f;
+    links.push_back({rule, random.chance(0.5), true, width, {vm::kNone, 0}, {vm::kNone, 0}});
+    vm::ChoiceRange& range = ranges.emplace_back();
+    random_range(random, range.a_lo, range.a_hi), random_range(random, range.b_lo, range.b_hi);
+    vm::ChoiceBounds& same = bounds.emplace_back();
+    same.a_lo[0] = range.a_lo, same.a_hi[0] = range.a_hi, same.b_lo[0] = range.b_lo, same.b_hi[0] = range.b_hi;
+  }
+  std::vector<vm::Interest> interest(links.size());
+  std::vector<vm::KeptOperands> pairs(links.size()), all(links.size());
+  vm::settle_pairs(links.data(), ranges.data(), links.size(), pairs.data());
+  vm::settle_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity,
+                     interest.data(), all.data());
+  int cut = 0, wrong = 0;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    wrong += pairs[i].a != (all[i].a & 1) || pairs[i].b != (all[i].b & 1);
+    cut += pairs[i].a != pairs[i].b;
+  }
+  CHECK(wrong == 0);
+  CHECK(cut > 3000);
 }
 
 }  // namespace fathom::test

@@ -34,16 +34,29 @@ namespace fathom::vm::HWY_NAMESPACE {
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 inline constexpr double kUnit = 0x1p-24;  // what errors are counted in
 
+// What is known of a value that is a sum of squares |F|^2. Most values are none, and then nothing of it is copied.
+struct Squares {
+  bool known = false;
+  std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
+  double root_error;          // bound on |sqrt(f32 value) - |F||, the root being exact, in kUnit
+
+  Squares() {}
+  Squares(const Squares& other) { *this = other; }
+  Squares& operator=(const Squares& other) {
+    known = other.known;
+    if (known) g = other.g, root_error = other.root_error;
+    return *this;
+  }
+};
+
 struct Slope {
   using Constant = Slope;
-  Interval v;                 // the exact value
-  Interval dx, dy, dz;        // partial derivatives, where they exist
-  double norm;                // bound on the gradient's length; infinite where the value may jump
-  double error;               // bound on |f32 value - exact value|, in kUnit
-  bool nonnegative;           // neither the exact nor the f32 value can be below 0
-  bool squares;               // a sum of squares |F|^2 with
-  std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
-  double root_error;          // and a bound on |sqrt(f32 value) - |F||, the root being exact, in kUnit
+  Interval v;           // the exact value
+  Interval dx, dy, dz;  // partial derivatives, where they exist
+  double norm;          // bound on the gradient's length; infinite where the value may jump
+  double error;         // bound on |f32 value - exact value|, in kUnit
+  bool nonnegative;     // neither the exact nor the f32 value can be below 0
+  Squares squares = {};
 
   static inline Slope broadcast(double value);
 };
@@ -65,9 +78,7 @@ inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, doubl
   const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);
   const double length = bound(std::sqrt(mx * mx + my * my + mz * mz));
   const double n = std::min(bound(norm), length);
-  return {
-      v,         intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false, false, {},
-      kUnbounded};
+  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false};
 }
 // f(a), f's derivative being in `slope` over a's exact values.
 inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
@@ -82,8 +93,11 @@ inline Slope jump(Interval v, Interval alternatives) {
 }
 inline Slope exactly(Interval v) {
   Slope result = make_slope(v, {0, 0}, {0, 0}, {0, 0}, 0, 0);
-  result.nonnegative = result.squares = v.lo >= 0;
-  if (result.squares) result.root_error = bound(magnitude(sqrt(v)) + 0x1p-50);
+  result.nonnegative = result.squares.known = v.lo >= 0;
+  if (result.squares.known) {
+    result.squares.g = {};
+    result.squares.root_error = bound(magnitude(sqrt(v)) + 0x1p-50);
+  }
   return result;
 }
 inline Slope Slope::broadcast(double value) {
@@ -95,15 +109,15 @@ inline Slope Slope::broadcast(double value) {
 
 inline Slope operator-(const Slope& a) { return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.error); }
 inline Slope operator+(const Slope& a, const Slope& b) {
-  const double error = a.error + b.error;
+  const Interval sum = seen(a) + seen(b);
   Slope r = make_slope(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
-                       error + rounding(magnitude(seen(a) + seen(b))));
+                       a.error + b.error + rounding(magnitude(sum)));
   r.nonnegative = a.nonnegative && b.nonnegative;
-  r.squares = a.squares && b.squares;
-  if (r.squares) {
-    for (std::size_t i = 0; i < 6; ++i) r.g[i] = a.g[i] + b.g[i];
+  r.squares.known = a.squares.known && b.squares.known;
+  if (r.squares.known) {
+    for (std::size_t i = 0; i < 6; ++i) r.squares.g[i] = a.squares.g[i] + b.squares.g[i];
     // The roots are the lengths of the parts of F, so their errors add like those.
-    r.root_error = bound(std::hypot(a.root_error, b.root_error) + magnitude(sqrt(seen(a) + seen(b))));
+    r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
   return r;
 }
@@ -113,8 +127,8 @@ inline Slope operator-(const Slope& a, const Slope& b) {
 }
 inline Slope operator*(const Slope& a, const Slope& b) {
   const double ma = magnitude(a.v), mb = magnitude(b.v);
-  const double error =
-      times(magnitude(seen(a)), b.error) + times(mb, a.error) + rounding(magnitude(seen(a) * seen(b)));
+  const Interval seen_a = seen(a);
+  const double error = times(magnitude(seen_a), b.error) + times(mb, a.error) + rounding(magnitude(seen_a * seen(b)));
   Slope r = make_slope(a.v * b.v, a.v * b.dx + b.v * a.dx, a.v * b.dy + b.v * a.dy, a.v * b.dz + b.v * a.dz,
                        times(ma, b.norm) + times(mb, a.norm), error);
   r.nonnegative = a.nonnegative && b.nonnegative;
@@ -150,13 +164,15 @@ inline Slope select(IntervalMask mask, const Slope& yes, const Slope& no) {
   return either(yes, no, hull(yes.v, no.v), magnitude(seen(yes) - seen(no)) / kUnit);
 }
 inline Slope min(const Slope& a, const Slope& b) {
-  if (seen(a).hi < seen(b).lo) return a;
-  if (seen(b).hi < seen(a).lo) return b;
+  const Interval seen_a = seen(a), seen_b = seen(b);
+  if (seen_a.hi < seen_b.lo) return a;
+  if (seen_b.hi < seen_a.lo) return b;
   return either(a, b, min(a.v, b.v), std::max(a.error, b.error));
 }
 inline Slope max(const Slope& a, const Slope& b) {
-  if (seen(a).hi < seen(b).lo) return b;
-  if (seen(b).hi < seen(a).lo) return a;
+  const Interval seen_a = seen(a), seen_b = seen(b);
+  if (seen_a.hi < seen_b.lo) return b;
+  if (seen_b.hi < seen_a.lo) return a;
   Slope r = either(a, b, max(a.v, b.v), std::max(a.error, b.error));
   r.nonnegative = a.nonnegative || b.nonnegative;
   return r;
@@ -169,13 +185,14 @@ inline Slope abs(const Slope& a) {
   return r;
 }
 inline Slope sqr(const Slope& a) {
-  const double error = times(magnitude(seen(a)) + magnitude(a.v), a.error) + rounding(magnitude(sqr(seen(a))));
+  const Interval seen_a = seen(a);
+  const double error = times(magnitude(seen_a) + magnitude(a.v), a.error) + rounding(magnitude(sqr(seen_a)));
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);
-  r.nonnegative = r.squares = true;
-  r.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
+  r.nonnegative = r.squares.known = true;
+  r.squares.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
   // The root of a square is the number again, but that the square was rounded (by half as much of the root) or
   // underflowed (below 2^-150, so the root is off by at most 2^-74).
-  r.root_error = bound(a.error + magnitude(seen(a)) + 0x1p-50);
+  r.squares.root_error = bound(a.error + magnitude(seen_a) + 0x1p-50);
   return r;
 }
 // The largest singular value of J.
@@ -193,10 +210,11 @@ inline Slope sqrt(const Slope& a) {
   }
   // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and e over the sum of the roots.
   const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
-  const double error = std::min(
-      {apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit), a.squares ? a.root_error : kUnbounded});
+  const double error = std::min({apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit),
+                                 a.squares.known ? a.squares.root_error : kUnbounded});
   const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
-  const double norm = std::min(times(a.norm, magnitude(slope)), a.squares ? gram_norm(a.g) : kUnbounded);
+  const double norm =
+      std::min(times(a.norm, magnitude(slope)), a.squares.known ? gram_norm(a.squares.g) : kUnbounded);
   Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);
   if (!(r.norm <= norm)) r.norm = norm;
   r.error = bound(error + rounding(magnitude(sqrt(s))));
@@ -210,7 +228,7 @@ inline Slope length(const Slope& x, const Slope& y, const Slope& z) { return sqr
 // as fast as p can move, whichever way that is: by the largest singular value of p's derivatives.
 inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
   const Slope squares = sqr(p.x) + sqr(p.y) + sqr(p.z);
-  const double speed = gram_norm(squares.g);
+  const double speed = gram_norm(squares.squares.g);
   const Interval all{-speed, speed};
   const double moved = length(seen(p.x) - p.x.v, seen(p.y) - p.y.v, seen(p.z) - p.z.v).hi;
   const double scale = std::max({1.0, magnitude(seen(sqrt(squares))), magnitude(d) + moved});
