@@ -55,7 +55,11 @@ class ShadowRenderer {
     free_.pop_back();
     const CameraRay ray = camera_.ray(x_ + 0.5, y_ + 0.5);
     Slot& begun = slots_[slot];
-    begun.ray = {ray.origin, ray.direction};
+    begun.ray.origin = ray.origin;
+    begun.ray.direction = ray.direction;
+    begun.ray.side = 0;
+    begun.ray.slope = -1;
+    begun.ray.clear = 0;
     begun.pixel = static_cast<std::uint32_t>(next_++);
     begun.shadow = false;
     marcher_->add(slot, begun.ray);
@@ -95,9 +99,11 @@ class ShadowRenderer {
         free_.push_back(hit_slots_[i]);
         continue;
       }
-      slot.ray = leave(hits_[i], points_[i], light_, false);
+      const Ray ray = leave(hits_[i], points_[i], light_, false);
+      slot.ray.origin = ray.origin;
+      slot.ray.direction = ray.direction;
       slot.shadow = true;
-      marcher_->add(hit_slots_[i], slot.ray);
+      marcher_->add(hit_slots_[i], ray);
     }
   }
 

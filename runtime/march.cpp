@@ -16,7 +16,10 @@ class Certifier final : public Marcher {
   void begin(RayBlock& rays) override {
     while (rays.count > 0) {
       const std::size_t i = --rays.count;
-      if (enters(rays, i)) certify_from(course_of(rays, i), rays.side[i], {0, rays.length[i], 0}, 0, 0);
+      if (!enters(rays, i)) continue;
+      Course course;
+      set_course(course, rays, i);
+      certify_from(course, rays.side[i], {0, rays.length[i], 0}, 0, 0);
     }
   }
   void step() override {}
@@ -24,11 +27,7 @@ class Certifier final : public Marcher {
 
 }  // namespace
 
-void Marcher::add(std::uint32_t id, const Ray& ray) {
-  CHECK(room() > 0, "a ray was added to a full marcher");
-  ++counters_.rays;
-  waiting_.push(id, ray);
-}
+void Marcher::refuse() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
 
 void Marcher::advance() {
   if (waiting_.count > 0) begin_waiting();

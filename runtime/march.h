@@ -53,7 +53,11 @@ class Marcher {
   bool empty() const { return live_ == 0 && waiting_.count == 0; }
 
   // Needs room.
-  void add(std::uint32_t id, const Ray& ray);
+  void add(std::uint32_t id, const Ray& ray) {
+    if (room() <= 0) [[unlikely]] refuse();
+    ++counters_.rays;
+    waiting_.push(id, ray);
+  }
   void advance();
 
   const std::vector<Arrival>& arrivals() const { return arrivals_; }
@@ -82,12 +86,15 @@ class Marcher {
   // Moves the rays under way on by one evaluation.
   virtual void step() = 0;
 
-  static Course course_of(const RayBlock& rays, std::size_t i) {
-    return {{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]},
-            {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]},
-            rays.entry[i],
-            rays.length[i],
-            rays.id[i]};
+  // Each number on its own: of a whole that has just been put together in memory a copy has to wait.
+  static void set_course(Course& course, const RayBlock& rays, std::size_t i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      course.origin[axis] = rays.origin[axis][i];
+      course.direction[axis] = rays.direction[axis][i];
+    }
+    course.entry = rays.entry[i];
+    course.length = rays.length[i];
+    course.id = rays.id[i];
   }
   // Whether the i-th of `rays` comes within the bound; one that does not has arrived.
   bool enters(const RayBlock& rays, std::size_t i) {
@@ -132,6 +139,7 @@ class Marcher {
         break;
     }
   }
+  [[noreturn]] static void refuse();
   void begin_waiting();
 
   RayBlock waiting_;         // the last one is the next to begin

@@ -82,7 +82,7 @@ void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
   put(kSide, rays.side[i]);
   put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
   put(kPenalty, seeded_ ? S(kFirstPenalty) : S(1));
-  courses_[lane] = course_of(rays, i);
+  set_course(courses_[lane], rays, i);
   instructions_[lane] = 0;
 }
 

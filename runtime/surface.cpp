@@ -20,8 +20,6 @@ constexpr float kMostOffset = 32;
 
 // Of what is known to be clear so much is trusted: a ray must not begin where rounding may put the next surface.
 constexpr float kTrusted = 0.98f;
-// A ray that leaves a surface nearly along it, by this cosine, might meet it again by the normal's error.
-constexpr float kLeastLeaving = 0x1p-6f;
 
 // What the gradient says of the surface that was hit. It is the normal but where rounding or a crease has it look
 // away from the ray; there it is turned just far enough.
@@ -85,15 +83,6 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
     points[i].clear = found.exact && hits[i].side > 0 ? clear_of(convex[i], size, points[i].offset, field) : 0;
   }
-}
-
-Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
-  Ray ray{spawn(hit, point, through), direction};
-  const float cosine = glm::dot(point.normal, glm::vec3(direction));
-  ray.side = through ? -hit.side : hit.side;
-  ray.slope = std::abs(cosine);
-  ray.clear = !through && cosine > kLeastLeaving ? point.clear : 0;
-  return ray;
 }
 
 }  // namespace fathom::runtime

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 
@@ -45,7 +47,16 @@ inline glm::dvec3 spawn(const Hit& hit, const SurfacePoint& point, bool through)
   return hit.position + along * glm::dvec3(point.normal);
 }
 
-// The ray that leaves from there into `direction`, of unit length.
-Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through);
+// The ray that leaves from there into `direction`, of unit length. Here, so that it stays in registers.
+inline Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
+  // Nearly along the surface it might meet it again by the normal's error.
+  constexpr float kLeastLeaving = 0x1p-6f;
+  Ray ray{spawn(hit, point, through), direction};
+  const float cosine = glm::dot(point.normal, glm::vec3(direction));
+  ray.side = through ? -hit.side : hit.side;
+  ray.slope = std::abs(cosine);
+  ray.clear = !through && cosine > kLeastLeaving ? point.clear : 0;
+  return ray;
+}
 
 }  // namespace fathom::runtime
