@@ -295,7 +295,7 @@ double measured_width(double window, const Hit& hit) {
 
 }  // namespace
 
-TEST_CASE("I15: a wire of a ten thousandth, left by a difference", "[catalogue]") {
+TEST_CASE("I15: a wire of a ten thousandth, left by a difference", "[catalogue][heavy]") {
   const char* wires[] = {
       R"({"type": "torus", "major_radius": 1, "minor_radius": 0.00005})",
       R"({"type": "subtraction", "of": [{"type": "cylinder", "radius": 1.00005, "half_height": 0.00005},

@@ -90,7 +90,7 @@ TEST_CASE("S1: a floor under light from 88 to 90 degrees is as bright as it shou
 }
 
 // Walls from 2 to 100 times as thick as the offset at which new rays start; light outside, everywhere.
-TEST_CASE("S2: no light leaks into a closed box", "[catalogue]") {
+TEST_CASE("S2: no light leaks into a closed box", "[catalogue][heavy]") {
   const double offset = 16 * static_cast<double>(kDistanceError);
   for (const double offsets : {2, 5, 20, 100}) {
     for (const bool round : {false, true}) {

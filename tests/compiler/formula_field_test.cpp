@@ -10,6 +10,7 @@
 
 #include "compiler/frontend/read_scene.h"
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/judge.h"
 #include "tests/support/random_scene.h"
 
@@ -77,7 +78,7 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
 
 // Of hundreds of pieces, of which the parts that prove the bound hold a few.
 TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (int seed = 0; seed < few(12); ++seed) {
     Random random(seed);
     std::string formula = "1";
     double steepest = 0;

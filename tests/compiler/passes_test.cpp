@@ -14,6 +14,7 @@
 #include "compiler/compile.h"
 #include "compiler/lower.h"
 #include "compiler/passes/rewrite.h"
+#include "tests/support/effort.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
@@ -62,7 +63,7 @@ void check_same(const Scene& before, const Scene& after, const Pass& pass, Rando
 
 TEST_CASE("a pass leaves the field as it was", "[passes]") {
   for (const Pass& pass : compiler::passes()) {
-    for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    for (int seed = 0; seed < few(600); ++seed) {
       const Scene before = scene_of(seed, false);
       const Scene after = pass.run(before);
       Random random(seed);
@@ -75,7 +76,7 @@ TEST_CASE("a pass leaves the field as it was", "[passes]") {
 
 TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
   for (const Pass& pass : compiler::passes()) {
-    for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    for (int seed = 0; seed < few(600); ++seed) {
       const Scene once = pass.run(scene_of(seed, true));
       INFO(pass.name << ", seed " << seed);
       CHECK(print(pass.run(once)) == print(once));
@@ -86,7 +87,7 @@ TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
 TEST_CASE("a pass changes no scene in which it has no work", "[passes]") {
   for (const Pass& pass : compiler::passes()) {
     int idle = 0;
-    for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    for (int seed = 0; seed < few(600); ++seed) {
       const Scene scene = scene_of(seed, true);
       if (compiler::has_work(pass, scene)) continue;
       ++idle;
@@ -94,14 +95,14 @@ TEST_CASE("a pass changes no scene in which it has no work", "[passes]") {
       CHECK(print(pass.run(scene)) == print(scene));
     }
     INFO(pass.name);
-    CHECK(idle > 10);
+    CHECK(idle > few(10));
   }
 }
 
 // All but those that leave no more than the sign.
 TEST_CASE("all passes together leave the field as it was, and so does lowering", "[passes][lower]") {
   vm::Workspace workspace;
-  for (std::uint64_t seed = 0; seed < 800; ++seed) {
+  for (int seed = 0; seed < few(800); ++seed) {
     const Scene before = scene_of(seed, false);
     for (bool keep_paint : {false, true}) {
       Scene after = before;
@@ -180,7 +181,7 @@ TEST_CASE("a part's own material survives within a painted whole", "[lower]") {
 }
 
 TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
-  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+  for (int seed = 0; seed < few(1500); ++seed) {
     const Scene scene = scene_of(seed, false);
     const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
     Random random(seed);

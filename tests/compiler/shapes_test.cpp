@@ -13,6 +13,7 @@
 #include "tests/compiler/primitives.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/brute_force_outlines.h"
+#include "tests/support/effort.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 
@@ -97,7 +98,7 @@ TEST_CASE("random shapes are valid", "[shapes]") {
 TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judge]") {
   for_each_primitive([](const NodeSpec& row) {
     if (!exact(row)) return;
-    for (std::uint64_t seed = 0; seed < 15; ++seed) {
+    for (int seed = 0; seed < few(15); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const auto truth = brute_force(row, s.params);
@@ -159,14 +160,14 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
   };
   for_each_primitive([&](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    for (int seed = 0; seed < few(30); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       INFO(s.name << ", seed " << seed);
       check(s.scene, random, 100);
     }
   });
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < few(400); ++seed) {
     Random random(seed);
     const compiler::Scene scene = random_scene(random);
     INFO("random graph, seed " << seed);
@@ -176,7 +177,7 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
 
 TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
-    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    for (int seed = 0; seed < few(200); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);
@@ -194,7 +195,7 @@ TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
 TEST_CASE("a primitive's box is tight", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    for (int seed = 0; seed < few(50); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);

@@ -8,6 +8,7 @@
 #include "runtime/chart/plot.h"
 #include "tests/runtime/markup_check.h"
 #include "tests/runtime/svg_reading.h"
+#include "tests/support/effort.h"
 
 namespace fathom::runtime {
 namespace {
@@ -298,7 +299,7 @@ TEST_CASE("chart plot: whatever the numbers and the words are, the text is well 
   const auto number = [&] {
     return random() < 0.15 ? odd[static_cast<int>(7 * random())] : std::pow(10.0, 10 * random() - 6);
   };
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < test::few(60); ++round) {
     Plot plot = plot_of({});
     plot.title = "<&\"'>\x01";
     plot.footer = "a & b";

@@ -17,6 +17,7 @@
 #include "runtime/render.h"
 #include "runtime/surface.h"
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
@@ -97,7 +98,7 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
       vm::Workspace workspace;
       RegionScratch scratch;
       std::size_t equal = 0, limited = 0, far = 0;
-      for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      for (int seed = 0; seed < test::few(60); ++seed) {
         // Within, about, and far outside.
         const Sample at = sample(kMostPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
         std::vector<float> whole(kMostPoints), cut(kMostPoints);
@@ -126,7 +127,7 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
 
 TEST_CASE("regions: random scenes of every kind of node are cut without a wrong value", "[regions]") {
   std::size_t built = 0, wrong = 0, cut = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (int seed = 0; seed < test::few(60); ++seed) {
     Random random(seed);
     test::GraphOptions options;
     options.depth = 5;

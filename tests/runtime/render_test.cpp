@@ -66,7 +66,7 @@ TEST_CASE("render: paths that are cut off bring what they met until then", "[ren
   CHECK(found.sigma < 1e-6);
 }
 
-TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render]") {
+TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render][heavy]") {
   // The floor's radiance under the lamp is albedo E / pi. Orthographic, looking at a small spot from the side, below
   // the lamp and seeing nothing else. The spot is so small that E is 1e-4 from constant.
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [3, 1, 0], "target": [0, 0, 0],
@@ -231,7 +231,7 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
 }  // namespace
 // Once, new rays from the top of a huge box met it again: float knows its surface only to 5e-4 (numbers of 10^4
 // cancel), and they started closer than that. A plane is the same floor without the large numbers.
-TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render]") {
+TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render][heavy]") {
   const auto with_floor = [](const std::string& floor) {
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 1.5, 4], "target": [0, 0.5, 0]},
         "objects": [)" +
@@ -248,7 +248,7 @@ TEST_CASE("render: a floor that is the top of a huge solid is as bright as a pla
 
 // Once, a ball 1e5 from the origin came out in three pieces, without its shadow, for float steps near the surface
 // were longer than the ball. Now the programs begin where the scene is, and are those of the scene at zero.
-TEST_CASE("render: a scene far from the origin looks as it does there", "[render]") {
+TEST_CASE("render: a scene far from the origin looks as it does there", "[render][heavy]") {
   const auto at = [](double x) {
     const std::string x0 = std::to_string(x), x1 = std::to_string(x + 1.5);
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [)" + x0 + R"(, 1, 5], "target": [)" + x0 +

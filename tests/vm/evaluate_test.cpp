@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/effort.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
@@ -228,7 +229,7 @@ long check_ranges(std::uint64_t first_seed, std::uint64_t count, int points, Jud
 }  // namespace
 
 TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
-  CHECK(check_ranges(0, 1700, 30, Judged::Yes) >= 1000000);
+  CHECK(check_ranges(0, few(1700), 30, Judged::Yes) >= few(1000000));
 }
 
 TEST_CASE("ranges contain every one of a hundred million values in their boxes", "[nightly][.]") {
