@@ -446,10 +446,12 @@ class Machine {
     for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });
   }
 
-  // Calls body(i) for the numbers of a slot that matter. A full block, the common case, has a constant length.
+  // Calls body(i) for the numbers of a slot that matter. A full block of distances, the common case, has a constant
+  // length; for wider types it makes no difference, and twice the code.
   template <class Body>
   HWY_INLINE void for_used(const Body& body) {
-    if (const std::size_t used = used_; kAlwaysFull<T> || kBlock == 1 || used == kBlock) {
+    if (const std::size_t used = used_;
+        kAlwaysFull<T> || kBlock == 1 || (std::is_same_v<T, Batch> && used == kBlock)) {
       for (std::size_t i = 0; i < kBlock; ++i) body(i);
     } else {
       for (std::size_t i = 0; i < used; ++i) body(i);
