@@ -134,6 +134,8 @@ inline constexpr std::size_t kSlot = 1;
 template <>
 inline constexpr std::size_t kSlot<Batch> = 16;
 template <>
+inline constexpr std::size_t kSlot<RealBatch> = 8;
+template <>
 inline constexpr std::size_t kSlot<Tagged<Dual<Batch>>> = 4;
 
 // Whether all numbers of a slot always matter.

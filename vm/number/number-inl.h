@@ -13,9 +13,9 @@
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
 // with either operand of + - * min max < > a constant. A Tagged needs of all these only what vm/semantics-inl.h
-// applies to values. The types: Batch (f32 lanes, batch-inl.h), Real (double, real-inl.h), Interval (interval-inl.h),
-// Along (value and derivative along a line, along-inl.h), Slope (value, gradient and float error over a box,
-// slope-inl.h), Enclosure (what f32 computes over boxes, enclosure-inl.h), and over the first two Dual (derivatives,
+// applies to values. The types: Batch and RealBatch (f32 and double lanes, batch-inl.h), Real (double, real-inl.h: bit
+// for bit a lane of RealBatch), Interval (interval-inl.h), Along (value and derivative along a line, along-inl.h), Slope (value, gradient and float error over a box,
+// slope-inl.h), Enclosure (what f32 computes over boxes, enclosure-inl.h), and over Batch and Real Dual (derivatives,
 // dual-inl.h) and Tagged (which surface won, tagged-inl.h).
 // Recorded (recorded-inl.h) holds no number: it writes down what is done to it.
 //
