@@ -21,17 +21,23 @@ struct Field {
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
+  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest stretch of a line, scene
+  // units, over which along() tells how steep the field is in most places; infinite where it may be asked at any.
+  double longest_told;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
 
   // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
   // same scene. May read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
-  // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near. Regions
-  // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
+  // Distances of many points in float, or of one or many in double; with regions, lower bounds where nothing is near.
+  // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`, or
+  // put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+  void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
+                vm::Workspace& workspace) const;
   // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                      vm::Workspace& workspace, std::uint64_t& instructions) const;
