@@ -21,8 +21,8 @@ struct Field {
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
-  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest stretch of a line, scene
-  // units, over which along() tells how steep the field is in most places; infinite where it may be asked at any.
+  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest stretch, scene units, over
+  // which along() mostly tells how steep the field is near the surface; infinite where it may be asked of any.
   double longest_told;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
 
