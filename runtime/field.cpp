@@ -43,7 +43,8 @@ std::optional<Line> line_at_surface(const compiler::CompiledScene& scene, int i,
 // Field::longest_told, of lengths eight times shorter one after another.
 double longest_told(const compiler::CompiledScene& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
-  constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
+  // Of what the field's constant alone says; of the extent; of the lines.
+  constexpr double kTold = 0.8, kNear = 1e-4, kMost = 0.75;
   if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
   vm::Workspace workspace;
   std::vector<Line> lines;
@@ -57,7 +58,7 @@ double longest_told(const compiler::CompiledScene& scene, double extent) {
           vm::evaluate_along(scene.distance, line.origin, line.direction, 0, length, workspace).derivative;
       return slope.hi - slope.lo < kTold * 2 * scene.lipschitz;
     });
-    if (2 * static_cast<std::size_t>(told) >= lines.size()) return length;
+    if (static_cast<double>(told) >= kMost * static_cast<double>(lines.size())) return length;
   }
   return 0;
 }

@@ -17,7 +17,8 @@ constexpr double kResolution = 0x1p-40;
 // be another one than the first, and no further from it. A 256th of the least that float tells apart at 1.
 constexpr double kRootResolution = 0x1p-30;
 // Intervals cost many evaluations: worth it where a segment is so much longer than what its near end excludes of it.
-constexpr double kRangeRatio = 8;
+// Those of iterated maps, where the field says that they tell little, cost a hundred.
+constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
 // They told something when the bounds on the slope are so much tighter.
 constexpr double kProgress = 0.8;
 // Where they told nothing a segment this many times shorter is asked of next, longer ones only after so many
@@ -42,6 +43,7 @@ Search::Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int 
       stretch_(stretch),
       back_(stretch.hint - stretch.begin),
       done_(false),
+      range_ratio_(std::isfinite(field.longest_told) ? kCostlyRangeRatio : kRangeRatio),
       hopeless_(field.longest_told / glm::length(direction)),
       ask_at_(kSeldom) {
   ask(stretch.begin, Purpose::Begin);
@@ -148,7 +150,7 @@ bool Search::leave_behind(const Segment& s) {
 // just touch, if g goes on as it did; near a root, just beyond it.
 double Search::place_to_cut(const Segment& s, const Gap& gap) const {
   const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
-  if (hopeless_ > kRangeRatio * near) return s.a + hopeless_;
+  if (hopeless_ > range_ratio_ * near) return s.a + hopeless_;
   double step = kReach * (near + s.ga / s.rise) / (1 - slope / s.rise);
   if (slope < 0) {
     const double open = 0.75 * coarsened(kRootResolution, gap.lo);
@@ -170,7 +172,7 @@ Search::Gap Search::gap_of(const Segment& s) {
 
 bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
   const double length = s.b - s.a;
-  if (length <= kRangeRatio * (gap.lo - s.a)) return false;
+  if (length <= range_ratio_ * (gap.lo - s.a)) return false;
   if (length <= hopeless_) return true;
   if (result_.evaluations < ask_at_) return false;
   ask_at_ *= 2;

@@ -22,7 +22,7 @@ struct Certified {
   Arrival::Status status;
   int side;          // of the space searched, +1 or -1
   double t = 0;      // of the hit, in units of |direction|
-  double width = 0;  // of the bracket that holds it
+  double width = 0;  // of what holds the first root; t is one of those in it, bracketed far more narrowly
   std::uint32_t evaluations = 0;
   std::uint64_t instructions = 0;  // of the field's program, over them
 };
@@ -100,6 +100,7 @@ class Search {
   double wanted_ = 0;
   Purpose purpose_ = Purpose::Begin;
   bool contact_ = false, done_ = true;
+  double range_ratio_ = 0;    // how long a segment is worth an interval
   double hopeless_ = 0;       // intervals are expected to tell nothing of longer segments
   std::uint32_t ask_at_ = 0;  // evaluations, at which they are asked all the same
   Certified result_{};
