@@ -43,8 +43,7 @@ std::optional<Line> line_at_surface(const compiler::CompiledScene& scene, int i,
 // Field::longest_told, of lengths eight times shorter one after another.
 double longest_told(const compiler::CompiledScene& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
-  // Of what the field's constant alone says; of the extent; of the lines.
-  constexpr double kTold = 0.8, kNear = 1e-4, kMost = 0.75;
+  constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
   if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
   vm::Workspace workspace;
   std::vector<Line> lines;
@@ -53,12 +52,12 @@ double longest_told(const compiler::CompiledScene& scene, double extent) {
   }
   double length = extent;
   for (int i = 0; i < kLengths; ++i, length /= 8) {
-    const auto told = std::count_if(lines.begin(), lines.end(), [&](const Line& line) {
+    const bool told = std::all_of(lines.begin(), lines.end(), [&](const Line& line) {
       const vm::Range slope =
           vm::evaluate_along(scene.distance, line.origin, line.direction, 0, length, workspace).derivative;
       return slope.hi - slope.lo < kTold * 2 * scene.lipschitz;
     });
-    if (static_cast<double>(told) >= kMost * static_cast<double>(lines.size())) return length;
+    if (told) return length;
   }
   return 0;
 }

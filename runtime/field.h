@@ -22,7 +22,7 @@ struct Field {
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
   // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest stretch, scene units, over
-  // which along() mostly tells how steep the field is near the surface; infinite where it may be asked of any.
+  // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
   double longest_told;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
 
