@@ -21,7 +21,7 @@ struct Field {
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
-  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest stretch, scene units, over
+  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
   // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
   double longest_told;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
@@ -31,8 +31,8 @@ struct Field {
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
   // Distances of many points in float, or of one or many in double; with regions, lower bounds where nothing is near.
-  // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`, or
-  // put there for each.
+  // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`,
+  // or put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
