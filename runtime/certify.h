@@ -6,40 +6,24 @@
 // this is |g(a)| + |g(b)| > L (b - a), two balls that cover the segment (Hart, "Sphere Tracing", 1996). Where it
 // takes more, interval arithmetic along the ray bounds value and slope over the segment (Mitchell, "Robust Ray
 // Intersection with Interval Arithmetic", 1990): a value without zero, or a slope without change of sign, settles it,
-// and what remains is cut in two with the bounds it has, near half first. Tested by: tests/runtime/certify_test.cpp
+// and what remains is cut in two with the bounds it has, near part first: in the middle, or where intervals tell
+// nothing so near that two balls should just cover the way. Tested by: tests/runtime/certify_test.cpp
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 
 #include "runtime/field.h"
-#include "runtime/ray.h"
+#include "runtime/search.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
 
-struct Certified {
-  Arrival::Status status;
-  int side;          // of the space searched, +1 or -1
-  double t = 0;      // of the hit, in units of |direction|
-  double width = 0;  // of the bracket that holds it
-  std::uint32_t evaluations = 0;
-  std::uint64_t instructions = 0;  // of the field's program, over them
-};
-
-// Where to search: [begin, end] of a ray, `end` finite.
-struct Stretch {
-  double begin, end;
-  double hint;  // of a root that is guessed to lie in [begin, hint], which may have to grow towards 0; else 0
-};
-
 // The first root of g(t) = side * f(origin + t direction), where g(begin) is taken to be positive; a hit at `begin`
-// when it is below 0. An exact 0 is a touch: a root only when g goes on below it. `side` 0: the sign of f at `begin`.
+// when it is below 0. No root is passed, except where another follows within 2^-30 max(1, |p|), which is then found
+// in its place. An exact 0 is a touch: a root only when g goes on below it. `side` 0: the sign of f at `begin`.
 // Contact: no root, but nearer to one than the resolution of 2^-40 max(1, |p|). Always ends: a search that takes more
 // than kSearchBudget evaluations goes on at ever coarser resolution, and what stays open is a contact.
-Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, Stretch stretch,
+Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch,
                   vm::Workspace& workspace);
-
-inline constexpr std::uint32_t kSearchBudget = 1u << 14;  // evaluations at full resolution
 
 }  // namespace fathom::runtime

@@ -2,6 +2,8 @@
 
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "vm/check.h"
 #include "vm/convexity.h"
@@ -16,6 +18,49 @@ double extent_of(const compiler::CompiledScene& scene) {
   if (!(extent > 0)) extent = 1;
   if (scene.bound.empty() || !scene.bound.finite()) return extent;
   return std::min(extent, glm::length(scene.bound.hi - scene.bound.lo) / 2);
+}
+
+struct Line {
+  glm::dvec3 origin, direction;
+};
+
+// The i-th of some lines through the scene, followed to where it is near a surface; nothing when it comes to none.
+// Places and directions anywhere: multiples of irrational numbers, modulo 1.
+std::optional<Line> line_at_surface(const compiler::CompiledScene& scene, int i, double near,
+                                    vm::Workspace& workspace) {
+  constexpr int kSteps = 64;
+  const auto part = [i](double number) { return number * i - std::floor(number * i); };
+  const glm::dvec3 share(part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703));
+  const glm::dvec3 aim(part(0.4503258693318263), part(0.3688964747453183), part(0.3021964744936211));
+  Line line{scene.contents.lo + share * (scene.contents.hi - scene.contents.lo), glm::normalize(aim - 0.5)};
+  for (int step = 0; step < kSteps; ++step) {
+    const double distance = std::abs(vm::evaluate_distance(scene.distance, line.origin, workspace));
+    if (distance < near) return line;
+    line.origin += distance / scene.lipschitz * line.direction;
+  }
+  return std::nullopt;
+}
+
+// Field::longest_told, of lengths eight times shorter one after another.
+double longest_told(const compiler::CompiledScene& scene, double extent) {
+  constexpr int kLengths = 14, kLines = 32;
+  constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
+  if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
+  vm::Workspace workspace;
+  std::vector<Line> lines;
+  for (int i = 1; i <= kLines; ++i) {
+    if (const auto line = line_at_surface(scene, i, kNear * extent, workspace)) lines.push_back(*line);
+  }
+  double length = extent;
+  for (int i = 0; i < kLengths; ++i, length /= 8) {
+    const bool told = std::all_of(lines.begin(), lines.end(), [&](const Line& line) {
+      const vm::Range slope =
+          vm::evaluate_along(scene.distance, line.origin, line.direction, 0, length, workspace).derivative;
+      return slope.hi - slope.lo < kTold * 2 * scene.lipschitz;
+    });
+    if (told) return length;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -33,6 +78,7 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
   field.distance = &scene.distance;
   field.bound = scene.bound.grown(kBoundMargin * extent);
   field.lipschitz = scene.lipschitz;
+  field.longest_told = longest_told(scene, extent);
   field.inv_lipschitz = static_cast<float>(1 / scene.lipschitz);
   field.magnitude = static_cast<float>(scene.magnitude);
   field.band = static_cast<float>(kBand * extent);
@@ -72,6 +118,19 @@ double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t
   if (regions) return regions->evaluate(point, workspace, instructions);
   instructions += distance->instructions();
   return vm::evaluate_distance(*distance, point, workspace);
+}
+
+void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
+                     vm::Workspace& workspace) const {
+  if (!regions) {
+    std::fill_n(instructions, count, distance->instructions());
+    return vm::evaluate_distance(*distance, points, count, out, workspace);
+  }
+  // Points of different rays share no part.
+  for (std::size_t i = 0; i < count; ++i) {
+    instructions[i] = 0;
+    out[i] = regions->evaluate(glm::dvec3(points.x[i], points.y[i], points.z[i]), workspace, instructions[i]);
+  }
 }
 
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,

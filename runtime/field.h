@@ -21,6 +21,9 @@ struct Field {
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;                         // scene units (compiler/bounds.h)
+  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
+  // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
+  double longest_told;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
   // Whether float distances come with how far around the point the solid is convex (vm::evaluate_convex), which saves
   // evaluations where most of the scene is of convex shapes. Not of regions or an evaluator.
@@ -30,12 +33,15 @@ struct Field {
   // same scene. May read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
-  // Distances of many points in float, or of one in double; with regions, lower bounds where nothing is near. Regions
-  // leave in the scratch how many instructions each point took; in double they are added to `instructions`.
+  // Distances of many points in float, or of one or many in double; with regions, lower bounds where nothing is near.
+  // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`,
+  // or put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   bool knows_convex() const { return convex && !regions && evaluator == nullptr; }
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+  void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
+                vm::Workspace& workspace) const;
   // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                      vm::Workspace& workspace, std::uint64_t& instructions) const;

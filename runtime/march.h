@@ -6,7 +6,8 @@
 //
 //   clip    in double: the ray restarts where it enters the scene's bound, so that float t stays small (clip.h)
 //   stream  in float, many rays at once: certified steps, then brackets that shrink (tiered-inl.h)
-//   certify in double, one ray at a time: the few that float cannot decide (certify.h)
+//   certify in double: the few that float cannot decide, which wait until there are enough to be searched side by
+//           side (certify.h)
 //
 // Every ray ends as Hit, Miss, Contact or Invalid; none runs out of steps.
 //
@@ -27,11 +28,11 @@
 #include <span>
 #include <vector>
 
-#include "runtime/certify.h"
 #include "runtime/clip.h"
 #include "runtime/field.h"
 #include "runtime/method.h"
 #include "runtime/ray.h"
+#include "runtime/search.h"
 #include "runtime/stage_clock.h"
 #include "runtime/stats.h"
 #include "vm/evaluate.h"
@@ -42,15 +43,15 @@ class Marcher {
  public:
   static constexpr int kMostRays = RayBlock::kCapacity;
 
-  explicit Marcher(const Field& field) : field_(field), capacity_(field.regions ? kMostRays : kMostRays / 2) {}
+  explicit Marcher(const Field& field);
   virtual ~Marcher() = default;
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
   // Rays under way at once, kMostRays at most: with regions many, so that many are in programs of one skeleton.
   int capacity() const { return capacity_; }
-  int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count); }
-  bool empty() const { return live_ == 0 && waiting_.count == 0; }
+  int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }
+  bool empty() const { return live_ == 0 && waiting_.count == 0 && searched_.empty(); }
 
   // Needs room.
   void add(std::uint32_t id, const Ray& ray) {
@@ -111,7 +112,7 @@ class Marcher {
     arrivals_.emplace_back(id, status, fields...);
     counters_.instructions += arrivals_.back().instructions;
   }
-  // Ends the ray by certify(), which goes on from `evaluations` in float.
+  // The ray, no longer live, is to be ended by the search in double, after `evaluations` in float.
   void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
                     std::uint64_t instructions);
 
@@ -141,9 +142,25 @@ class Marcher {
   }
   [[noreturn]] static void refuse();
   void begin_waiting();
+  void search();
+  void search_once();
+  void end_search(std::size_t i);
 
-  RayBlock waiting_;         // the last one is the next to begin
-  std::size_t clipped_ = 0;  // of those waiting, the first
+  // A ray that is searched in double.
+  struct Searched {
+    Search search;
+    double entry;  // of its Course
+    std::uint32_t id;
+    std::uint32_t evaluations;  // in float
+    std::uint64_t instructions;
+  };
+
+  RayBlock waiting_;                // the last one is the next to begin
+  std::size_t clipped_ = 0;         // of those waiting, the first
+  const std::size_t side_by_side_;  // rays that are worth searching
+  std::vector<Searched> searched_;
+  std::vector<double> question_[3], answer_;  // [axis][of searched_]
+  std::vector<std::uint64_t> price_;          // instructions an answer took
   std::vector<Arrival> arrivals_;
 };
 

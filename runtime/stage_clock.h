@@ -22,7 +22,7 @@ enum class Stage : std::uint8_t { March, Resolve, Normals, Shading, Film };
 // In the order of the enum.
 inline constexpr const char* kStages[] = {
     "march",    // rays moved on together
-    "resolve",  // the search in double, ray by ray (certify.h)
+    "resolve",  // the search in double (certify.h)
     "normals",  // surfaces at the hits
     "shading",  // materials, and the rays that set out
     "film",     // paths added to their pixels

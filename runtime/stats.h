@@ -49,8 +49,8 @@ struct Stats {
   void merge(const Stats& other);  // the counts and stages; not memory, regions, seconds, threads
   double evaluations_per_ray() const;
   double instructions_per_evaluation() const;
-  // The share of the machine's lanes that held a ray, in [0,1]; 1 when none was taken. The search in double, which
-  // takes a point at a time, is no part of it.
+  // The share of the machine's lanes that held a ray, in [0,1]; 1 when none was taken. The search in double is no part
+  // of it.
   double utilisation() const;
   double rays_per_second() const;
 };

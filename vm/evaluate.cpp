@@ -10,62 +10,10 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "vm/interpret-inl.h"
+#include "vm/blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
-
-// Calls body(first point of the block, points in it) with the machine's points filled; lanes past the end repeat the
-// last point.
-template <class T, class Body>
-HWY_INLINE void for_each_block(const Code& program, Points points, std::size_t count, Workspace& workspace,
-                               const Body& body) {
-  constexpr std::size_t kBlockPoints = kSlot<T> * kLanes;
-  for (std::size_t begin = 0; begin < count; begin += kBlockPoints) {
-    const std::size_t size = std::min(kBlockPoints, count - begin);
-    const std::size_t used = (size + kLanes - 1) / kLanes;
-    Machine<T> machine(program, workspace, used);
-    auto* p = machine.first_point();
-    for (std::size_t i = 0; i < used; ++i) {
-      const std::size_t at = begin + i * kLanes;
-      alignas(64) float padded[3][kLanes];
-      const float* x = points.x + at;
-      const float* y = points.y + at;
-      const float* z = points.z + at;
-      if (at + kLanes > count) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-          const std::size_t from = std::min(lane, count - 1 - at);
-          padded[0][lane] = x[from], padded[1][lane] = y[from], padded[2][lane] = z[from];
-        }
-        x = padded[0], y = padded[1], z = padded[2];
-      }
-      set_point(p[i], Batch::load(x), Batch::load(y), Batch::load(z));
-    }
-    machine.interpret();
-    body(begin, size, used, machine.result());
-  }
-}
-
-HWY_INLINE void set_point(Vec3<Batch>& p, Batch x, Batch y, Batch z) { p = {x, y, z}; }
-HWY_INLINE void set_point(Vec3<Dual<Batch>>& p, Batch x, Batch y, Batch z) {
-  const Batch zero = Batch::broadcast(0.0f), one = Batch::broadcast(1.0f);
-  p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
-}
-
-// Stores the first `size` of the lanes that value(i) gives.
-template <class Value>
-HWY_INLINE void store(std::size_t size, std::size_t used, float* to, const Value& value) {
-  for (std::size_t i = 0; i < used; ++i) {
-    const std::size_t at = i * kLanes;
-    if (at + kLanes <= size) {
-      value(i).store(to + at);
-    } else {
-      alignas(64) float padded[kLanes];
-      value(i).store(padded);
-      std::copy_n(padded, size - at, to + at);
-    }
-  }
-}
 
 // An overflowing derivative has no direction.
 HWY_INLINE Batch finite_or_zero(Batch a) {

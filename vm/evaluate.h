@@ -20,11 +20,14 @@
 namespace fathom::vm {
 
 // Coordinates of a batch of points, scene units; three arrays of the same length.
-struct Points {
-  const float* x;  // [point]
-  const float* y;
-  const float* z;
+template <class S>
+struct PointsOf {
+  const S* x;  // [point]
+  const S* y;
+  const S* z;
 };
+using Points = PointsOf<float>;
+using RealPoints = PointsOf<double>;
 
 // Scratch memory for the stacks; grows to the largest program it has seen. Not to be shared between threads.
 class Workspace {
@@ -67,8 +70,10 @@ struct SurfaceValue {
   double convex = 0;
 };
 
-// The same in double, one point at a time, with the program's unrounded constants.
+// The same in double, with the program's unrounded constants: one point at a time or many, the same bits.
 double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& workspace);
+void evaluate_distance(const Code& program, RealPoints points, std::size_t count, double* distance,
+                       Workspace& workspace);
 SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct Range {

@@ -182,6 +182,8 @@ inline constexpr std::size_t kSlot = 1;
 template <>
 inline constexpr std::size_t kSlot<Batch> = 16;
 template <>
+inline constexpr std::size_t kSlot<RealBatch> = 8;
+template <>
 inline constexpr std::size_t kSlot<Convex<Batch>> = 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Convex<Dual<Batch>>>> = 4;

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "runtime/march.h"
+#include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/vm/float_bits.h"
 
 namespace fathom::runtime {
 namespace {
@@ -67,6 +70,67 @@ TEST_CASE("certify: intervals settle a long ray along a plane in a few evaluatio
   REQUIRE(down.status == Status::Hit);
   CHECK(down.t == Approx(1000).epsilon(1e-6));
   CHECK(down.evaluations < 200);
+}
+
+// Rays that graze a fractal, and what blends.
+compiler::CompiledScene difficult_scene() {
+  return scene_of(R"("objects": [
+      {"type": "mandelbulb", "power": 8, "iterations": 8, "bailout": 16, "detail": 0.0005},
+      {"type": "smooth_union", "k": 0.2, "translate": [1.5, 0, 0], "of": [
+        {"type": "sphere", "radius": 0.5}, {"type": "box", "half_size": [0.4, 0.1, 0.4], "translate": [0, 0.5, 0]}]}])");
+}
+
+bool same(const Arrival& a, const Arrival& b) {
+  return a.status == b.status && a.side == b.side && a.t == b.t && a.width == b.width &&
+         a.evaluations == b.evaluations && a.certified == b.certified && a.instructions == b.instructions;
+}
+
+TEST_CASE("certify: rays that are searched side by side end as each does alone", "[march][isa]") {
+  const test::IsaGuard guard;
+  const auto scene = difficult_scene();
+  const Field field = make_field(scene);
+  // Short enough to end within the bound, where nothing is clipped.
+  Random random(8);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 400; ++i) {
+    const glm::dvec3 from(random.uniform(-1, 1), random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9));
+    rays.push_back({from, random.direction(), 0.1});
+  }
+  std::vector<Certified> alone;
+  vm::Workspace workspace;
+  int hits = 0;
+  for (const Ray& ray : rays) {
+    alone.push_back(certify(field, ray.origin, ray.direction, 0, {0, 0.1, 0}, workspace));
+    hits += alone.back().status == Status::Hit;
+  }
+  REQUIRE(hits > 40);
+  for (const std::string_view isa : vm::available_isas()) {
+    REQUIRE(vm::force_isa(isa));
+    const MarchResult together = march(field, rays, {.method = Method::Certified});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Arrival& arrival = together.arrivals[i];
+      INFO(isa << ", ray " << i);
+      CHECK(arrival.status == alone[i].status);
+      CHECK(arrival.t == alone[i].t);
+      CHECK(arrival.width == static_cast<float>(alone[i].width));
+      CHECK(arrival.certified == alone[i].evaluations);
+      CHECK(arrival.instructions == alone[i].instructions);
+    }
+  }
+}
+
+TEST_CASE("certify: in a stream, too, what becomes of a ray depends on that ray alone", "[march]") {
+  const auto scene = difficult_scene();
+  const Field field = make_field(scene);
+  const std::vector<Ray> rays = rays_at_sphere(3000, 3);
+  const MarchResult together = march(field, rays);
+  REQUIRE(together.counters.certified > 5);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (together.arrivals[i].certified == 0 && i % 50 != 0) continue;
+    INFO("ray " << i);
+    Arrival alone = march(field, std::span(rays).subspan(i, 1)).arrivals[0];
+    CHECK(same(alone, together.arrivals[i]));
+  }
 }
 
 }  // namespace

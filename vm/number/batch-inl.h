@@ -1,5 +1,5 @@
-// Batch: as many f32 lanes as the instruction set has in a register. Plain multiplies and adds only, never fused, so
-// that every instruction set gives the same bits.
+// Batch and RealBatch: as many f32 or double lanes as the instruction set has in a register. Plain multiplies and
+// adds only, never fused, so that every instruction set gives the same bits.
 #if defined(FATHOM_VM_BATCH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_BATCH_INL
 #undef FATHOM_VM_BATCH_INL
@@ -7,89 +7,197 @@
 #define FATHOM_VM_BATCH_INL
 #endif
 
+#include <cstddef>
+#include <cstdint>
+
 #include "vm/number/number-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+template <class S>
+struct BatchMaskOf {
+  hn::Mask<hn::ScalableTag<S>> m;
+};
+
+// S: the type of a lane, float or double.
+template <class S>
+struct BatchOf {
+  using Constant = BatchOf;
+  using Tag = hn::ScalableTag<S>;
+  hn::Vec<Tag> v;
+
+  static HWY_INLINE BatchOf broadcast(float value) { return {hn::Set(Tag(), static_cast<S>(value))}; }
+  static HWY_INLINE BatchOf broadcast(double value) { return {hn::Set(Tag(), static_cast<S>(value))}; }
+  static HWY_INLINE BatchOf load(const S* from) { return {hn::LoadU(Tag(), from)}; }
+  HWY_INLINE void store(S* to) const { hn::StoreU(v, Tag(), to); }
+};
+template <class S>
+inline constexpr std::size_t kLanesOf = hn::MaxLanes(hn::ScalableTag<S>());
+
 using FloatLanes = hn::ScalableTag<float>;
-inline constexpr std::size_t kLanes = hn::MaxLanes(FloatLanes());
+using Batch = BatchOf<float>;
+using BatchMask = BatchMaskOf<float>;
+using RealBatch = BatchOf<double>;
+inline constexpr std::size_t kLanes = kLanesOf<float>;
 
-struct Batch {
-  using Constant = Batch;
-  hn::Vec<FloatLanes> v;
-
-  static HWY_INLINE Batch broadcast(float value) { return {hn::Set(FloatLanes(), value)}; }
-  static HWY_INLINE Batch broadcast(double value) { return broadcast(static_cast<float>(value)); }
-  static HWY_INLINE Batch load(const float* from) { return {hn::LoadU(FloatLanes(), from)}; }
-  HWY_INLINE void store(float* to) const { hn::StoreU(v, FloatLanes(), to); }
-};
-
-struct BatchMask {
-  hn::Mask<FloatLanes> m;
-};
-
-HWY_INLINE Batch operator+(Batch a, Batch b) { return {hn::Add(a.v, b.v)}; }
-HWY_INLINE Batch operator-(Batch a, Batch b) { return {hn::Sub(a.v, b.v)}; }
-HWY_INLINE Batch operator*(Batch a, Batch b) { return {hn::Mul(a.v, b.v)}; }
-HWY_INLINE Batch operator/(Batch a, Batch b) { return {hn::Div(a.v, b.v)}; }
-HWY_INLINE Batch operator-(Batch a) { return {hn::Neg(a.v)}; }
-HWY_INLINE BatchMask operator<(Batch a, Batch b) { return {hn::Lt(a.v, b.v)}; }
-HWY_INLINE BatchMask operator>(Batch a, Batch b) { return {hn::Lt(b.v, a.v)}; }
-HWY_INLINE BatchMask operator<=(Batch a, Batch b) { return {hn::Le(a.v, b.v)}; }
-HWY_INLINE BatchMask operator>=(Batch a, Batch b) { return {hn::Le(b.v, a.v)}; }
-HWY_INLINE BatchMask operator==(Batch a, Batch b) { return {hn::Eq(a.v, b.v)}; }
-HWY_INLINE BatchMask operator&(BatchMask a, BatchMask b) { return {hn::And(a.m, b.m)}; }
-HWY_INLINE BatchMask operator|(BatchMask a, BatchMask b) { return {hn::Or(a.m, b.m)}; }
-HWY_INLINE BatchMask operator!(BatchMask a) { return {hn::Not(a.m)}; }
-HWY_INLINE bool any(BatchMask a) { return !hn::AllFalse(FloatLanes(), a.m); }
-HWY_INLINE Batch select(BatchMask m, Batch yes, Batch no) { return {hn::IfThenElse(m.m, yes.v, no.v)}; }
-// a < b ? a : b, so that a NaN gives b. That is what x86's minps computes; other machines and Highway's emulation
-// have other rules.
+template <class S>
+HWY_INLINE BatchOf<S> operator+(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Add(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> operator-(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Sub(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> operator*(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Mul(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> operator/(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Div(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> operator-(BatchOf<S> a) {
+  return {hn::Neg(a.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator<(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Lt(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator>(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Lt(b.v, a.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator<=(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Le(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator>=(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Le(b.v, a.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator==(BatchOf<S> a, BatchOf<S> b) {
+  return {hn::Eq(a.v, b.v)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator&(BatchMaskOf<S> a, BatchMaskOf<S> b) {
+  return {hn::And(a.m, b.m)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator|(BatchMaskOf<S> a, BatchMaskOf<S> b) {
+  return {hn::Or(a.m, b.m)};
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> operator!(BatchMaskOf<S> a) {
+  return {hn::Not(a.m)};
+}
+template <class S>
+HWY_INLINE bool any(BatchMaskOf<S> a) {
+  return !hn::AllFalse(hn::ScalableTag<S>(), a.m);
+}
+template <class S>
+HWY_INLINE BatchOf<S> select(BatchMaskOf<S> m, BatchOf<S> yes, BatchOf<S> no) {
+  return {hn::IfThenElse(m.m, yes.v, no.v)};
+}
+// a < b ? a : b, so that a NaN gives b. That is what x86's minps and minpd compute; other machines and Highway's
+// emulation have other rules.
 #undef FATHOM_X86_REGISTERS
 #define FATHOM_X86_REGISTERS (HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3)
-HWY_INLINE Batch min(Batch a, Batch b) {
+template <class S>
+HWY_INLINE BatchOf<S> min(BatchOf<S> a, BatchOf<S> b) {
 #if FATHOM_X86_REGISTERS
   return {hn::Min(a.v, b.v)};
 #else
   return select(a < b, a, b);
 #endif
 }
-HWY_INLINE Batch max(Batch a, Batch b) {
+template <class S>
+HWY_INLINE BatchOf<S> max(BatchOf<S> a, BatchOf<S> b) {
 #if FATHOM_X86_REGISTERS
   return {hn::Max(a.v, b.v)};
 #else
   return select(a > b, a, b);
 #endif
 }
-HWY_INLINE Batch abs(Batch a) { return {hn::Abs(a.v)}; }
-HWY_INLINE Batch sqr(Batch a) { return a * a; }
-HWY_INLINE Batch sqrt(Batch a) { return {hn::Sqrt(a.v)}; }
-HWY_INLINE Batch length(Batch x, Batch y) { return sqrt(x * x + y * y); }
-HWY_INLINE Batch length(Batch x, Batch y, Batch z) { return sqrt(x * x + y * y + z * z); }
+template <class S>
+HWY_INLINE BatchOf<S> abs(BatchOf<S> a) {
+  return {hn::Abs(a.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> sqr(BatchOf<S> a) {
+  return a * a;
+}
+template <class S>
+HWY_INLINE BatchOf<S> sqrt(BatchOf<S> a) {
+  return {hn::Sqrt(a.v)};
+}
+template <class S>
+HWY_INLINE BatchOf<S> length(BatchOf<S> x, BatchOf<S> y) {
+  return sqrt(x * x + y * y);
+}
+template <class S>
+HWY_INLINE BatchOf<S> length(BatchOf<S> x, BatchOf<S> y, BatchOf<S> z) {
+  return sqrt(x * x + y * y + z * z);
+}
 
 // Adding 0 makes -0 into 0: instruction sets differ in the sign of a zero they round to.
-HWY_INLINE Batch floor(Batch a) { return Batch{hn::Floor(a.v)} + Batch::broadcast(0.0f); }
-HWY_INLINE Batch ceil(Batch a) { return Batch{hn::Ceil(a.v)} + Batch::broadcast(0.0f); }
-HWY_INLINE Batch round_nearest(Batch a) { return Batch{hn::Round(a.v)} + Batch::broadcast(0.0f); }  // half to even
-HWY_INLINE BatchMask is_nan(Batch a) { return {hn::IsNaN(a.v)}; }
-
-// 2^n for a whole n in [-126, 127].
-HWY_INLINE Batch power_of_two(Batch n) {
-  const hn::RebindToSigned<FloatLanes> ints;
-  const auto biased = hn::Add(hn::ConvertTo(ints, n.v), hn::Set(ints, 127));
-  return {hn::BitCast(FloatLanes(), hn::ShiftLeft<23>(biased))};
+template <class S>
+HWY_INLINE BatchOf<S> floor(BatchOf<S> a) {
+  return BatchOf<S>{hn::Floor(a.v)} + BatchOf<S>::broadcast(0.0);
 }
-HWY_INLINE Scaled<Batch> split_power_of_two(Batch x) {
-  const hn::RebindToSigned<FloatLanes> ints;
-  const BatchMask subnormal = x < Batch::broadcast(0x1p-126f);
-  const Batch normal = select(subnormal, x * Batch::broadcast(0x1p24f), x);
+template <class S>
+HWY_INLINE BatchOf<S> ceil(BatchOf<S> a) {
+  return BatchOf<S>{hn::Ceil(a.v)} + BatchOf<S>::broadcast(0.0);
+}
+template <class S>
+HWY_INLINE BatchOf<S> round_nearest(BatchOf<S> a) {  // half to even
+  return BatchOf<S>{hn::Round(a.v)} + BatchOf<S>::broadcast(0.0);
+}
+template <class S>
+HWY_INLINE BatchMaskOf<S> is_nan(BatchOf<S> a) {
+  return {hn::IsNaN(a.v)};
+}
+
+// How a number's bits are laid out.
+template <class S>
+struct FloatLayout;
+template <>
+struct FloatLayout<float> {
+  static constexpr int kMantissaBits = 23, kBias = 127, kSubnormalShift = 24;
+  static constexpr float kLeastNormal = 0x1p-126f, kShift = 0x1p24f;
+  static constexpr std::int32_t kRootHalf = 0x3f3504f3;  // sqrt 1/2
+};
+template <>
+struct FloatLayout<double> {
+  static constexpr int kMantissaBits = 52, kBias = 1023, kSubnormalShift = 54;
+  static constexpr double kLeastNormal = 0x1p-1022, kShift = 0x1p54;
+  static constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
+};
+
+// 2^n for a whole n in [1 - bias, bias].
+template <class S>
+HWY_INLINE BatchOf<S> power_of_two(BatchOf<S> n) {
+  using Layout = FloatLayout<S>;
+  const hn::RebindToSigned<hn::ScalableTag<S>> ints;
+  const auto biased = hn::Add(hn::ConvertTo(ints, n.v), hn::Set(ints, Layout::kBias));
+  return {hn::BitCast(hn::ScalableTag<S>(), hn::ShiftLeft<Layout::kMantissaBits>(biased))};
+}
+template <class S>
+HWY_INLINE Scaled<BatchOf<S>> split_power_of_two(BatchOf<S> x) {
+  using Layout = FloatLayout<S>;
+  using B = BatchOf<S>;
+  const hn::ScalableTag<S> tag;
+  const hn::RebindToSigned<hn::ScalableTag<S>> ints;
+  const auto subnormal = x < B::broadcast(Layout::kLeastNormal);
+  const B normal = select(subnormal, x * B::broadcast(Layout::kShift), x);
   const auto bits = hn::BitCast(ints, normal.v);
-  const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(ints, 0x3f3504f3)));
-  const Batch e{hn::ConvertTo(FloatLanes(), exponent)};
-  return {{hn::BitCast(FloatLanes(), hn::Sub(bits, hn::ShiftLeft<23>(exponent)))},
-          select(subnormal, e - Batch::broadcast(24.0f), e)};
+  const auto exponent = hn::ShiftRight<Layout::kMantissaBits>(hn::Sub(bits, hn::Set(ints, Layout::kRootHalf)));
+  const B e{hn::ConvertTo(tag, exponent)};
+  return {{hn::BitCast(tag, hn::Sub(bits, hn::ShiftLeft<Layout::kMantissaBits>(exponent)))},
+          select(subnormal, e - B::broadcast(static_cast<double>(Layout::kSubnormalShift)), e)};
 }
 
 }  // namespace fathom::vm::HWY_NAMESPACE

@@ -1,6 +1,6 @@
-// Elementary functions of Batch (f32 lanes) and Real (double) in additions, multiplications, divisions and square
-// roots alone: the same bits on every machine, which libm does not give. One kernel for both; Precision<N> has what
-// differs: how many terms, and into how many parts pi/2 and ln 2 are split.
+// Elementary functions of Batch and RealBatch (f32 and double lanes) and Real (one double) in additions,
+// multiplications, divisions and square roots alone: the same bits on every machine, which libm does not give. One
+// kernel for all; Precision<N> has what differs: how many terms, and into how many parts pi/2 and ln 2 are split.
 //
 // Arguments are reduced after Cody & Waite, "Software Manual for the Elementary Functions", 1980: x - n c with c in
 // parts so short that n times each is exact. Then a Taylor polynomial (sine, cosine, exponential; Abramowitz &
@@ -75,6 +75,9 @@ struct Precision<Real> {
       0.017352392720869973, 0.013971212973552933,  0.011479177415184906, 0.01032281435018578,  0.005457506718640358,
       0.01740087944269402,  -0.014851887071247204, 0.028757851367421566};
 };
+
+template <>
+struct Precision<RealBatch> : Precision<Real> {};
 
 // c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
 template <Plain N, std::size_t kCount>

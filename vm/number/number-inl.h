@@ -13,10 +13,11 @@
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
 // with either operand of + - * min max < > a constant. A Convex or Tagged needs of all these only what
-// vm/semantics-inl.h applies to values. The types: Batch (f32 lanes, batch-inl.h), Real (double, real-inl.h), Interval (interval-inl.h),
-// Along (value and derivative along a line, along-inl.h), Slope (value, gradient and float error over a box,
-// slope-inl.h), Enclosure (what f32 computes over boxes, enclosure-inl.h), and over the first two Dual (derivatives,
-// dual-inl.h), Convex (how far the solid is convex, convex-inl.h) and Tagged (which surface won, tagged-inl.h).
+// vm/semantics-inl.h applies to values. The types: Batch and RealBatch (f32 and double lanes, batch-inl.h), Real
+// (double, real-inl.h: bit for bit a lane of RealBatch), Interval (interval-inl.h), Along (value and derivative along
+// a line, along-inl.h), Slope (value, gradient and float error over a box, slope-inl.h), Enclosure (what f32 computes
+// over boxes, enclosure-inl.h), and over Batch and Real Dual (derivatives, dual-inl.h), Convex (how far the solid is
+// convex, convex-inl.h) and Tagged (which surface won, tagged-inl.h).
 // Recorded (recorded-inl.h) holds no number: it writes down what is done to it.
 //
 // These headers are compiled once for each instruction set, hence "-inl" and the namespace HWY_NAMESPACE.

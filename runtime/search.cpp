@@ -1,0 +1,251 @@
+#include "runtime/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+namespace fathom::runtime {
+namespace {
+
+constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget that double the resolution
+// Segments shorter than this times max(1, |p|) are not cut further: a thousand times the rounding of double.
+constexpr double kResolution = 0x1p-40;
+// ... and where a segment ends behind the surface, so much before that may stay open: the root that is reported may
+// be another one than the first, and no further from it. A 256th of the least that float tells apart at 1.
+constexpr double kRootResolution = 0x1p-30;
+// Intervals cost many evaluations: worth it where a segment is so much longer than what its near end excludes of it.
+// Those of iterated maps, where the field says that they tell little, cost a hundred.
+constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
+// They told something when the bounds on the slope are so much tighter.
+constexpr double kProgress = 0.8;
+// Where they told nothing a segment this many times shorter is asked of next, longer ones only after so many
+// evaluations, and then twice as many.
+constexpr double kShorter = 8;
+constexpr std::uint32_t kSeldom = 1u << 10;
+// A step's length in what it should be for the balls of both ends just to touch, and the slope that is expected at
+// most, relative to the bound on it (compare tiered-inl.h).
+constexpr double kReach = 0.995, kLargestSlope = 0.9;
+// Near a root a step is aimed beyond it by this share of the way.
+constexpr double kOvershoot = 1.1;
+constexpr int kMostRounds = 200;  // of a bracket
+
+}  // namespace
+
+Search::Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch)
+    : field_(&field),
+      origin_(origin),
+      direction_(direction),
+      side_(side),
+      speed_(field.lipschitz * glm::length(direction)),
+      stretch_(stretch),
+      back_(stretch.hint - stretch.begin),
+      done_(false),
+      range_ratio_(std::isfinite(field.longest_told) ? kCostlyRangeRatio : kRangeRatio),
+      hopeless_(field.longest_told / glm::length(direction)),
+      ask_at_(kSeldom) {
+  ask(stretch.begin, Purpose::Begin);
+}
+
+void Search::ask(double t, Purpose purpose) {
+  wanted_ = t;
+  purpose_ = purpose;
+}
+
+void Search::give(double f, std::uint64_t instructions, vm::Workspace& workspace) {
+  ++result_.evaluations;
+  result_.instructions += instructions;
+  if (side_ == 0) side_ = f < 0 ? -1 : 1;
+  if (!std::isfinite(f)) return end(Arrival::Status::Invalid);
+  const double g = side_ < 0 ? -f : f;
+  switch (purpose_) {
+    case Purpose::Begin:
+      return begin(g);
+    case Purpose::End:
+      now_.gb = g;
+      if (!pending_.empty() && pending_.back().a == now_.b) pending_.back().ga = g;
+      return go_on(workspace);
+    case Purpose::Cut:
+      cut(g);
+      return go_on(workspace);
+    case Purpose::Root:
+      return narrow_bracket(g);
+  }
+}
+
+// Where g > 0 the search begins.
+void Search::begin(double g) {
+  double& from = stretch_.begin;
+  if (g < 0 && back_ > 0 && from > 0) {
+    from = std::max(0.0, from - back_);
+    back_ *= 2;
+    return ask(from, Purpose::Begin);
+  }
+  if (g < 0) return hit(from, from);
+  now_ = {from, g, stretch_.end, 0, speed_, speed_};
+  if (stretch_.hint > from && stretch_.hint < stretch_.end) {
+    now_.b = stretch_.hint;
+    // Its value at the hint is that at the near part's end.
+    pending_.push_back({now_.b, g, stretch_.end, std::nan(""), speed_, speed_});
+  }
+  ask(now_.b, Purpose::End);
+}
+
+// Goes on with the near part, or with the far one where nothing is to be done but that: then no segment is kept.
+void Search::cut(double g) {
+  const Segment nearer{now_.a, now_.ga, wanted_, g, now_.fall, now_.rise};
+  if (is_free(nearer, gap_of(nearer))) {
+    leave_behind(nearer);
+    now_.a = wanted_, now_.ga = g;
+    return;
+  }
+  if (g >= 0) pending_.push_back({wanted_, g, now_.b, now_.gb, now_.fall, now_.rise});
+  now_ = nearer;
+}
+
+// Settles the nearest segment, again and again, until a value is wanted.
+void Search::go_on(vm::Workspace& workspace) {
+  while (settle(workspace)) {
+    if (pending_.empty()) return end(contact_ ? Arrival::Status::Contact : Arrival::Status::Miss);
+    now_ = pending_.back();
+    pending_.pop_back();
+    if (std::isnan(now_.gb)) return ask(now_.b, Purpose::End);
+  }
+}
+
+// Whether the segment is done with: free, or too short to tell. Else it is the root's or to be cut in two, and a
+// value is wanted.
+bool Search::settle(vm::Workspace& workspace) {
+  Segment& s = now_;
+  Gap gap = gap_of(s);
+  if (is_free(s, gap)) return leave_behind(s);
+  const Told told = worth_narrowing(s, gap) ? narrow(s, workspace) : Told::Nothing;
+  if (told == Told::Free) return leave_behind(s);
+  if (told == Told::Slope) {
+    gap = gap_of(s);
+    if (is_free(s, gap)) return leave_behind(s);
+    if (s.gb < 0 && s.rise <= 0) {
+      find_root(s, 0);
+      return false;
+    }
+  }
+  const double open = gap.hi - gap.lo, middle = (gap.lo + gap.hi) / 2;
+  if (open <= coarsened(s.gb < 0 ? kRootResolution : kResolution, middle) || !(middle > s.a && middle < s.b)) {
+    contact_ = contact_ || s.gb >= 0;
+    if (s.gb < 0) find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
+    return s.gb >= 0;
+  }
+  ask(told == Told::Slope ? middle : std::min(middle, place_to_cut(s, gap)), Purpose::Cut);
+  return false;
+}
+
+bool Search::leave_behind(const Segment& s) {
+  slope_ = (s.gb - s.ga) / (s.b - s.a);
+  return true;
+}
+
+// Where intervals may tell something of the near part; else where the balls of the near end and of the sample should
+// just touch, if g goes on as it did; near a root, just beyond it.
+double Search::place_to_cut(const Segment& s, const Gap& gap) const {
+  const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
+  if (hopeless_ > range_ratio_ * near) return s.a + hopeless_;
+  double step = kReach * (near + s.ga / s.rise) / (1 - slope / s.rise);
+  if (slope < 0) {
+    const double open = 0.75 * coarsened(kRootResolution, gap.lo);
+    step = std::max(step, std::min(kOvershoot * s.ga / -slope, near + open));
+  }
+  return std::max(s.a + step, gap.lo + coarsened(kResolution, gap.lo));
+}
+
+bool Search::is_free(const Segment& s, const Gap& gap) { return s.gb >= 0 && gap.lo > gap.hi; }
+
+// g can be below zero only where neither end's value and slope keep it from it; empty (lo > hi) when that is nowhere.
+Search::Gap Search::gap_of(const Segment& s) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double lo = s.fall > 0 ? s.a + s.ga / s.fall : infinity;
+  if (s.gb < 0) return {std::min(lo, s.b), s.b};
+  const double hi = s.rise > 0 ? s.b - s.gb / s.rise : -infinity;
+  return {lo, hi};
+}
+
+bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
+  const double length = s.b - s.a;
+  if (length <= range_ratio_ * (gap.lo - s.a)) return false;
+  if (length <= hopeless_) return true;
+  if (result_.evaluations < ask_at_) return false;
+  ask_at_ *= 2;
+  return true;
+}
+
+// Takes what interval arithmetic knows of the segment.
+Search::Told Search::narrow(Segment& s, vm::Workspace& workspace) {
+  ++result_.evaluations;
+  const double length = s.b - s.a, known = s.fall + s.rise;
+  std::optional<vm::AlongLine> line = field_->along(origin_, direction_, s.a, s.b, workspace, result_.instructions);
+  if (line) {
+    const auto [lo, hi] = line->derivative;
+    s.fall = std::min(s.fall, std::max(0.0, side_ < 0 ? hi : -lo));
+    s.rise = std::min(s.rise, std::max(0.0, side_ < 0 ? -lo : hi));
+  }
+  const bool free = line && (side_ < 0 ? line->value.hi < 0 : line->value.lo > 0);
+  const bool told = free || s.fall + s.rise < kProgress * known;
+  hopeless_ = told ? std::max(hopeless_, kShorter * length) : length / kShorter;
+  return free ? Told::Free : told ? Told::Slope : Told::Nothing;
+}
+
+// g falls from above zero at a to zero or below at b, and the first root is in a stretch of that width: the Illinois
+// method (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
+void Search::find_root(const Segment& s, double width) {
+  bracket_ = {s.a, s.b, s.ga, s.gb, 0, 0};
+  width_ = width;
+  next_of_bracket();
+}
+
+void Search::next_of_bracket() {
+  const Bracket& b = bracket_;
+  const double width = b.hi - b.lo, least = 0.25 * kResolution * scale(b.hi);
+  if (width <= 2 * least || b.g_hi == 0 || b.rounds == kMostRounds) return hit(b.g_hi == 0 ? b.hi : b.lo, b.hi);
+  const double secant = b.lo + width * (b.rounds % 8 == 7 ? 0.5 : b.g_lo / (b.g_lo - b.g_hi));
+  ask(std::clamp(secant, b.lo + least, b.hi - least), Purpose::Root);
+}
+
+void Search::narrow_bracket(double g) {
+  Bracket& b = bracket_;
+  if (g > 0) {
+    b.lo = wanted_, b.g_lo = g;
+    if (b.kept > 0) b.g_hi *= 0.5;
+    b.kept = 1;
+  } else {
+    b.hi = wanted_, b.g_hi = g;
+    if (b.kept < 0) b.g_lo *= 0.5;
+    b.kept = -1;
+  }
+  ++b.rounds;
+  next_of_bracket();
+}
+
+double Search::scale(double t) const {
+  const glm::dvec3 p = glm::abs(origin_ + t * direction_);
+  return std::max({1.0, p.x, p.y, p.z});
+}
+double Search::coarsened(double resolution, double t) const {
+  const double finest = resolution * scale(t);
+  if (result_.evaluations <= kSearchBudget) return finest;
+  return std::ldexp(finest, static_cast<int>((result_.evaluations - kSearchBudget) / kCoarsening));
+}
+
+void Search::hit(double lo, double hi) {
+  result_.t = (lo + hi) / 2;
+  result_.width = std::max({hi - lo, width_, 0.0});
+  end(Arrival::Status::Hit);
+}
+
+void Search::end(Arrival::Status status) {
+  result_.status = status;
+  result_.side = side_ < 0 ? -1 : 1;
+  done_ = true;
+}
+
+}  // namespace fathom::runtime
