@@ -6,7 +6,7 @@ namespace fathom::test {
 // `n` cases, or an eighth of them under the sanitizers: there everything takes ten times as long, and what they look for
 // shows in few cases as in many.
 constexpr int few(int n) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FATHOM_SANITIZED
   return (n + 7) / 8;
 #else
   return n;
