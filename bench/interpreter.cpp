@@ -22,7 +22,10 @@ constexpr int kRounds = 41;
 class Scene {
  public:
   explicit Scene(const CompiledAhead& ahead)
-      : scene_(compile_file(ahead.path)), cloud_(make_cloud(kPoints, scene_.bound)), out_(kPoints) {}
+      : scene_(compile_file(ahead.path)),
+        cloud_(make_cloud(kPoints, scene_.bound)),
+        out_(kPoints),
+        convex_(kPoints) {}
 
   // A round of a millisecond or more.
   int repeats() const { return std::max(1, 4000 / static_cast<int>(scene_.distance.instructions() + 50)); }
@@ -30,6 +33,11 @@ class Scene {
   void interpret(int repeats) {
     for (int i = 0; i < repeats; ++i) {
       vm::evaluate_distance(scene_.distance, cloud_.points(), kPoints, out_.data(), workspace_);
+    }
+  }
+  void interpret_convex(int repeats) {
+    for (int i = 0; i < repeats; ++i) {
+      vm::evaluate_convex(scene_.distance, cloud_.points(), kPoints, out_.data(), convex_.data(), workspace_);
     }
   }
   void interpret_scalar() {
@@ -48,7 +56,7 @@ class Scene {
  private:
   compiler::CompiledScene scene_;
   Cloud cloud_;
-  std::vector<float> out_;
+  std::vector<float> out_, convex_;
   vm::Workspace workspace_;
 };
 
@@ -77,6 +85,8 @@ int main(int argc, char** argv) {
          against(ahead.distance)});
     add({name + ": machine / emitted C++ with -ffast-math", "ns a point", nanoseconds, INFINITY, 0, kRounds,
          interpret, against(fast.distance)});
+    add({name + ": telling what is convex / distances alone", "ns a point", nanoseconds, INFINITY, 0, kRounds,
+         [&scene, repeats] { scene.interpret_convex(repeats); }, interpret});
     add({name + ": machine / its scalar interpreter", "ns a point", 1e9 / kPoints, bars.scalar, 0, kRounds,
          [&scene] { scene.interpret(1); }, [&scene] { scene.interpret_scalar(); }});
   }

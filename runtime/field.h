@@ -20,7 +20,7 @@ struct Field {
   double far;           // rays end here, scene units; may be infinite when the bound is finite
   float band;           // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
-  float magnitude;                         // scene units (compiler/bounds.h)
+  float magnitude;  // scene units (compiler/bounds.h)
   // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
   // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
   double longest_told;
@@ -33,12 +33,13 @@ struct Field {
   // same scene. May read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
+  bool knows_convex() const { return convex && !regions && evaluator == nullptr; }
+
   // Distances of many points in float, or of one or many in double; with regions, lower bounds where nothing is near.
   // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`,
   // or put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
-  bool knows_convex() const { return convex && !regions && evaluator == nullptr; }
   double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
   void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
                 vm::Workspace& workspace) const;

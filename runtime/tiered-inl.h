@@ -32,7 +32,8 @@ inline constexpr double kBeta = 0.5, kReach = 1.99;
 inline constexpr double kLargestM = 0.9;
 // Within this many d_f of the surface, or the field's band when that is more, a crossing is tried.
 inline constexpr double kBandErrors = 16;
-// It is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side.
+// It is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side; from
+// afar, along a line that holds, by less, for there the share is long.
 inline constexpr double kOvershoot = 1.1, kFarOvershoot = 1.01, kOvershootErrors = 4;
 // ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
 // widened by d_f may take it to twice that, no further.
@@ -43,6 +44,7 @@ inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
 // would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
 // more evaluations than its budget.
 inline constexpr double kMostPenalty = 16, kBudget = 704;
+// After one from afar a single one: it says where the line bends, and nothing of what is near.
 inline constexpr double kFarPenalty = 1;
 // What is convex without end is so this far, a number that can be reckoned with.
 inline constexpr double kEndless = 0x1p100;
@@ -167,7 +169,6 @@ class Tiered {
 
   // The plain step from the last accepted sample.
   HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
-    // An attempt from afar, along a line, says nothing of what is near.
     const N penalty = a_.get(kPenalty);
     const Mask near = from_crossing & (last_g_ < band_), grazes = near & (penalty > k(kMostPenalty));
     patience_ = select(near, penalty, select(from_crossing, k(kFarPenalty), patience_));

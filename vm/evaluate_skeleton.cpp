@@ -40,13 +40,7 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
     break;
 #define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, immediates, cost)
 #include "vm/opcodes.def"
-#undef OP
-#undef OP_Point
-#undef OP_Shape
-#undef OP_Outline
-#undef OP_Unary
-#undef OP_Binary
-#undef OP_Machine
+#include "vm/opcodes_end.def"
       // clang-format on
       default:
         break;

@@ -126,13 +126,7 @@ class Machine {
 #define OP_Machine(Name)
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
-#undef OP
-#undef OP_Point
-#undef OP_Shape
-#undef OP_Outline
-#undef OP_Unary
-#undef OP_Binary
-#undef OP_Machine
+#include "vm/opcodes_end.def"
 #undef APPLY
         // clang-format on
         case Opcode::Drop:

@@ -65,13 +65,7 @@ namespace fathom::vm::HWY_NAMESPACE {
 #define OP_Machine(Name, meaning)
 #define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
 #include "vm/opcodes.def"
-#undef OP
-#undef OP_Point
-#undef OP_Shape
-#undef OP_Outline
-#undef OP_Unary
-#undef OP_Binary
-#undef OP_Machine
+#include "vm/opcodes_end.def"
 
 // How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and how
 // meanings are applied to it. `convex`: of a shape that is.

@@ -42,13 +42,7 @@ std::vector<Ref> run(Opcode opcode, std::span<const std::uint32_t> words) {
 #define OP_Machine(Name) case Opcode::Name: break;
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
-#undef OP
-#undef OP_Point
-#undef OP_Shape
-#undef OP_Outline
-#undef OP_Unary
-#undef OP_Binary
-#undef OP_Machine
+#include "vm/opcodes_end.def"
     // clang-format on
   }
   CHECK(false, "an opcode that computes something of a point or of one or two numbers");
