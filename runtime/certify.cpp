@@ -3,12 +3,12 @@
 namespace fathom::runtime {
 
 Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch,
-                  vm::Workspace& workspace) {
+                  RealScratch& scratch) {
   Search search(field, origin, direction, side, stretch);
   while (!search.done()) {
     std::uint64_t instructions = 0;
-    const double f = field.evaluate(search.point(), workspace, instructions);
-    search.give(f, instructions, workspace);
+    const double f = field.evaluate(search.point(), scratch, instructions);
+    search.give(f, instructions, scratch);
   }
   return search.result();
 }

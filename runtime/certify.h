@@ -14,7 +14,6 @@
 
 #include "runtime/field.h"
 #include "runtime/search.h"
-#include "vm/evaluate.h"
 
 namespace fathom::runtime {
 
@@ -24,6 +23,6 @@ namespace fathom::runtime {
 // Contact: no root, but nearer to one than the resolution of 2^-40 max(1, |p|). Always ends: a search that takes more
 // than kSearchBudget evaluations goes on at ever coarser resolution, and what stays open is a contact.
 Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch,
-                  vm::Workspace& workspace);
+                  RealScratch& scratch);
 
 }  // namespace fathom::runtime

@@ -114,31 +114,31 @@ void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScr
   vm::evaluate_distance(*distance, points, count, out, workspace);
 }
 
-double Field::evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const {
-  if (regions) return regions->evaluate(point, workspace, instructions);
+double Field::evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const {
+  if (regions) return regions->evaluate(point, scratch, instructions);
   instructions += distance->instructions();
-  return vm::evaluate_distance(*distance, point, workspace);
+  return vm::evaluate_distance(*distance, point, scratch.workspace);
 }
 
 void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
-                     vm::Workspace& workspace) const {
+                     RealScratch& scratch) const {
   if (!regions) {
     std::fill_n(instructions, count, distance->instructions());
-    return vm::evaluate_distance(*distance, points, count, out, workspace);
+    return vm::evaluate_distance(*distance, points, count, out, scratch.workspace);
   }
   // Points of different rays share no part.
   for (std::size_t i = 0; i < count; ++i) {
     instructions[i] = 0;
-    out[i] = regions->evaluate(glm::dvec3(points.x[i], points.y[i], points.z[i]), workspace, instructions[i]);
+    out[i] = regions->evaluate(glm::dvec3(points.x[i], points.y[i], points.z[i]), scratch, instructions[i]);
   }
 }
 
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                          vm::Workspace& workspace, std::uint64_t& instructions) const {
+                                          RealScratch& scratch, std::uint64_t& instructions) const {
   // A stretch over several cells is cheaper cut until it is within one.
-  if (regions) return regions->along(origin, direction, begin, end, workspace, instructions);
+  if (regions) return regions->along(origin, direction, begin, end, scratch, instructions);
   instructions += distance->instructions();
-  return vm::evaluate_along(*distance, origin, direction, begin, end, workspace);
+  return vm::evaluate_along(*distance, origin, direction, begin, end, scratch.workspace);
 }
 
 }  // namespace fathom::runtime

@@ -40,12 +40,12 @@ struct Field {
   // or put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
-  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+  double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
   void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
-                vm::Workspace& workspace) const;
+                RealScratch& scratch) const;
   // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
+                                     RealScratch& scratch, std::uint64_t& instructions) const;
 };
 
 // `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least

@@ -78,9 +78,9 @@ void Marcher::search_once() {
     for (int axis = 0; axis < 3; ++axis) question_[axis][i] = point[axis];
   }
   field_.evaluate({question_[0].data(), question_[1].data(), question_[2].data()}, count, answer_.data(),
-                  price_.data(), workspace_);
+                  price_.data(), real_scratch_);
   for (std::size_t i = count; i-- > 0;) {
-    searched_[i].search.give(answer_[i], price_[i], workspace_);
+    searched_[i].search.give(answer_[i], price_[i], real_scratch_);
     if (searched_[i].search.done()) end_search(i);
   }
 }

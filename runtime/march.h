@@ -55,7 +55,8 @@ class Marcher {
 
   // Needs room.
   void add(std::uint32_t id, const Ray& ray) {
-    if (room() <= 0) [[unlikely]] refuse();
+    if (room() <= 0) [[unlikely]]
+      refuse();
     ++counters_.rays;
     waiting_.push(id, ray);
   }
@@ -121,6 +122,7 @@ class Marcher {
   int live_ = 0;  // rays under way; those that were added since the last advance() wait
   MarchCounters counters_;
   vm::Workspace workspace_;
+  RealScratch real_scratch_;
   StageClock clock_;
 
  private:

@@ -20,8 +20,9 @@ using Kind = Regions::Kind;
 constexpr std::uint64_t kLeastCost = 2500;
 // The smallest cells: so many levels below that with as many cells as there are choices.
 constexpr int kExtraLevels = 3, kMostLevels = 10;
-// The top levels that are a grid.
-constexpr int kGridLevel = 5;
+// The top levels that are a grid, at most; it takes at most this share of the memory, and no more than all else.
+constexpr int kMostGridLevel = 6;
+constexpr std::size_t kGridShare = 8;
 
 // Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
 // granted.
@@ -55,7 +56,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   choices_ = std::max<std::size_t>(1, expression.choices().size());
   if (!choose_root(contents_)) return nullptr;
   regions_->constants_.emplace(program_);
-  const std::size_t fixed_bytes = regions_->constants_->bytes() + choose_grid();
+  const std::size_t fixed_bytes = regions_->constants_->bytes();
   // What takes too much memory is cut into fewer, longer leaves.
   for (;; longer_ *= 2) {
     regions_->nodes_.assign(1, {});
@@ -68,6 +69,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
     if (longer_ > choices_) return nullptr;
   }
   close_outside();
+  choose_grid();
   make_grid();
   count_bytes();
   regions_->facts_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -162,14 +164,12 @@ void RegionBuilder::close_outside() {
   }
 }
 
-// The finest grid that takes a small share of the memory; how much it takes.
-std::size_t RegionBuilder::choose_grid() {
-  constexpr std::size_t kShare = 8;
+void RegionBuilder::choose_grid() {
+  const std::size_t rest = bytes_, most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
   const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
-  int level = std::min(kGridLevel, regions_->tree_.levels);
-  while (level > 0 && bytes(level) > options_.memory / kShare) --level;
+  int level = std::min(kMostGridLevel, regions_->tree_.levels);
+  while (level > 0 && bytes(level) > most) --level;
   regions_->tree_.grid_level = level;
-  return bytes(level);
 }
 
 // Puts the cells of the grid's level, or the leaves they are in, before the tree's nodes.
@@ -208,7 +208,7 @@ void RegionBuilder::count_bytes() {
   r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
                    r.constants_->bytes();
   constexpr std::size_t kCache = 1u << 20;
-  r.beyond_cache_ = r.facts_.bytes > kCache;
+  r.tree_.beyond_cache = r.facts_.bytes > kCache;
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

@@ -47,7 +47,7 @@ class RegionBuilder {
   void split_all(std::vector<Cell> cells);
   std::uint32_t append(Piece& piece);
   void close_outside();
-  std::size_t choose_grid();
+  void choose_grid();
   void make_grid();
   void count_bytes();
 

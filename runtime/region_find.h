@@ -18,21 +18,30 @@ struct RegionTree {
   float lipschitz;
   float far;  // the least value in a far cell, in edges of it
   int levels, grid_level;
+  bool beyond_cache;  // a core's own cache does not hold the scene's regions
 };
 
-inline constexpr std::uint32_t kOutside = 0xffffffff;     // in place of a leaf's word
-inline constexpr std::uint32_t kFirstNear = 0x80000000u;  // words below are inner cells' and far leaves'
+inline constexpr std::size_t kMostPoints = 768;  // found together: as many as a thread moves on at once (lanes.h)
 
-// Points that are in no far leaf, in the order of the points; a multiple of 16 long, and 16 more.
+inline constexpr std::uint32_t kOutside = 0xffffffff;      // in place of a leaf's word
+inline constexpr std::uint32_t kFirstNear = 0x80000000u;   // words below are inner cells' and far leaves'
+inline constexpr std::uint32_t kRefPayload = 0x3fffffffu;  // of a leaf's word: without its kind
+
+// Points that are in no far leaf, in their order; a multiple of 16 long, and 16 more.
 struct NearPoints {
-  std::uint32_t* point;
-  std::uint32_t* ref;  // of the leaf it is in, or kOutside
-  float* limit;        // of the leaf
+  std::uint32_t* point;  // its number
+  std::uint32_t* ref;    // of the leaf it is in, or kOutside
+  float* limit;          // of the leaf
 };
 
-// distance[i] of points in far leaves, of the others anything; and which the others are: how many. `distance` is
-// padded to a multiple of 16.
-std::size_t find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+struct FoundPoints {
+  std::size_t near;
+  bool outside;  // whether any of those are outside the root
+};
+
+// distance[i] of points in far leaves, of the others anything; and which the others are. `distance` is padded to a
+// multiple of 16.
+FoundPoints find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
                          const NearPoints& near);
 
 }  // namespace fathom::runtime

@@ -13,7 +13,7 @@ constexpr float kLimit = 0.6f;
 // The same of what is split further.
 constexpr float kInnerLimit = 0.7f;
 // Choices in a program short enough for a leaf.
-constexpr std::uint32_t kLeafChoices = 4;
+constexpr std::uint32_t kLeafChoices = 3;
 // Cells are split no further after so many levels at which their parts did not get this much shorter.
 constexpr double kShorter = 0.9;
 constexpr int kMostIdle = 2;

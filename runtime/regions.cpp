@@ -48,44 +48,35 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
                        vm::Workspace& workspace) const {
   static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
   CHECK(count <= kMostPoints, "a batch of points is too large");
-  std::size_t near = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
+  FoundPoints found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
   std::fill_n(s.instructions.data(), count, 0);
-  s.counters.far += count - near;
-  near = settle_outside(points, near, distance, s, workspace);
-  s.counters.specialised += near;
-  group(near, s);
+  s.counters.far += count - found.near;
+  if (found.outside) [[unlikely]]
+    found.near = settle_outside(points, found.near, distance, s, workspace);
+  s.counters.specialised += found.near;
+  sort(points, found.near, s);
   for (const std::uint32_t number : s.met) {
     const vm::Skeleton& skeleton = skeletons_[number];
-    const std::uint32_t size = std::exchange(s.sizes[number], 0);
-    const std::span<const vm::SkeletonJob> jobs(s.jobs.data() + s.ends[number] - size, size);
+    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
     for (const vm::SkeletonJob& job : jobs) s.instructions[job.point] = skeleton.instructions;
-    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, points, distance, workspace);
+    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, distance, workspace);
+    jobs.clear();
   }
+  s.met.clear();
 }
 
-// Sorts the jobs of the first `near` points by their programs' skeletons. Without branches on what a point meets,
-// which nothing foretells.
-void Regions::group(std::size_t near, RegionScratch& s) const {
-  s.sizes.resize(skeletons_.size(), 0);
-  s.ends.resize(skeletons_.size());
-  s.met.resize(skeletons_.size() + 1);
-  std::size_t met = 0;
-  for (std::size_t j = 0; j < near; ++j) {
-    const std::uint32_t number = pool_[Node{0, s.ref[j]}.payload()];
-    s.number[j] = number;
-    s.met[met] = number;
-    met += s.sizes[number]++ == 0;
-  }
-  s.met.resize(met);
-  std::uint32_t first = 0;
-  for (const std::uint32_t number : s.met) {
-    s.ends[number] = first;
-    first += s.sizes[number];
+// Sorts the first `near` points by their programs' skeletons.
+void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const {
+  s.jobs.resize(skeletons_.size());
+  if (tree_.beyond_cache) {
+    for (std::size_t j = 0; j < near; ++j) __builtin_prefetch(pool_.data() + Node{0, s.ref[j]}.payload());
   }
   for (std::size_t j = 0; j < near; ++j) {
-    const std::uint32_t at = Node{0, s.ref[j]}.payload();
-    s.jobs[s.ends[s.number[j]]++] = {at, s.point[j], s.limit[j]};
-    if (beyond_cache_) skeletons_.prefetch(*constants_, pool_.data(), at);
+    const std::uint32_t i = s.point[j], at = Node{0, s.ref[j]}.payload(), number = pool_[at];
+    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
+    if (jobs.empty()) s.met.push_back(number);
+    jobs.push_back({points.x[i], points.y[i], points.z[i], s.limit[j], at, i});
+    if (tree_.beyond_cache) skeletons_.prefetch(*constants_, pool_.data(), at);
   }
 }
 
@@ -98,16 +89,15 @@ std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* 
     const std::uint32_t i = s.point[j];
     std::uint32_t ref = s.ref[j];
     float limit = s.limit[j];
-    if (ref == kOutside) [[unlikely]] {
+    if (ref == kOutside) {
       const Found found = find(points.x[i], points.y[i], points.z[i]);
       ref = found.node.ref, limit = found.node.value;
     }
-    if (Node{0, ref}.payload() == kWhole) [[unlikely]] {
+    if (Node{0, ref}.payload() == kWhole) {
       vm::evaluate_distance(whole_, {points.x + i, points.y + i, points.z + i}, 1, distance + i, workspace);
       s.instructions[i] = static_cast<std::uint32_t>(whole_part_.sources.size());
       continue;
     }
-    __builtin_prefetch(pool_.data() + Node{0, ref}.payload());
     s.point[left] = i, s.ref[left] = ref, s.limit[left] = limit;
     ++left;
   }
@@ -124,28 +114,35 @@ void Regions::part_of(const Node& node, vm::Part& part) const {
   }
 }
 
-double Regions::evaluate(glm::dvec3 p, vm::Workspace& workspace, std::uint64_t& instructions) const {
+const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
+  if (node.kind() == Kind::Program && node.payload() == kWhole) return whole_part_;
+  if (scratch.of != this || scratch.ref != node.ref) {
+    part_of(node, scratch.part);
+    scratch.of = this, scratch.ref = node.ref;
+  }
+  return scratch.part;
+}
+
+double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& instructions) const {
   const glm::vec3 f(p);
   const Found found = find(f.x, f.y, f.z);
   if (found.node.kind() == Kind::Far) return static_cast<double>(far_value(found, f.x, f.y, f.z));
   const double limit = static_cast<double>(found.node.value);
-  vm::Part part;
-  part_of(found.node, part);
+  const vm::Part& part = part_of(found.node, scratch);
   instructions += part.sources.size();
-  return std::min(vm::evaluate_distance(part, p, workspace), limit);
+  return std::min(vm::evaluate_distance(part, p, scratch.workspace), limit);
 }
 
 std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                            vm::Workspace& workspace, std::uint64_t& instructions) const {
+                                            RealScratch& scratch, std::uint64_t& instructions) const {
   const glm::vec3 a(origin + begin * direction), b(origin + end * direction);
   const Found first = find(a.x, a.y, a.z), last = find(b.x, b.y, b.z);
   if (first.level != last.level || first.cell_at(tree_.levels) != last.cell_at(tree_.levels)) return std::nullopt;
   const double infinity = std::numeric_limits<double>::infinity();
   if (first.node.kind() == Kind::Far) return vm::AlongLine{{-infinity, infinity}, {-infinity, infinity}};
-  vm::Part part;
-  part_of(first.node, part);
+  const vm::Part& part = part_of(first.node, scratch);
   instructions += part.sources.size();
-  vm::AlongLine line = vm::evaluate_along(part, origin, direction, begin, end, workspace);
+  vm::AlongLine line = vm::evaluate_along(part, origin, direction, begin, end, scratch.workspace);
   const double limit = static_cast<double>(first.node.value);
   line.value = {std::min(line.value.lo, limit), std::min(line.value.hi, limit)};
   line.derivative = {std::min(line.derivative.lo, 0.0), std::max(line.derivative.hi, 0.0)};

@@ -39,9 +39,6 @@ struct RegionOptions {
   int room = 0;                    // the root is 2^room times as long as the scene's bounded parts
 };
 
-// Points evaluated together at most: as many as a thread moves on at once (lanes.h).
-inline constexpr std::size_t kMostPoints = 768;
-
 // How often points were in leaves of each kind.
 struct RegionCounters {
   std::uint64_t far = 0, specialised = 0;
@@ -50,14 +47,24 @@ struct RegionCounters {
 // What a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
-  using PerPoint = std::array<T, kMostPoints + 16>;  // find_regions() writes whole registers
-  PerPoint<std::uint32_t> point, ref, number;  // of those in no far leaf: which, the leaf, its program's skeleton
+  using PerPoint = std::array<T, kMostPoints + 16>;  // whole registers are read and written
+  PerPoint<std::uint32_t> point, ref;                // of those in no far leaf: which, the leaf
   PerPoint<float> limit;
-  PerPoint<vm::SkeletonJob> jobs;          // by skeletons
-  std::vector<std::uint32_t> met;          // skeletons
-  std::vector<std::uint32_t> sizes, ends;  // [skeleton] of its jobs
-  PerPoint<std::uint32_t> instructions;    // [point] evaluated for it
+  std::vector<std::vector<vm::SkeletonJob>> jobs;  // [skeleton]
+  std::vector<std::uint32_t> met;                  // the skeletons that have any
+  PerPoint<std::uint32_t> instructions;            // [point] evaluated for it
   RegionCounters counters;
+};
+
+class Regions;
+
+// What a thread needs to evaluate in double, a point at a time.
+struct RealScratch {
+  vm::Workspace workspace;
+  // The part that was asked last, which will be asked again: it is unpacked but once.
+  const Regions* of = nullptr;
+  std::uint32_t ref = 0;  // of its leaf
+  vm::Part part;
 };
 
 class Regions {
@@ -71,11 +78,11 @@ class Regions {
   void evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   // The same of one point in double, with the program's unrounded constants; adds to `instructions`.
-  double evaluate(glm::dvec3 point, vm::Workspace& workspace, std::uint64_t& instructions) const;
+  double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
 
   // What min(f, limit) does along a stretch of a line that lies in one cell; nothing when it does not.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                     vm::Workspace& workspace, std::uint64_t& instructions) const;
+                                     RealScratch& scratch, std::uint64_t& instructions) const;
 
   // The part of the program that holds at a point, near the surface: where its value is at most `limit`.
   struct Region {
@@ -108,9 +115,9 @@ class Regions {
     std::uint32_t ref;
 
     Kind kind() const { return static_cast<Kind>(ref >> 30); }
-    std::uint32_t payload() const { return ref & 0x3fffffff; }
+    std::uint32_t payload() const { return ref & kRefPayload; }
   };
-  static constexpr std::uint32_t kWhole = 0x3fffffff;  // the whole program
+  static constexpr std::uint32_t kWhole = kRefPayload;  // the whole program
 
  private:
   friend class RegionBuilder;
@@ -127,13 +134,14 @@ class Regions {
   };
   Found find(float x, float y, float z) const;
   float far_value(const Found& found, float x, float y, float z) const;
-  void group(std::size_t near, RegionScratch& scratch) const;
+  void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
   std::size_t settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
                              vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
   float depth_within(const Found& found, float x, float y, float z) const;
   void part_of(const Node& node, vm::Part& part) const;
+  const vm::Part& part_of(const Node& node, RealScratch& scratch) const;
 
   vm::Code whole_;
   vm::Part whole_part_;
@@ -143,7 +151,6 @@ class Regions {
   std::optional<vm::Constants> constants_;
   vm::Skeletons skeletons_;
   std::vector<std::uint32_t> pool_;  // of the leaves' programs
-  bool beyond_cache_ = false;        // a core's own cache does not hold all this
   Facts facts_;
 };
 

@@ -54,7 +54,7 @@ void Search::ask(double t, Purpose purpose) {
   purpose_ = purpose;
 }
 
-void Search::give(double f, std::uint64_t instructions, vm::Workspace& workspace) {
+void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
   ++result_.evaluations;
   result_.instructions += instructions;
   if (side_ == 0) side_ = f < 0 ? -1 : 1;
@@ -66,10 +66,10 @@ void Search::give(double f, std::uint64_t instructions, vm::Workspace& workspace
     case Purpose::End:
       now_.gb = g;
       if (!pending_.empty() && pending_.back().a == now_.b) pending_.back().ga = g;
-      return go_on(workspace);
+      return go_on(scratch);
     case Purpose::Cut:
       cut(g);
-      return go_on(workspace);
+      return go_on(scratch);
     case Purpose::Root:
       return narrow_bracket(g);
   }
@@ -106,8 +106,8 @@ void Search::cut(double g) {
 }
 
 // Settles the nearest segment, again and again, until a value is wanted.
-void Search::go_on(vm::Workspace& workspace) {
-  while (settle(workspace)) {
+void Search::go_on(RealScratch& scratch) {
+  while (settle(scratch)) {
     if (pending_.empty()) return end(contact_ ? Arrival::Status::Contact : Arrival::Status::Miss);
     now_ = pending_.back();
     pending_.pop_back();
@@ -117,11 +117,11 @@ void Search::go_on(vm::Workspace& workspace) {
 
 // Whether the segment is done with: free, or too short to tell. Else it is the root's or to be cut in two, and a
 // value is wanted.
-bool Search::settle(vm::Workspace& workspace) {
+bool Search::settle(RealScratch& scratch) {
   Segment& s = now_;
   Gap gap = gap_of(s);
   if (is_free(s, gap)) return leave_behind(s);
-  const Told told = worth_narrowing(s, gap) ? narrow(s, workspace) : Told::Nothing;
+  const Told told = worth_narrowing(s, gap) ? narrow(s, scratch) : Told::Nothing;
   if (told == Told::Free) return leave_behind(s);
   if (told == Told::Slope) {
     gap = gap_of(s);
@@ -180,10 +180,10 @@ bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
 }
 
 // Takes what interval arithmetic knows of the segment.
-Search::Told Search::narrow(Segment& s, vm::Workspace& workspace) {
+Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
   ++result_.evaluations;
   const double length = s.b - s.a, known = s.fall + s.rise;
-  std::optional<vm::AlongLine> line = field_->along(origin_, direction_, s.a, s.b, workspace, result_.instructions);
+  std::optional<vm::AlongLine> line = field_->along(origin_, direction_, s.a, s.b, scratch, result_.instructions);
   if (line) {
     const auto [lo, hi] = line->derivative;
     s.fall = std::min(s.fall, std::max(0.0, side_ < 0 ? hi : -lo));

@@ -3,7 +3,7 @@
 // says what is searched, and how a segment is proved free).
 //
 //     Search search(field, origin, direction, side, stretch);
-//     while (!search.done()) search.give(field.evaluate(search.point(), ...), workspace);
+//     while (!search.done()) search.give(field.evaluate(search.point(), ...), scratch);
 //
 // What it does depends on nothing but the field, the ray and the stretch. Tested by: tests/runtime/certify_test.cpp
 #pragma once
@@ -44,7 +44,7 @@ class Search {
   // Where f is wanted next, unless it is done.
   glm::dvec3 point() const { return origin_ + wanted_ * direction_; }
   // Goes on with f there, which took so many instructions.
-  void give(double f, std::uint64_t instructions, vm::Workspace& workspace);
+  void give(double f, std::uint64_t instructions, RealScratch& scratch);
 
   const Certified& result() const { return result_; }  // once it is done
 
@@ -69,15 +69,15 @@ class Search {
   void ask(double t, Purpose purpose);
   void begin(double g);
   void cut(double g);
-  void go_on(vm::Workspace& workspace);
-  bool settle(vm::Workspace& workspace);
+  void go_on(RealScratch& scratch);
+  bool settle(RealScratch& scratch);
   bool leave_behind(const Segment& s);
   double place_to_cut(const Segment& s, const Gap& gap) const;
   static Gap gap_of(const Segment& s);
   static bool is_free(const Segment& s, const Gap& gap);
   bool worth_narrowing(const Segment& s, const Gap& gap);
   enum class Told : std::uint8_t { Nothing, Slope, Free };
-  Told narrow(Segment& s, vm::Workspace& workspace);
+  Told narrow(Segment& s, RealScratch& scratch);
   void find_root(const Segment& s, double width);
   void next_of_bracket();
   void narrow_bracket(double g);

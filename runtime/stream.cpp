@@ -104,7 +104,7 @@ template <>
 void Stream<double>::evaluate() {
   const auto& row = lanes_->row;
   for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
-    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, workspace_, instructions_[i]);
+    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, real_scratch_, instructions_[i]);
   }
 }
 

@@ -53,82 +53,122 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   }
 }
 
+// Rows of floats, one a lane, turned: floats q * kQuad and on of row(lane), as to[float][lane].
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE void turn_quad(const float* const* from, std::size_t q, float* to) {
-  std::copy_n(from[0] + q * kQuad, kQuad, to);
+template <class Row>
+HWY_INLINE void turn_quad(const Row& row, std::size_t q, float* to) {
+  std::copy_n(row(0) + q * kQuad, kQuad, to);
 }
 #else
-// Quads of lanes first, first + 4, ..., side by side.
-template <class D>
-HWY_INLINE hn::Vec<D> load_quads(D d, const float* const* from, std::size_t first, std::size_t q) {
-  if constexpr (hn::MaxLanes(D()) == kQuad) {
-    return hn::LoadU(d, from[first] + q * kQuad);
+// Four rows that are four columns within each of their quads.
+HWY_INLINE void turn_blocks(hn::Vec<FloatLanes> (&v)[kQuad]) {
+  const FloatLanes d;
+  const hn::RepartitionToWide<FloatLanes> wide;
+  const auto pairs = [&](auto a) HWY_ATTR { return hn::BitCast(wide, a); };
+  const auto low01 = pairs(hn::InterleaveLower(d, v[0], v[1])), high01 = pairs(hn::InterleaveUpper(d, v[0], v[1]));
+  const auto low23 = pairs(hn::InterleaveLower(d, v[2], v[3])), high23 = pairs(hn::InterleaveUpper(d, v[2], v[3]));
+  v[0] = hn::BitCast(d, hn::InterleaveLower(wide, low01, low23));
+  v[1] = hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23));
+  v[2] = hn::BitCast(d, hn::InterleaveLower(wide, high01, high23));
+  v[3] = hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23));
+}
+
+// `length` floats of each of the lanes first, first + stride, ..., side by side.
+template <std::size_t length, class D, class Row>
+HWY_INLINE hn::Vec<D> load_rows(D d, const Row& row, std::size_t first, std::size_t stride, std::size_t q) {
+  if constexpr (hn::MaxLanes(D()) == length) {
+    return hn::LoadU(d, row(first) + q * kQuad);
   } else {
     const hn::Half<D> half;
-    const auto low = load_quads(half, from, first, q);
-    return hn::Combine(d, load_quads(half, from, first + hn::MaxLanes(half), q), low);
+    const std::size_t second = first + stride * (hn::MaxLanes(half) / length);
+    return hn::Combine(d, load_rows<length>(half, row, second, stride, q),
+                       load_rows<length>(half, row, first, stride, q));
   }
 }
 
-// Loads quad `q` of every lane and turns it: to[0], to[kLanes] ... are its four floats, of all lanes.
-HWY_INLINE void turn_quad(const float* const* from, std::size_t q, float* to) {
+template <class Row>
+HWY_INLINE void turn_quad(const Row& row, std::size_t q, float* to) {
   const FloatLanes d;
-  const hn::RepartitionToWide<FloatLanes> wide;
-  const auto pairs = [&](auto v) HWY_ATTR { return hn::BitCast(wide, v); };
-  const auto put = [&](auto v, std::size_t i) HWY_ATTR { hn::StoreU(hn::BitCast(d, v), d, to + i * kLanes); };
-  const auto q0 = load_quads(d, from, 0, q), q1 = load_quads(d, from, 1, q);
-  const auto q2 = load_quads(d, from, 2, q), q3 = load_quads(d, from, 3, q);
-  const auto low01 = pairs(hn::InterleaveLower(d, q0, q1)), high01 = pairs(hn::InterleaveUpper(d, q0, q1));
-  const auto low23 = pairs(hn::InterleaveLower(d, q2, q3)), high23 = pairs(hn::InterleaveUpper(d, q2, q3));
-  put(hn::InterleaveLower(wide, low01, low23), 0), put(hn::InterleaveUpper(wide, low01, low23), 1);
-  put(hn::InterleaveLower(wide, high01, high23), 2), put(hn::InterleaveUpper(wide, high01, high23), 3);
+  hn::Vec<FloatLanes> v[kQuad];
+  for (std::size_t i = 0; i < kQuad; ++i) v[i] = load_rows<kQuad>(d, row, i, kQuad, q);
+  turn_blocks(v);
+  for (std::size_t i = 0; i < kQuad; ++i) hn::Store(v[i], d, to + i * kLanes);
 }
 
+// Quads q and q + 1, which take fewer loads together.
+template <class Row>
+HWY_INLINE void turn_two_quads(const Row& row, std::size_t q, float* to) {
+  const FloatLanes d;
+  hn::Vec<FloatLanes> a[kQuad], b[kQuad];  // of every other four lanes; their blocks are of q and q + 1 by turns
+  for (std::size_t i = 0; i < kQuad; ++i) {
+    a[i] = load_rows<2 * kQuad>(d, row, i, 2 * kQuad, q);
+    b[i] = load_rows<2 * kQuad>(d, row, i + kQuad, 2 * kQuad, q);
+  }
+  turn_blocks(a), turn_blocks(b);
+  for (std::size_t i = 0; i < kQuad; ++i) {
+    hn::Store(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(b[i]), a[i]), d, to + i * kLanes);
+    hn::Store(hn::OddEvenBlocks(b[i], hn::SwapAdjacentBlocks(a[i])), d, to + (kQuad + i) * kLanes);
+  }
+}
 #endif
 
 // A register of points, each with the program it is in.
 class LanePrograms {
  public:
-  LanePrograms(const std::uint32_t* pool, std::span<const SkeletonJob> jobs, Points points) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const SkeletonJob& job = jobs[std::min(lane, jobs.size() - 1)];  // lanes past the end repeat the last
-      entry_[lane] = pool + job.at + 2;
-      x_[lane] = points.x[job.point], y_[lane] = points.y[job.point], z_[lane] = points.z[job.point];
-    }
+  HWY_INLINE LanePrograms(std::span<const SkeletonJob> jobs)
+      : jobs_(jobs.data()), count_(std::min(jobs.size(), kLanes)) {
+    if (count_ == kLanes) return;
+    std::copy_n(jobs_, count_, some_);
+    std::fill(some_ + count_, some_ + kLanes, some_[count_ - 1]);  // lanes past the end repeat the last
+    jobs_ = some_;
   }
-  Vec3<Batch> points() const { return {Batch::load(x_), Batch::load(y_), Batch::load(z_)}; }
+
+  HWY_INLINE Vec3<Batch> points() {
+    turn_quad([this](std::size_t lane) HWY_ATTR { return &jobs_[lane].x; }, 0, rows_);
+    return {Batch::load(rows_), Batch::load(rows_ + kLanes), Batch::load(rows_ + 2 * kLanes)};
+  }
 
   // Constants as the machine takes them, [constant][lane].
-  void put_constants(const Skeleton& skeleton, const float* constants, float* to) const {
-    const float* rows[kLanes];
+  HWY_INLINE void put_constants(const Skeleton& skeleton, const float* constants, const std::uint32_t* pool,
+                                float* to) const {
     for (std::size_t place = 0; place < skeleton.quads.size(); ++place) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        rows[lane] = constants + std::size_t{entry_[lane][place]} * kQuad;
+      const std::uint32_t* const places = pool + 2 + place;
+      const auto row = [&](std::size_t lane)
+                           HWY_ATTR { return constants + std::size_t{places[jobs_[lane].at]} * kQuad; };
+      std::size_t q = 0;
+#if HWY_TARGET != HWY_SCALAR
+      if constexpr (kLanes > kQuad) {
+        for (; q + 2 <= skeleton.quads[place]; q += 2, to += 2 * kQuad * kLanes) turn_two_quads(row, q, to);
       }
-      for (std::size_t q = 0; q < skeleton.quads[place]; ++q, to += kQuad * kLanes) turn_quad(rows, q, to);
+#endif
+      for (; q < skeleton.quads[place]; ++q, to += kQuad * kLanes) turn_quad(row, q, to);
     }
+  }
+
+  // After points().
+  HWY_INLINE void put_distances(Batch values, float* distance) {
+    // What is not a number stays so.
+    min(Batch::load(rows_ + 3 * kLanes), values).store(rows_);
+    for (std::size_t lane = 0; lane < count_; ++lane) distance[jobs_[lane].point] = rows_[lane];
   }
 
  private:
-  const std::uint32_t* entry_[kLanes];
-  alignas(64) float x_[kLanes], y_[kLanes], z_[kLanes];
+  const SkeletonJob* jobs_;
+  std::size_t count_;
+  SkeletonJob some_[kLanes];
+  alignas(64) float rows_[kQuad * kLanes];  // x, y, z, most
 };
 
 void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                    std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace) {
+                    std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace) {
   const std::size_t quads = std::accumulate(skeleton.quads.begin(), skeleton.quads.end(), std::size_t{0});
   Machine<Batch, Immediate::PerLane> machine(skeleton, workspace, 1, quads * kQuad * kLanes * sizeof(float));
   for (std::size_t first = 0; first < jobs.size(); first += kLanes) {
-    const std::span<const SkeletonJob> some = jobs.subspan(first, std::min(kLanes, jobs.size() - first));
-    const LanePrograms lanes(pool, some, points);
-    lanes.put_constants(skeleton, constants.values(), machine.immediate_table());
+    LanePrograms lanes(jobs.subspan(first));
+    lanes.put_constants(skeleton, constants.values(), pool, machine.immediate_table());
     *machine.first_point() = lanes.points();
     machine.interpret();
-    alignas(64) float values[kLanes];
-    machine.result()->store(values);
-    for (std::size_t lane = 0; lane < some.size(); ++lane) {
-      distance[some[lane].point] = std::min(values[lane], some[lane].most);
-    }
+    lanes.put_distances(*machine.result(), distance);
   }
 }
 
@@ -141,8 +181,8 @@ namespace fathom::vm {
 HWY_EXPORT(skeleton_batch);
 
 void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace) {
-  HWY_DYNAMIC_DISPATCH(skeleton_batch)(skeleton, constants, pool, jobs, points, distance, workspace);
+                       std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(skeleton_batch)(skeleton, constants, pool, jobs, distance, workspace);
 }
 
 }  // namespace fathom::vm

@@ -121,12 +121,13 @@ class Skeletons {
   Frame looked_for_;
 };
 
-struct SkeletonJob {
-  std::uint32_t at, point;  // the program in the pool
-  float most;
+// A point in a program of a pool.
+struct alignas(32) SkeletonJob {
+  float x, y, z, most;
+  std::uint32_t at, point;  // the program in the pool; which of the distances
 };
 // distance[job.point] = the lesser of the program's distance there and job.most, for programs of one skeleton.
 void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, Points points, float* distance, Workspace& workspace);
+                       std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace);
 
 }  // namespace fathom::vm

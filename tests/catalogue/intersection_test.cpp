@@ -72,12 +72,12 @@ TEST_CASE("I3: near misses of a sphere miss it", "[catalogue]") {
   const Field field = make_field(scene);
   const std::vector<Ray> rays = rays_past_the_edge(4000, 1);
   const MarchResult result = march(field, rays);
-  vm::Workspace workspace;
+  RealScratch scratch;
   int false_hits = 0, false_certified = 0;
   for (const Arrival& arrival : result.arrivals) {
     const Ray& ray = rays[arrival.id];
     false_hits += arrival.status == Arrival::Status::Hit && gap_of(ray) > 4e-7L;
-    const Certified certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, workspace);
+    const Certified certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
     false_certified += certified.status == Arrival::Status::Hit;
   }
   CHECK(false_hits == 0);

@@ -17,41 +17,41 @@ using Status = Arrival::Status;
 TEST_CASE("certify: first roots of a sphere, from outside and from within", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field field = make_field(scene);
-  vm::Workspace workspace;
-  const Certified outside = certify(field, {0.5, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, workspace);
+  RealScratch scratch;
+  const Certified outside = certify(field, {0.5, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch);
   CHECK(outside.status == Status::Hit);
   CHECK(std::abs(outside.t - (5 - std::sqrt(0.75))) <= 1e-12);
   CHECK(outside.width <= 1e-12);
-  const Certified inside = certify(field, {0.5, 0, 0}, {0, 0, -1}, -1, {0, 10, 0}, workspace);
+  const Certified inside = certify(field, {0.5, 0, 0}, {0, 0, -1}, -1, {0, 10, 0}, scratch);
   CHECK(inside.status == Status::Hit);
   CHECK(std::abs(inside.t - std::sqrt(0.75)) <= 1e-12);
-  CHECK(certify(field, {1.001, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, workspace).status == Status::Miss);
+  CHECK(certify(field, {1.001, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch).status == Status::Miss);
 }
 
 TEST_CASE("certify: the end of the segment counts", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field field = make_field(scene);
-  vm::Workspace workspace;
-  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 3.999, 0}, workspace).status == Status::Miss);
-  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 4.001, 0}, workspace).status == Status::Hit);
+  RealScratch scratch;
+  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 3.999, 0}, scratch).status == Status::Miss);
+  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 4.001, 0}, scratch).status == Status::Hit);
 }
 
 TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
   const auto box = scene_of(R"("objects": [{"type": "box", "half_size": [1, 1, 1]}])");
   const auto ball = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field box_field = make_field(box), ball_field = make_field(ball);
-  vm::Workspace workspace;
+  RealScratch scratch;
   // Past an edge of the box.
   const glm::dvec3 along = glm::normalize(glm::dvec3(1, -1, 0.5));
   const auto past_edge = [&](double gap) {
-    return certify(box_field, glm::dvec3(1 + gap, 1 + gap, 0) - 5.0 * along, along, 1, {0, 10, 0}, workspace).status;
+    return certify(box_field, glm::dvec3(1 + gap, 1 + gap, 0) - 5.0 * along, along, 1, {0, 10, 0}, scratch).status;
   };
   CHECK(past_edge(1e-13) == Status::Contact);
   CHECK(past_edge(1e-10) == Status::Miss);
   // A curve is nearly level where it touches: what the derivative excludes takes no resolution.
   const glm::dvec3 aside = glm::normalize(glm::dvec3(2, -1, 0)), by = glm::normalize(glm::dvec3(1, 2, 3));
   const auto past_ball = [&](double gap) {
-    return certify(ball_field, (1 + gap) * aside - 5.0 * by, by, 1, {0, 10, 0}, workspace);
+    return certify(ball_field, (1 + gap) * aside - 5.0 * by, by, 1, {0, 10, 0}, scratch);
   };
   CHECK(past_ball(1e-13).status == Status::Miss);
   CHECK(past_ball(1e-13).evaluations < 100);
@@ -61,12 +61,12 @@ TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
 TEST_CASE("certify: intervals settle a long ray along a plane in a few evaluations", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])");
   const Field field = make_field(scene);
-  vm::Workspace workspace;
-  const Certified along = certify(field, {0, 1e-6, 0}, {1, 0, 0}, 1, {0, 1e4, 0}, workspace);
+  RealScratch scratch;
+  const Certified along = certify(field, {0, 1e-6, 0}, {1, 0, 0}, 1, {0, 1e4, 0}, scratch);
   CHECK(along.status == Status::Miss);
   CHECK(along.evaluations < 10);
   const double slope = 1e-6;
-  const Certified down = certify(field, {0, 1e-3, 0}, {1, -slope, 0}, 1, {0, 1e4, 0}, workspace);
+  const Certified down = certify(field, {0, 1e-3, 0}, {1, -slope, 0}, 1, {0, 1e4, 0}, scratch);
   REQUIRE(down.status == Status::Hit);
   CHECK(down.t == Approx(1000).epsilon(1e-6));
   CHECK(down.evaluations < 200);
@@ -97,10 +97,10 @@ TEST_CASE("certify: rays that are searched side by side end as each does alone",
     rays.push_back({from, random.direction(), 0.1});
   }
   std::vector<Certified> alone;
-  vm::Workspace workspace;
+  RealScratch scratch;
   int hits = 0;
   for (const Ray& ray : rays) {
-    alone.push_back(certify(field, ray.origin, ray.direction, 0, {0, 0.1, 0}, workspace));
+    alone.push_back(certify(field, ray.origin, ray.direction, 0, {0, 0.1, 0}, scratch));
     hits += alone.back().status == Status::Hit;
   }
   REQUIRE(hits > 40);

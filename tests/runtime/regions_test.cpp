@@ -97,6 +97,7 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
       const Field field = with_regions(scene);
       vm::Workspace workspace;
       RegionScratch scratch;
+      RealScratch real_scratch;
       std::size_t equal = 0, limited = 0, far = 0;
       for (int seed = 0; seed < test::few(60); ++seed) {
         // Within, about, and far outside.
@@ -114,7 +115,7 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
           }
           equal += cut[i] == whole[i], limited += cut[i] < whole[i], far += is_far;
           std::uint64_t instructions = 0;
-          const double exact = field.regions->evaluate({at.x[i], at.y[i], at.z[i]}, workspace, instructions);
+          const double exact = field.regions->evaluate({at.x[i], at.y[i], at.z[i]}, real_scratch, instructions);
           CHECK(std::abs(exact - static_cast<double>(cut[i])) < 1e-5 * std::max(1.0f, std::abs(cut[i])));
         }
       }

@@ -58,22 +58,21 @@ struct Packed {
 // How many of the distances of random points, a point in each part by turns, are not the part's own.
 std::size_t wrong_distances(const Packed& packed, const std::vector<vm::Part>& parts, std::size_t count,
                             Random& random) {
-  std::vector<float> x, y, z, alone(count), together(count);
+  std::vector<float> alone(count), together(count);
   vm::Workspace workspace;
   std::map<std::uint32_t, std::vector<vm::SkeletonJob>> jobs;  // by skeleton
   for (std::uint32_t i = 0; i < count; ++i) {
-    x.push_back(static_cast<float>(random.uniform(-2, 3)));
-    y.push_back(static_cast<float>(random.uniform(-2, 3)));
-    z.push_back(static_cast<float>(random.uniform(-2, 3)));
+    const float x = static_cast<float>(random.uniform(-2, 3)), y = static_cast<float>(random.uniform(-2, 3)),
+                z = static_cast<float>(random.uniform(-2, 3));
     const std::size_t part = random.below(parts.size());
     const float most = random.chance(0.2) ? 0.1f : kFarAway;
-    vm::evaluate_distance(parts[part], {&x[i], &y[i], &z[i]}, 1, &alone[i], workspace);
+    vm::evaluate_distance(parts[part], {&x, &y, &z}, 1, &alone[i], workspace);
     alone[i] = std::min(alone[i], most);
-    jobs[packed.pool[packed.at[part]]].push_back({packed.at[part], i, most});
+    jobs[packed.pool[packed.at[part]]].push_back({x, y, z, most, packed.at[part], i});
   }
   for (const auto& [skeleton, some] : jobs) {
-    vm::evaluate_skeleton(packed.skeletons[skeleton], packed.constants, packed.pool.data(), some,
-                          {x.data(), y.data(), z.data()}, together.data(), workspace);
+    vm::evaluate_skeleton(packed.skeletons[skeleton], packed.constants, packed.pool.data(), some, together.data(),
+                          workspace);
   }
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < count; ++i)
