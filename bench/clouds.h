@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -38,7 +39,7 @@ inline Cloud make_cloud(std::size_t count, const compiler::Box& box = compiler::
 
 // `path` from the root of the project. Ends the program when the scene has errors.
 inline compiler::CompiledScene compile_file(const std::string& path, const compiler::CompileOptions& options = {}) {
-  std::ifstream in(std::string(FATHOM_SOURCE_DIR) + "/" + path);
+  std::ifstream in(std::filesystem::path(FATHOM_SOURCE_DIR) / path);
   std::stringstream text;
   text << in.rdbuf();
   compiler::Diagnostics diagnostics;

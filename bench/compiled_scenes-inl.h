@@ -43,10 +43,11 @@ FATHOM_SCENE(Thousand, scene_d1000, 2e-4, HWY_NOINLINE)  // a thousand lines, in
 #undef FATHOM_SCENE
 
 // Of ten thousand objects no one writes a line each.
-struct TenThousand {
+template <int count>
+struct Scattered {
   static constexpr double kLevel = 0;
   static HWY_NOINLINE Batch distance(Batch x, Batch y, Batch z) {
-    static const ManyObjects objects = make_many_objects(10000);
+    static const ManyObjects objects = make_many_objects(count);
     Batch nearest = c(std::numeric_limits<float>::infinity());
     for (const ManyObjects::Sphere& s : objects.spheres) {
       nearest = min(nearest, length(x - broadcast(s.x), y - broadcast(s.y), z - broadcast(s.z)) - broadcast(s.r));
@@ -85,7 +86,8 @@ std::span<const CompiledAhead> scene_table() {
       entry<Gyroid>("E", "scenes/bench/e-gyroid.json", {{1.7, 1.3, 2}, {0, 0, 0}, 40, 1e-3, 8}),
       entry<Formula>("F", "scenes/bench/f-formula.json", {{2.6, 1.8, 3}, {0, 0, 0}, 40, 1e-3, 8}),
       entry<Thousand>("D1000", "scenes/bench/d1000.json", many),
-      entry<TenThousand>("D10000", "scenes/bench/d10000.json", many),
+      entry<Scattered<10000>>("D10000", "scenes/bench/d10000.json", many),
+      entry<Scattered<100000>>("D100000", FATHOM_SCENE_D100000, many),
   };
   return scenes;
 }

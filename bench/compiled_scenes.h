@@ -18,7 +18,7 @@ using Render = void (*)(const View& view, const Frame& frame, Picture& picture);
 
 struct CompiledAhead {
   const char* name;
-  const char* path;  // of the scene file, from the root of the project
+  const char* path;  // of the scene file, from the root of the project, or of a large one where it was made
   View view;
   DistanceOf distance;
   Render shadow, paths;  // the workloads
