@@ -1,6 +1,6 @@
-# add_emitted_scene(target header scene namespace): `target` can include `header`, what `fathom emit cpp` makes of the
-# scene file `scene` (from the project's root) with its function in `namespace`. The header is made anew when the program
-# or the scene changes, and what includes it is compiled anew only when its text does.
+# add_emitted_scene(target header scene namespace): emitted/`header` in the binary folder is what `fathom emit cpp` makes
+# of the scene file `scene` (from the project's root) with its function in `namespace`, there before `target` is compiled.
+# It is made anew when the program or the scene changes, and what includes it is compiled anew only when its text does.
 function(add_emitted_scene target header scene namespace)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/emitted)
   set(output ${folder}/${header})
@@ -16,5 +16,4 @@ function(add_emitted_scene target header scene namespace)
       VERBATIM)
   endif()
   target_sources(${target} PRIVATE ${output})
-  target_include_directories(${target} PRIVATE ${folder})
 endfunction()

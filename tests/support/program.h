@@ -1,10 +1,7 @@
 // The program under test: run in a folder of its own, with two small scenes in it.
 #pragma once
 
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -55,19 +52,7 @@ class Folder : public TemporaryFolder {
   bool has(const std::string& name) const { return std::filesystem::exists(path() / name); }
 
   // `arguments` as for a shell; standard input is `in`.
-  Result run(const std::string& arguments, const std::string& in = "") const {
-    const std::filesystem::path io = path().string() + ".io";  // beside the folder, which stays the user's
-    std::filesystem::create_directories(io);
-    std::ofstream(io / "in") << in;
-    const std::string command = "cd '" + path().string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
-                                (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
-                                (io / "err").string() + "'";
-    const int status = std::system(command.c_str());
-    Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
-                  read("../" + io.filename().string() + "/err")};
-    std::filesystem::remove_all(io);
-    return result;
-  }
+  Result run(const std::string& arguments, const std::string& in = "") const;
 };
 
 // Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
