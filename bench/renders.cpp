@@ -21,8 +21,8 @@ struct Row {
   const char* scene;
   int spp;  // so that one thread takes more than a second
 };
-constexpr Row kRows[] = {{"a-primitives", 12}, {"b-csg", 8},     {"c-mandelbulb", 2}, {"d1000", 2},
-                         {"e-gyroid", 12},     {"f-formula", 8}, {"h-composite", 16}};
+constexpr Row kRows[] = {{"a-primitives", 16}, {"b-csg", 8},     {"c-mandelbulb", 3}, {"d1000", 12},
+                         {"e-gyroid", 12},     {"f-formula", 8}, {"h-composite", 24}};
 constexpr int kRounds = 5;
 
 void render(const compiler::CompiledScene& scene, int threads, int spp) {
