@@ -37,7 +37,7 @@ inline Cloud make_cloud(std::size_t count, const compiler::Box& box = compiler::
   return cloud;
 }
 
-// `path` from the root of the project. Ends the program when the scene has errors.
+// `path`: absolute, or from the root of the project. Ends the program when the scene has errors.
 inline compiler::CompiledScene compile_file(const std::string& path, const compiler::CompileOptions& options = {}) {
   std::ifstream in(std::filesystem::path(FATHOM_SOURCE_DIR) / path);
   std::stringstream text;
