@@ -30,6 +30,28 @@ inline std::vector<Material> to_materials(const compiler::CompiledScene& scene) 
   return materials;
 }
 
+// A material at one place of a surface: every parameter a number. Names and meanings after OpenPBR 1.1 (Academy
+// Software Foundation, "OpenPBR Surface", 2024); a parameter at its default costs nothing.
+struct MaterialPoint {
+  Material::Type type = Material::Type::Diffuse;
+  glm::vec3 base_color{0.8f};   // base_weight is multiplied in
+  float diffuse_roughness = 0;  // 0: Lambert's
+  float metalness = 0;
+  float specular_weight = 1;
+  glm::vec3 specular_color{1};
+  float roughness = 0.3f;           // specular_roughness r: GGX with alpha = r^2
+  float ior = 1.5f;                 // inside relative to vacuum
+  float transmission = 0;           // transmission_weight
+  glm::vec3 transmission_color{1};  // where transmission_depth is 0: tint of each crossing
+  float coat_weight = 0;
+  glm::vec3 coat_color{1};
+  float coat_roughness = 0, coat_ior = 1.6f;
+  bool thin_walled = false;
+  float opacity = 1;        // geometry_opacity
+  glm::vec3 emission{0};    // radiance
+  glm::vec3 absorption{0};  // inside, per scene unit
+};
+
 // What the albedo picture shows: the colour, and for lamps the light's, clamped to white.
 inline glm::vec3 albedo_of(const Material& m) {
   if (m.type != Material::Type::Emissive) return m.color;
