@@ -14,6 +14,7 @@
 #include "compiler/fuse.h"
 #include "compiler/lints.h"
 #include "compiler/lower.h"
+#include "compiler/media.h"
 #include "compiler/origin.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
@@ -100,6 +101,23 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }
 
+// `optimised` is `scene` after the passes, without paint; `painted`: whether the surface program needs tags.
+std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised, bool painted,
+                                           const Source& source, Diagnostics& diagnostics,
+                                           const CompileOptions& options) {
+  const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
+  std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, diagnostics);
+  if (!distance) return std::nullopt;
+  std::optional<vm::VerifiedProgram> surface = distance;
+  if (painted) surface = assemble(optimise(scene, true, options, nullptr), source, fused, diagnostics);
+  if (!surface) return std::nullopt;
+  const std::vector<Knowledge> all_known = analyse(optimised.graph);
+  const Knowledge& known = all_known[optimised.root];
+  return CompiledField{
+      std::move(*distance), std::move(*surface), known.box,      contents(optimised.graph, optimised.root, all_known),
+      known.lipschitz,      known.magnitude,     known.certified};
+}
+
 std::size_t count_nodes(const Scene& scene) {
   std::size_t count = 0;
   for (bool reached : reachable(scene)) count += reached;
@@ -174,36 +192,34 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
   const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
-  const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
-  std::optional<vm::VerifiedProgram> distance = assemble(field, source, fused, diagnostics);
-  if (!distance) return std::nullopt;
-  std::optional<vm::VerifiedProgram> surface = distance;
-  if (elaborated->surfaces.size() > 1) {
-    surface = assemble(optimise(elaborated->scene, true, options, nullptr), source, fused, diagnostics);
-    if (!surface) return std::nullopt;
+  const bool several = elaborated->surfaces.size() > 1;
+  std::optional<CompiledField> whole = compile_field(elaborated->scene, field, several, source, diagnostics, options);
+  if (!whole) return std::nullopt;
+  std::vector<Medium> media;
+  for (const MediumScene& medium : media_of(elaborated->scene, elaborated->surfaces, elaborated->materials)) {
+    const Scene inside = optimise(medium.scene, false, options, nullptr);
+    auto compiled = compile_field(medium.scene, inside, several, source, diagnostics, options);
+    if (!compiled) return std::nullopt;
+    media.push_back({std::move(*compiled), medium.material});
   }
 
-  const std::vector<Knowledge> all_known = analyse(field.graph);
-  const Knowledge& known = all_known[field.root];
-  warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
+  const std::vector<Knowledge> known = analyse(field.graph);
+  warn_of_cancellation(field, known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
   if (options.lint) {
-    lint(elaborated->scene, *elaborated, *surface, diagnostics);
+    lint(elaborated->scene, *elaborated, whole->surface, diagnostics);
     lint_places(elaborated->scene, origin, diagnostics);
   }
+  const bool mixes = mixes_materials(elaborated->scene, elaborated->surfaces);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
+                       std::move(*whole),
                        std::move(source),
                        origin,
-                       std::move(*distance),
-                       std::move(*surface),
-                       known.box,
-                       contents(field.graph, field.root, all_known),
-                       known.lipschitz,
-                       known.magnitude,
-                       known.certified,
+                       std::move(media),
+                       mixes,
                        count_nodes(field),
                        ""};
-  result.summary = summarise(result.node_count, known, origin);
+  result.summary = summarise(result.node_count, known[field.root], origin);
   return result;
 }
 

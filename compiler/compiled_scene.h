@@ -28,7 +28,11 @@ struct Material {
   glm::dvec3 emission{0.0};    // radiance Le, both sides; emissive only
   double ior = 1.5;            // transparent: index of refraction inside relative to outside
   glm::dvec3 absorption{0.0};  // transparent: absorption coefficient inside, per scene unit
+  int priority = 0;            // transparent: where two overlap the higher one fills the space (compiler/media.h)
 };
+
+// Whether light passes into what is of this material.
+inline bool transmits(const Material& material) { return material.type == Material::Type::Transparent; }
 
 // What a `tag` in the surface program numbers: a part of the scene with a name and a material.
 struct Surface {
@@ -85,21 +89,33 @@ struct SceneTables {
   Background background;
 };
 
+// A field as programs, and what is proved of it.
+struct CompiledField {
+  vm::VerifiedProgram distance;
+  vm::VerifiedProgram surface;  // the same field with `tag`s; the same program when there is one surface
+
+  Box bound;              // the field is positive outside
+  Box contents;           // a box round every bounded part of it; empty when it has none
+  double lipschitz = 1;   // |f(p) - f(q)| <= lipschitz * |p - q|
+  double magnitude = 0;   // of the numbers that cancel in the field, scene units (compiler/bounds.h)
+  bool certified = true;  // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
+};
+
+// The inside of all that is of one transparent material (compiler/media.h).
+struct Medium : CompiledField {
+  std::uint32_t material;  // index into CompiledScene::materials
+};
+
 // All places in it, the camera's among them, are in the programs' coordinates: the scene's minus `origin`. What takes
 // or prints places of the scene (runtime/cli) adds it; the renderer has no need to know.
-struct CompiledScene : SceneTables {
+struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
-  vm::VerifiedProgram distance;  // the field
-  vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
-
-  Box bound;                   // the field is positive outside
-  Box contents;                // a box round every bounded part of the scene; empty when it has none
-  double lipschitz = 1;        // |f(p) - f(q)| <= lipschitz * |p - q|
-  double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
-  bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
-  std::size_t node_count = 0;  // distinct nodes after the passes
-  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
+  std::vector<Medium> media;     // of the transparent materials, in their order
+  bool mixes_materials = false;  // whether points can have shares of several (vm::evaluate_shares)
+  std::size_t node_count = 0;    // distinct nodes after the passes
+  // In the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
+  std::string summary;
 };
 
 }  // namespace fathom::compiler

@@ -11,22 +11,13 @@
 namespace fathom::runtime {
 namespace {
 
-// The size of what is looked at, scene units: how far the camera's target is, but no more than half the bound's
-// diagonal. A wide floor must not coarsen the things that stand on it.
-double extent_of(const compiler::CompiledScene& scene) {
-  double extent = glm::length(scene.camera.target - scene.camera.position);
-  if (!(extent > 0)) extent = 1;
-  if (scene.bound.empty() || !scene.bound.finite()) return extent;
-  return std::min(extent, glm::length(scene.bound.hi - scene.bound.lo) / 2);
-}
-
 struct Line {
   glm::dvec3 origin, direction;
 };
 
 // The i-th of some lines through the scene, followed to where it is near a surface; nothing when it comes to none.
 // Places and directions anywhere: multiples of irrational numbers, modulo 1.
-std::optional<Line> line_at_surface(const compiler::CompiledScene& scene, int i, double near,
+std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i, double near,
                                     vm::Workspace& workspace) {
   constexpr int kSteps = 64;
   const auto part = [i](double number) { return number * i - std::floor(number * i); };
@@ -42,7 +33,7 @@ std::optional<Line> line_at_surface(const compiler::CompiledScene& scene, int i,
 }
 
 // Field::longest_told, of lengths eight times shorter one after another.
-double longest_told(const compiler::CompiledScene& scene, double extent) {
+double longest_told(const compiler::CompiledField& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
   constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
   if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
@@ -65,46 +56,58 @@ double longest_told(const compiler::CompiledScene& scene, double extent) {
 
 }  // namespace
 
+double extent_of(const compiler::CompiledScene& scene) {
+  double extent = glm::length(scene.camera.target - scene.camera.position);
+  if (!(extent > 0)) extent = 1;
+  if (scene.bound.empty() || !scene.bound.finite()) return extent;
+  return std::min(extent, glm::length(scene.bound.hi - scene.bound.lo) / 2);
+}
+
 Field make_field(const compiler::CompiledScene& scene, std::optional<double> far) {
-  CHECK(scene.lipschitz > 0, "a field that never changes has no surface to march to");
+  return make_field(scene, extent_of(scene), far);
+}
+
+Field make_field(const compiler::CompiledField& compiled, double extent, std::optional<double> far) {
+  CHECK(compiled.lipschitz > 0, "a field that never changes has no surface to march to");
   // A crossing is tried within this part of the extent. Smaller: more evaluations near the surface; larger: a chord
   // shorter than it may be missed beside a surface that is met head-on.
   constexpr double kBand = 1e-4;
-  // The bound's surface may be the scene's, and a ray must see both sides of it.
+  // The bound's surface may be the solid's, and a ray must see both sides of it.
   constexpr double kBoundMargin = 1e-3;
 
-  const double extent = extent_of(scene);
   Field field{};
-  field.distance = &scene.distance;
-  field.bound = scene.bound.grown(kBoundMargin * extent);
-  field.lipschitz = scene.lipschitz;
-  field.longest_told = longest_told(scene, extent);
-  field.inv_lipschitz = static_cast<float>(1 / scene.lipschitz);
-  field.magnitude = static_cast<float>(scene.magnitude);
+  field.distance = &compiled.distance;
+  field.surface = &compiled.surface;
+  field.bound = compiled.bound.grown(kBoundMargin * extent);
+  field.lipschitz = compiled.lipschitz;
+  field.longest_told = longest_told(compiled, extent);
+  field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
+  field.magnitude = static_cast<float>(compiled.magnitude);
   field.band = static_cast<float>(kBand * extent);
   // What it costs to know how far the solid is convex pays where that is seldom no further than the distance.
   constexpr double kConvexShare = 0.25;
-  field.convex = vm::convex_share(scene.distance) >= kConvexShare;
+  field.convex = vm::convex_share(compiled.distance) >= kConvexShare;
   // Where the bound does not end a ray, `far` has to: certify() needs an end.
   constexpr double kFarthest = 1e12;
-  const bool bounded = scene.bound.empty() || scene.bound.finite();
+  const bool bounded = compiled.bound.empty() || compiled.bound.finite();
   field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
   if (!bounded) field.far = std::min(field.far, kFarthest);
   return field;
 }
 
-void add_regions(Field& field, const compiler::CompiledScene& scene, const RegionOptions& options) {
+void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options) {
   // A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a
   // float tells apart would be of no use (kCellMargin in region_builder.cpp).
   constexpr double kLeastRoom = 3, kMostRoom = 6;
   const bool bounded = field.bound.finite();
   RegionOptions chosen = options;
-  if (!bounded && !scene.contents.empty()) {
-    const glm::dvec3 extents = scene.contents.hi - scene.contents.lo;
+  if (!bounded && !compiled.contents.empty()) {
+    const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
     const double wanted = std::log2(2 * field.far / std::max({extents.x, extents.y, extents.z}));
     chosen.room = static_cast<int>(std::clamp(std::ceil(wanted), kLeastRoom, kMostRoom));
   }
-  field.regions = Regions::build(scene.surface, bounded ? field.bound : scene.contents, scene.lipschitz, chosen);
+  field.regions =
+      Regions::build(compiled.surface, bounded ? field.bound : compiled.contents, compiled.lipschitz, chosen);
 }
 
 void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,

@@ -15,10 +15,11 @@ namespace fathom::runtime {
 
 struct Field {
   const vm::VerifiedProgram* distance;
-  compiler::Box bound;  // the field is positive outside; a little larger than the scene's own
-  double lipschitz;     // |f(p) - f(q)| <= lipschitz * |p - q|
-  double far;           // rays end here, scene units; may be infinite when the bound is finite
-  float band;           // near the surface: distances at which a crossing is tried, scene units
+  const vm::VerifiedProgram* surface;  // the same field with `tag`s
+  compiler::Box bound;                 // the field is positive outside; a little larger than the scene's own
+  double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|
+  double far;                          // rays end here, scene units; may be infinite when the bound is finite
+  float band;                          // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
   float magnitude;  // scene units (compiler/bounds.h)
   // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
@@ -48,14 +49,21 @@ struct Field {
                                      RealScratch& scratch, std::uint64_t& instructions) const;
 };
 
-// `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's target, and at least
-// kDefaultFar.
+// The scene's field. `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's
+// target, and at least kDefaultFar.
 Field make_field(const compiler::CompiledScene& scene, std::optional<double> far = std::nullopt);
+
+// Any field. `extent`: the size of what is looked at, scene units.
+Field make_field(const compiler::CompiledField& compiled, double extent, std::optional<double> far);
+
+// The size of what is looked at, scene units: how far the camera's target is, but no more than half the bound's
+// diagonal. A wide floor must not coarsen the things that stand on it.
+double extent_of(const compiler::CompiledScene& scene);
 
 inline constexpr double kDefaultFar = 1e4;  // scene units
 
-// Builds the scene's regions, if it gains by them, for `field` and what evaluates surfaces with it.
-void add_regions(Field& field, const compiler::CompiledScene& scene, const RegionOptions& options);
+// Builds the regions of `compiled`, if it gains by them, for its `field` and what evaluates surfaces with it.
+void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options);
 
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6

@@ -61,7 +61,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   if (field.regions) {
     field.regions->evaluate_surface(places, hits.size(), values, workspace);
   } else {
-    vm::evaluate_surface(scene.surface, places, hits.size(), values, workspace);
+    vm::evaluate_surface(*field.surface, places, hits.size(), values, workspace);
   }
   for (std::size_t i = 0; i < hits.size(); ++i) {
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
@@ -71,7 +71,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     if (least > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
       const vm::SurfaceValue exact = field.regions ? field.regions->evaluate_surface(hits[i].position, workspace)
-                                                   : vm::evaluate_surface(scene.surface, hits[i].position, workspace);
+                                                   : vm::evaluate_surface(*field.surface, hits[i].position, workspace);
       gradient = glm::vec3(exact.gradient);
       surface[i] = exact.surface;
       convex[i] = 0;
@@ -79,6 +79,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
     const Facing found = facing(gradient, hits[i]);
     points[i].normal = found.normal;
+    points[i].surface = surface[i];
     points[i].material = scene.surfaces[surface[i]].material;
     points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
     points[i].clear = found.exact && hits[i].side > 0 ? clear_of(convex[i], size, points[i].offset, field) : 0;

@@ -26,7 +26,8 @@ struct Hit {
 
 struct SurfacePoint {
   glm::vec3 normal;        // unit length, into the space the ray came through; dot(normal, wo) > 0
-  std::uint32_t material;  // index into CompiledScene::materials
+  std::uint32_t surface;   // index into CompiledScene::surfaces
+  std::uint32_t material;  // its: index into CompiledScene::materials
   float offset;            // how far along the normal a new ray has to start, scene units
   // A ray that leaves into the space the ray came through meets nothing before this, scene units from where it
   // starts: the part of the solid nearer than that is convex, and what leaves a convex solid does not come back to
@@ -36,7 +37,7 @@ struct SurfacePoint {
 
 inline constexpr std::size_t kSurfaceBatch = 256;
 
-// points[i] describes hits[i]; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal
+// points[i] describes hits[i] of `field`, the scene's or a medium's; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal
 // is wo.
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace);

@@ -8,6 +8,7 @@
 // Tested by: tests/vm/evaluate_test.cpp
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -75,6 +76,21 @@ double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& works
 void evaluate_distance(const Code& program, RealPoints points, std::size_t count, double* distance,
                        Workspace& workspace);
 SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace);
+
+struct SurfaceShare {
+  std::uint32_t surface;  // the number of a `tag`
+  double weight;          // above 0
+};
+// The surfaces that have a share in a point, at most the kMost largest; their weights add up to 1. None in a program
+// without tags.
+struct SurfaceShares {
+  static constexpr int kMost = 4;
+  std::array<SurfaceShare, kMost> all;
+  int count = 0;
+};
+// A surface's share is by how much the distance changes when that surface moves, over the sum of all: where one alone
+// decides 1, along a smooth blend from 0 to 1 as Quilez's mix factor ("Smooth minimum").
+SurfaceShares evaluate_shares(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct Range {
   double lo, hi;

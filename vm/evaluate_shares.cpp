@@ -1,0 +1,94 @@
+// How much each surface has a share in a point, where blends mix them: one point, in double.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vm/evaluate.h"
+#include "vm/interpret-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// A number and by how much it grows when one of the surfaces it was made from moves in: the derivative, of which only
+// the largest parts are kept. Shapes have no surface until a tag claims them.
+struct Shared {
+  using Constant = Real;
+  Real v;
+  SurfaceShares shares;
+};
+
+// Adds `scale` times those of `from`.
+void add_shares(SurfaceShares& to, const SurfaceShares& from, double scale) {
+  for (int i = 0; i < from.count; ++i) {
+    const SurfaceShare share{from.all[i].surface, from.all[i].weight * scale};
+    if (!(share.weight > 0)) continue;
+    const auto end = to.all.begin() + to.count;
+    const auto same =
+        std::find_if(to.all.begin(), end, [&](const SurfaceShare& s) { return s.surface == share.surface; });
+    if (same != end) {
+      same->weight += share.weight;
+    } else if (to.count < SurfaceShares::kMost) {
+      to.all[to.count++] = share;
+    } else {
+      const auto least = std::min_element(to.all.begin(), end, [](const SurfaceShare& a, const SurfaceShare& b) {
+        return a.weight < b.weight || (a.weight == b.weight && a.surface > b.surface);
+      });
+      if (least->weight < share.weight) *least = share;
+    }
+  }
+}
+
+template <>
+struct ValueTraits<Shared> {
+  using Point = Real;
+  using D = Dual<Real>;
+  static constexpr bool kConvex = false;
+  static HWY_INLINE Shared lift(const Point& value, bool = false) { return {value, {}}; }
+  template <class Op>
+  static HWY_INLINE Shared apply(const Shared& a, const Real* k) {
+    return {Op::template apply<Real>(a.v, k), a.shares};
+  }
+  // What an operation over two numbers makes of each, whatever it is, its derivatives tell.
+  template <class Op>
+  static HWY_INLINE Shared apply(const Shared& a, const Shared& b, const Real* k) {
+    const Real zero{0}, one{1};
+    const D result = Op::template apply<D>(D{a.v, one, zero, zero}, D{b.v, zero, one, zero}, k);
+    Shared out{result.v, {}};
+    add_shares(out.shares, a.shares, std::fabs(result.dx.v));
+    add_shares(out.shares, b.shares, std::fabs(result.dy.v));
+    return out;
+  }
+  static HWY_INLINE void tag(Shared& value, std::uint32_t surface) {
+    if (value.shares.count > 0) return;
+    value.shares.count = 1;
+    value.shares.all[0] = {surface, 1};
+  }
+};
+
+// Of shapes that are joined in one instruction.
+HWY_INLINE Shared min(const Shared& a, const Shared& b) { return ValueTraits<Shared>::apply<MinOp>(a, b, nullptr); }
+
+namespace {
+
+SurfaceShares shares(const Code& program, glm::dvec3 p, Workspace& workspace) {
+  Machine<Shared> machine(program, workspace, 1);
+  *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
+  machine.interpret();
+  SurfaceShares result = machine.result()->shares;
+  double sum = 0;
+  for (int i = 0; i < result.count; ++i) sum += result.all[i].weight;
+  for (int i = 0; i < result.count; ++i) result.all[i].weight /= sum;
+  return result;
+}
+
+}  // namespace
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+namespace fathom::vm {
+
+SurfaceShares evaluate_shares(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::shares(program, point, workspace);
+}
+
+}  // namespace fathom::vm
