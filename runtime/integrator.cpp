@@ -2,11 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
-#include "runtime/bsdf.h"
-#include "runtime/elementary.h"
 
 namespace fathom::runtime {
 namespace {
@@ -15,43 +10,62 @@ namespace {
 constexpr std::size_t kShadeBatch = 64;
 // Paths are started so many at once.
 constexpr std::size_t kStartBatch = 32;
-// A path goes on with at most this probability, so that even a closed white room ends.
-constexpr float kMostSurvival = 0.95f;
-
-float max_component(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
-
-glm::vec3 background_radiance(const compiler::Background& background, glm::dvec3 direction) {
-  const double share = std::clamp((direction.y + 1) / 2, 0.0, 1.0);
-  return glm::vec3(background.bottom * (1 - share) + background.top * share);
-}
 
 bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+std::size_t under_way(const Marcher& marcher) {
+  return static_cast<std::size_t>(marcher.capacity() - marcher.room());
+}
+
 }  // namespace
 
-Integrator::Integrator(const World& world, Film& film)
-    : world_(world), film_(film), marcher_(make_marcher(world.field, world.settings.marching)) {
-  paths_.resize(static_cast<std::size_t>(marcher_->capacity()));
+Integrator::Integrator(const World& world, Film& film) : world_(world), film_(film) {
+  marchers_.push_back(make_marcher(world.field, world.settings.marching));
+  int paths = marchers_[0]->capacity();
+  for (std::size_t i = 0; i < world.media.size(); ++i) {
+    marchers_.push_back(make_marcher(world.media.field(i), world.settings.marching));
+    paths = std::min(paths, marchers_.back()->capacity());
+  }
+  paths_.resize(static_cast<std::size_t>(paths));
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
 void Integrator::run(const NextPaths& next) {
-  StageClock& clock = marcher_->clock();
+  StageClock& clock = marchers_[0]->clock();
   if (world_.settings.profile) clock.start(Stage::Shading);
   bool more = true;
   while (true) {
     while (more && !free_ids_.empty()) more = start_paths(next);
-    if (marcher_->empty() && marcher_->arrivals().empty()) break;
-    clock.enter(Stage::March);
-    marcher_->advance();
-    if (marcher_->arrivals().size() >= kShadeBatch || marcher_->empty()) settle_arrivals();
+    if (idle()) break;
+    for (std::size_t field = 0; field < marchers_.size(); ++field) {
+      if (due(field)) advance(field);
+    }
   }
   clock.stop();
 }
 
+bool Integrator::idle() const {
+  return std::all_of(marchers_.begin(), marchers_.end(),
+                     [](const auto& marcher) { return marcher->empty() && marcher->arrivals().empty(); });
+}
+
+// Rays within a medium wait until they fill registers, or until there are no others.
+bool Integrator::due(std::size_t field) const {
+  if (field == 0) return true;
+  const std::size_t rays = under_way(*marchers_[field]);
+  return rays > 0 && rays >= std::min(kShadeBatch, under_way(*marchers_[0]));
+}
+
+void Integrator::advance(std::size_t field) {
+  Marcher& marcher = *marchers_[field];
+  marchers_[0]->clock().enter(Stage::March);
+  marcher.advance();
+  if (marcher.arrivals().size() >= kShadeBatch || marcher.empty()) settle_arrivals(field);
+}
+
 // False when there are no more.
 bool Integrator::start_paths(const NextPaths& next) {
-  marcher_->clock().enter(Stage::Shading);
+  marchers_[0]->clock().enter(Stage::Shading);
   std::array<PathKey, kStartBatch> keys;
   const std::size_t wanted = std::min(kStartBatch, free_ids_.size());
   const std::size_t given = next(std::span(keys).first(wanted));
@@ -85,34 +99,49 @@ void Integrator::start(std::span<const PathKey> keys) {
     Path& path = paths_[id];
     path.key = keys[i];
     path.sampler = samplers[i];
-    path.origin = rays[i].origin;
-    path.direction = rays[i].direction;
+    path.space = world_.camera_space;
     path.throughput = glm::vec3(1);
-    path.absorption = glm::vec3(0);
+    path.eta_scale = 1;
     path.bounces = 0;
+    path.pdf = 0;
+    path.in_shadow_test = false;
+    path.ends = false;
     path.result = {};
-    marcher_->add(id, {path.origin, path.direction});
+    Ray ray{rays[i].origin, rays[i].direction};
+    ray.side = path.space.side;
+    follow(id, ray);
   }
   stats_.primary_rays += keys.size();
 }
 
-void Integrator::settle_arrivals() {
-  marcher_->take_arrivals(settled_);
+void Integrator::follow(std::uint32_t id, const Ray& ray) {
+  Path& path = paths_[id];
+  path.origin = ray.origin;
+  path.direction = ray.direction;
+  marchers_[path.space.field]->add(id, ray);
+}
+
+void Integrator::settle_arrivals(std::size_t field) {
+  StageClock& clock = marchers_[0]->clock();
+  marchers_[field]->take_arrivals(settled_);
   if (film_.layers().cost) {
     for (const Arrival& arrival : settled_) {
       paths_[arrival.id].result.evaluations += arrival.evaluations;
       paths_[arrival.id].result.instructions += arrival.instructions;
     }
   }
+  clock.enter(Stage::Shading);
+  const auto tests_shadow = [&](const Arrival& arrival) { return paths_[arrival.id].in_shadow_test; };
   const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
-  const auto hits_end = std::partition(settled_.begin(), settled_.end(), is_hit);
-  const std::span<const Arrival> hits(settled_.begin(), hits_end);
+  const auto shadows_end = std::partition(settled_.begin(), settled_.end(), tests_shadow);
+  const auto hits_end = std::partition(shadows_end, settled_.end(), is_hit);
+  for (const Arrival& arrival : std::span(settled_.begin(), shadows_end)) end_shadow_test(arrival);
+  const std::span<const Arrival> hits(shadows_end, hits_end);
   for (std::size_t first = 0; first < hits.size(); first += kSurfaceBatch) {
-    shade(hits.subspan(first, std::min(kSurfaceBatch, hits.size() - first)));
+    shade(field, hits.subspan(first, std::min(kSurfaceBatch, hits.size() - first)));
   }
-  marcher_->clock().enter(Stage::Shading);
-  for (const Arrival& arrival : std::span<const Arrival>(hits_end, settled_.end())) leave_scene(arrival);
-  marcher_->clock().enter(Stage::Film);
+  for (const Arrival& arrival : std::span(hits_end, settled_.end())) leave_scene(arrival);
+  clock.enter(Stage::Film);
   for (const std::uint32_t id : ended_) add_to_film(id);
   ended_.clear();
 }
@@ -120,14 +149,17 @@ void Integrator::settle_arrivals() {
 // A path that met nothing more sees the background.
 void Integrator::leave_scene(const Arrival& arrival) {
   Path& path = paths_[arrival.id];
-  if (arrival.status != Arrival::Status::Invalid) {
-    path.result.radiance += path.throughput * background_radiance(world_.scene.background, path.direction);
+  if (arrival.status != Arrival::Status::Invalid && path.space.field == 0) {
+    const glm::vec3 direction(path.direction);
+    const float share = hit_share(path, world_.lights.pdf_of_background(path.from, direction));
+    if (share > 0) add_light(path, path.throughput * world_.lights.background(direction) * share, path.bounces);
   }
   ended_.push_back(arrival.id);
 }
 
-void Integrator::shade(std::span<const Arrival> arrivals) {
-  marcher_->clock().enter(Stage::Normals);
+void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
+  StageClock& clock = marchers_[0]->clock();
+  clock.enter(Stage::Normals);
   std::array<Hit, kSurfaceBatch> hits;
   std::array<SurfacePoint, kSurfaceBatch> points;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
@@ -135,58 +167,10 @@ void Integrator::shade(std::span<const Arrival> arrivals) {
     hits[i] = {path.origin + arrivals[i].t * path.direction, glm::vec3(-path.direction), arrivals[i].side,
                arrivals[i].width};
   }
-  find_surfaces(world_.scene, world_.field, std::span(hits).first(arrivals.size()), points, marcher_->workspace());
-  marcher_->clock().enter(Stage::Shading);
+  find_surfaces(world_.scene, field(number), std::span(hits).first(arrivals.size()), points,
+                marchers_[number]->workspace());
+  clock.enter(Stage::Shading);
   for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
-}
-
-void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
-  Path& path = paths_[arrival.id];
-  const Material& material = world_.materials[point.material];
-  const bool inside = arrival.side < 0;
-  if (path.bounces == 0) record_first_hit(path, arrival, point, material);
-  // Beer-Lambert law.
-  if (path.absorption != glm::vec3(0)) path.throughput *= exp(-path.absorption * static_cast<float>(arrival.t));
-  path.result.radiance += path.throughput * material.emission;
-
-  const BsdfSample next = sample_bsdf(material, hit.wo, point.normal, inside, path.sampler);
-  path.throughput *= next.weight;
-  ++path.bounces;
-  if (!(max_component(path.throughput) > 0) || !survives_roulette(path)) {
-    ended_.push_back(arrival.id);
-    return;
-  }
-  path.direction = next.wi;
-  if (next.through) path.absorption = inside ? glm::vec3(0) : material.absorption;
-  go_on(arrival.id, hit, point, next.through);
-}
-
-void Integrator::record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point,
-                                  const Material& material) {
-  ++stats_.primary_hits;
-  path.result.hit = true;
-  path.result.albedo = albedo_of(material);
-  path.result.normal = point.normal;
-  path.result.depth = arrival.t;
-  // The camera stands in a solid: its medium is that of the surface the ray comes out of.
-  if (arrival.side < 0 && material.type == Material::Type::Transparent) path.absorption = material.absorption;
-}
-
-// Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
-bool Integrator::survives_roulette(Path& path) {
-  if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
-  if (path.bounces < world_.settings.bounces) return true;
-  const float q = std::min(kMostSurvival, max_component(path.throughput));
-  if (path.sampler.next() >= q) return false;
-  path.throughput /= q;
-  return true;
-}
-
-void Integrator::go_on(std::uint32_t id, const Hit& hit, const SurfacePoint& point, bool through) {
-  Path& path = paths_[id];
-  const Ray ray = leave(hit, point, path.direction, through);
-  path.origin = ray.origin;
-  marcher_->add(id, ray);
 }
 
 void Integrator::add_to_film(std::uint32_t id) {
@@ -201,8 +185,8 @@ void Integrator::add_to_film(std::uint32_t id) {
 
 Stats Integrator::stats() const {
   Stats stats = stats_;
-  stats.march = marcher_->counters();
-  if (world_.settings.profile) stats.stages = marcher_->clock().seconds();
+  for (const auto& marcher : marchers_) stats.march.merge(marcher->counters());
+  if (world_.settings.profile) stats.stages = marchers_[0]->clock().seconds();
   return stats;
 }
 

@@ -1,13 +1,16 @@
 // The path integrator: camera paths followed from hit to hit until they end.
 //
-// One Integrator per thread keeps a marcher full of rays: every ray that arrives is shaded and goes on as the path's
-// next ray, or makes room for a new camera path. Light is found by hitting it.
+// One Integrator per thread keeps marchers full of rays, one for the scene's field and one for each medium's: every
+// ray that arrives is shaded and goes on as the path's next ray, or makes room for a new camera path. At each hit
+// light is looked for in two ways, whose shares add up to 1 (multiple importance sampling): a light is chosen and a
+// shadow ray sent to it (shade.cpp), and the path's next ray may hit one.
 //
 //     Integrator integrator(world, film);
 //     integrator.run([&](std::span<PathKey> keys) { fill keys; return how many; });
 //
-// Source: Kajiya, "The Rendering Equation", 1986; Russian roulette: Arvo and Kirk, "Particle Transport and Image
-// Synthesis", 1990. Tested by: tests/runtime/render_test.cpp
+// Source: Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
+// 1997, chapters 8 and 9; Russian roulette: Arvo and Kirk, "Particle Transport and Image Synthesis", 1990. Tested by:
+// tests/runtime/render_test.cpp, light_transport_test.cpp
 #pragma once
 
 #include <array>
@@ -18,13 +21,16 @@
 #include <vector>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/bsdf.h"
 #include "runtime/camera.h"
 #include "runtime/field.h"
 #include "runtime/film.h"
+#include "runtime/light.h"
 #include "runtime/march.h"
 #include "runtime/material.h"
+#include "runtime/media.h"
 #include "runtime/options.h"
-#include "runtime/sampler.h"
+#include "runtime/path.h"
 #include "runtime/stats.h"
 #include "runtime/surface.h"
 
@@ -36,13 +42,10 @@ struct World {
   Settings settings;
   Camera camera;
   Field field;
-  std::vector<Material> materials;
-};
-
-// One camera path to be followed.
-struct PathKey {
-  int x, y;              // pixel
-  std::uint32_t sample;  // in [0, spp)
+  Media media;
+  Materials materials;
+  Lights lights;
+  Space camera_space;  // where the camera is
 };
 
 class Integrator {
@@ -58,34 +61,56 @@ class Integrator {
   Stats stats() const;
 
  private:
-  struct Path {
-    PathKey key;
-    Sampler sampler;
-    glm::dvec3 origin;  // of the current ray, scene units
-    glm::dvec3 direction;
-    glm::vec3 throughput;
-    glm::vec3 absorption;  // of the medium the ray travels through, per scene unit
-    int bounces;           // made so far
-    PathSample result;
+  // A path at a place where it met a surface.
+  struct Vertex {
+    Path& path;
+    const Hit& hit;
+    const SurfacePoint& point;
+    MaterialPoint material;
+    bool inside;   // the path comes out of the solid whose surface this is
+    Space beyond;  // what it gets into if it goes through
   };
 
   bool start_paths(const NextPaths& next);
   void start(std::span<const PathKey> keys);
-  void settle_arrivals();
-  void shade(std::span<const Arrival> arrivals);
-  void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
-  void record_first_hit(Path& path, const Arrival& arrival, const SurfacePoint& point, const Material& material);
-  bool survives_roulette(Path& path);
-  void go_on(std::uint32_t id, const Hit& hit, const SurfacePoint& point, bool through);
+  bool idle() const;
+  bool due(std::size_t field) const;
+  void advance(std::size_t field);
+  void settle_arrivals(std::size_t field);
+  void shade(std::size_t field, std::span<const Arrival> arrivals);
+  void follow(std::uint32_t id, const Ray& ray);
   void leave_scene(const Arrival& arrival);
   void add_to_film(std::uint32_t id);  // and frees the id
 
+  const Field& field(std::size_t number) const { return number == 0 ? world_.field : world_.media.field(number - 1); }
+
+  // shade.cpp
+  struct ShadowRay {
+    std::uint32_t field;
+    Ray ray;
+  };
+  void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
+  MaterialPoint material_at(const Path& path, const Hit& hit, const SurfacePoint& point);
+  bool is_inside(const Path& path, const Hit& hit, const SurfacePoint& point) const;
+  Space beyond(const Vertex& vertex);
+  Space no_medium(const Vertex& vertex, glm::dvec3 place);
+  void record_first_hit(const Vertex& vertex, const Arrival& arrival);
+  void add_emission(const Vertex& vertex, const Arrival& arrival);
+  float hit_share(const Path& path, float light_pdf) const;
+  void add_light(Path& path, glm::vec3 radiance, int bounces);
+  std::optional<ShadowRay> look_for_light(const Vertex& vertex, const Bsdf& bsdf);
+  void sample_next(const Vertex& vertex, const Bsdf& bsdf);
+  bool survives_roulette(Path& path);
+  void end_shadow_test(const Arrival& arrival);
+  void go_on(std::uint32_t id);
+
   const World& world_;
   Film& film_;
-  std::unique_ptr<Marcher> marcher_;
-  std::vector<Path> paths_;  // [id]
+  std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]
+  std::vector<Path> paths_;                         // [id]
   std::vector<std::uint32_t> free_ids_, ended_;
   std::vector<Arrival> settled_;  // scratch
+  RealScratch scratch_;
   Stats stats_;
 };
 

@@ -21,6 +21,10 @@ struct Progress {
   double seconds;      // since the render began
 };
 
+// How paths find light: by looking for lights from every hit and by hitting them, weighted so that both add up; or by
+// one of the two alone, to compare. Lights without a size can only be looked for.
+enum class LightSampling { Both, Lights, Hits };
+
 struct RenderOptions {
   int threads = 0;                   // 0: one per processor
   std::optional<int> width, height;  // pixels
@@ -29,6 +33,9 @@ struct RenderOptions {
   std::optional<double> far;  // scene units
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
+  LightSampling light_sampling = LightSampling::Both;
+  // The most radiance that a path of two bounces or more may bring: less noise, but biased, for light is lost.
+  std::optional<double> clamp;
   Marching marching;
   bool regions = true;                    // build them where the scene gains by them (runtime/regions.h)
   std::size_t region_memory = 64u << 20;  // bytes they may take
@@ -50,6 +57,8 @@ struct Settings {
   std::uint64_t seed;
   std::optional<double> far;
   std::optional<int> cut_after;
+  LightSampling light_sampling;
+  std::optional<double> clamp;  // radiance
   Marching marching;
   bool regions;
   std::size_t region_memory;  // bytes

@@ -236,4 +236,10 @@ vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspac
   return vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), p, workspace);
 }
 
+vm::SurfaceShares Regions::evaluate_shares(glm::dvec3 p, RealScratch& scratch) const {
+  const glm::vec3 f(p);
+  const vm::Part& part = part_of(find(f.x, f.y, f.z).node, scratch);
+  return vm::evaluate_shares(part.words.empty() ? whole_ : vm::Code(part), p, scratch.workspace);
+}
+
 }  // namespace fathom::runtime

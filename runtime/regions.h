@@ -97,6 +97,7 @@ class Regions {
   static constexpr std::size_t kMostHits = 256;
   void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
   vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
+  vm::SurfaceShares evaluate_shares(glm::dvec3 point, RealScratch& scratch) const;
 
   struct Facts {
     std::size_t far = 0, programs = 0;  // leaves

@@ -101,12 +101,36 @@ class Worker {
   std::uint64_t reported_rays_ = 0;
 };
 
+// What fills the place where the camera stands.
+Space space_at(glm::dvec3 place, const Media& media, const Materials& materials) {
+  Space space;
+  RealScratch scratch;
+  const std::optional<std::uint32_t> medium = media.at(place, scratch);
+  if (!medium) return space;
+  const MaterialPoint filling = materials.at(media.material(*medium), place, scratch.workspace);
+  space.field = *medium + 1;
+  space.side = -1;
+  if (!filling.fills()) return space;
+  space.ior = filling.ior;
+  space.absorption = filling.absorption;
+  return space;
+}
+
 World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
-  World world{scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
-              to_materials(scene)};
+  World world{scene,
+              settings,
+              Camera(scene.camera, settings.width, settings.height),
+              make_field(scene, settings.far),
+              Media(scene, extent_of(scene), settings.far),
+              Materials(scene),
+              Lights(scene),
+              {}};
   if (settings.regions) {
-    add_regions(world.field, scene, {.threads = settings.threads, .memory = settings.region_memory});
+    const RegionOptions options{.threads = settings.threads, .memory = settings.region_memory};
+    add_regions(world.field, scene, options);
+    world.media.add_regions(scene, options);
   }
+  world.camera_space = space_at(scene.camera.position, world.media, world.materials);
   return world;
 }
 
@@ -143,6 +167,8 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.tile = options.tile.value_or(scene.settings.tile);
   settings.seed = options.seed.value_or(scene.settings.seed);
   settings.cut_after = options.cut_after;
+  settings.light_sampling = options.light_sampling;
+  settings.clamp = options.clamp;
   settings.marching = options.marching;
   settings.regions = options.regions;
   settings.region_memory = options.region_memory;

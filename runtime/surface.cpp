@@ -86,4 +86,9 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   }
 }
 
+vm::SurfaceShares find_shares(const Field& field, glm::dvec3 place, RealScratch& scratch) {
+  if (field.regions) return field.regions->evaluate_shares(place, scratch);
+  return vm::evaluate_shares(*field.surface, place, scratch.workspace);
+}
+
 }  // namespace fathom::runtime

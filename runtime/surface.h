@@ -42,6 +42,9 @@ inline constexpr std::size_t kSurfaceBatch = 256;
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace);
 
+// The surfaces that have a share in a place of `field`'s surface.
+vm::SurfaceShares find_shares(const Field& field, glm::dvec3 place, RealScratch& scratch);
+
 // Where a ray starts that leaves the surface into the space the ray came through, or past the surface into the other.
 inline glm::dvec3 spawn(const Hit& hit, const SurfacePoint& point, bool through) {
   const double along = through ? -point.offset : point.offset;

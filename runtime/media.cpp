@@ -1,0 +1,31 @@
+#include "runtime/media.h"
+
+namespace fathom::runtime {
+
+Media::Media(const compiler::CompiledScene& scene, double extent, std::optional<double> far) {
+  for (const compiler::Medium& medium : scene.media) {
+    media_.push_back({make_field(medium, extent, far), medium.material});
+  }
+}
+
+void Media::add_regions(const compiler::CompiledScene& scene, const RegionOptions& options) {
+  for (std::size_t i = 0; i < media_.size(); ++i) runtime::add_regions(media_[i].field, scene.media[i], options);
+}
+
+std::optional<std::uint32_t> Media::at(glm::dvec3 place, RealScratch& scratch) const {
+  std::uint64_t instructions = 0;
+  for (std::uint32_t i = 0; i < media_.size(); ++i) {
+    const Field& field = media_[i].field;
+    if (field.bound.contains(place) && field.evaluate(place, scratch, instructions) < 0) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> Media::of_material(std::uint32_t material) const {
+  for (std::uint32_t i = 0; i < media_.size(); ++i) {
+    if (media_[i].material == material) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,49 @@
+// One light path on its way: what the integrator knows of it from one ray to the next.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "runtime/film.h"
+#include "runtime/light.h"
+#include "runtime/ray.h"
+#include "runtime/sampler.h"
+
+namespace fathom::runtime {
+
+// One camera path to be followed.
+struct PathKey {
+  int x, y;              // pixel
+  std::uint32_t sample;  // in [0, spp)
+};
+
+// What fills the space a ray travels through.
+struct Space {
+  std::uint32_t field = 0;  // 0: the scene's; else that of medium number field - 1
+  int side = 0;             // of that field, as Ray::side
+  float ior = 1;            // relative to vacuum
+  glm::vec3 absorption{0};  // per scene unit
+};
+
+struct Path {
+  PathKey key;
+  Sampler sampler;
+  glm::dvec3 origin;  // of the current ray, scene units
+  glm::dvec3 direction;
+  Space space;  // of the current ray
+  glm::vec3 throughput;
+  float eta_scale;  // product of eta^2 over the crossings: what refraction alone has done to the throughput
+  int bounces;      // made so far
+  // Where the current ray left a surface, and with which density per solid angle; 0: by a delta, or from the camera.
+  LightQuery from;
+  float pdf;
+  // While a shadow ray is under way: what it brings if nothing is in its way, and how the path goes on then.
+  bool in_shadow_test;
+  bool ends;
+  glm::vec3 shadow_radiance;
+  Ray next;
+  Space next_space;
+  PathSample result;
+};
+
+}  // namespace fathom::runtime

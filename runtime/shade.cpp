@@ -1,0 +1,234 @@
+// What happens to a path at a surface: its material and what lies beyond, emission, a light to look for, the next
+// ray.
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/elementary.h"
+#include "runtime/integrator.h"
+
+namespace fathom::runtime {
+namespace {
+
+// A path goes on with at most this probability, so that even a closed white room ends.
+constexpr float kMostSurvival = 0.95f;
+// A shadow ray ends so many of the start's offsets before a lamp met head-on, but takes no more than this share of
+// its way off.
+constexpr double kShadowOffsets = 4, kMostShortened = 0.1;
+
+float max_component(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
+
+glm::vec3 transmittance(const Space& space, double distance) {
+  // Beer-Lambert law.
+  if (space.absorption == glm::vec3(0)) return glm::vec3(1);
+  return exp(-space.absorption * static_cast<float>(distance));
+}
+
+// The power heuristic: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.
+float power_heuristic(float this_pdf, float other_pdf) {
+  const float ratio = other_pdf / this_pdf;
+  return 1 / (1 + ratio * ratio);
+}
+
+// How long the way to a sampled place on a lamp is free to be looked along: up to just before the lamp itself.
+double shadow_length(const LightSample& light, const SurfacePoint& point) {
+  const double cosine = std::max(static_cast<double>(light.lamp_cosine), 1e-3);
+  const double before = kShadowOffsets * static_cast<double>(point.offset) / cosine;
+  return light.distance - std::min(before, kMostShortened * light.distance);
+}
+
+}  // namespace
+
+// The share of light found by hitting it, where looking for lights would have found it with density `light_pdf`.
+float Integrator::hit_share(const Path& path, float light_pdf) const {
+  if (path.pdf == 0 || light_pdf == 0) return 1;
+  switch (world_.settings.light_sampling) {
+    case LightSampling::Both:
+      return power_heuristic(path.pdf, light_pdf);
+    case LightSampling::Hits:
+      return 1;
+    case LightSampling::Lights:
+      return 0;
+  }
+  return 1;
+}
+
+// Light that a path of so many bounces brings.
+void Integrator::add_light(Path& path, glm::vec3 radiance, int bounces) {
+  const std::optional<double>& most = world_.settings.clamp;
+  if (most && bounces > 1) {
+    const float brightest = max_component(radiance);
+    if (brightest > static_cast<float>(*most)) radiance *= static_cast<float>(*most) / brightest;
+  }
+  path.result.radiance += radiance;
+}
+
+void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
+  Path& path = paths_[arrival.id];
+  path.throughput *= transmittance(path.space, arrival.t);
+  path.space.side = arrival.side;
+  Vertex vertex{path, hit, point, material_at(path, hit, point), is_inside(path, hit, point), {}};
+  vertex.beyond = beyond(vertex);
+  if (path.bounces == 0) record_first_hit(vertex, arrival);
+  add_emission(vertex, arrival);
+  path.sampler.start_bounce(path.bounces);
+  const Bsdf bsdf(vertex.material, point.normal, hit.wo, vertex.beyond.ior / path.space.ior, vertex.inside);
+  const std::optional<ShadowRay> shadow = look_for_light(vertex, bsdf);
+  sample_next(vertex, bsdf);
+  if (!shadow) return go_on(arrival.id);
+  path.in_shadow_test = true;
+  marchers_[shadow->field]->add(arrival.id, shadow->ray);
+}
+
+// Where a blend mixes materials each counts by its share.
+MaterialPoint Integrator::material_at(const Path& path, const Hit& hit, const SurfacePoint& point) {
+  const Materials& materials = world_.materials;
+  if (!world_.scene.mixes_materials) return materials.at(point.material, hit.position, scratch_.workspace);
+  const vm::SurfaceShares shares = find_shares(field(path.space.field), hit.position, scratch_);
+  if (shares.count < 2) return materials.at(point.material, hit.position, scratch_.workspace);
+  const auto material = [&](int i) {
+    return world_.scene.surfaces[shares.all[static_cast<std::size_t>(i)].surface].material;
+  };
+  MaterialPoint mixed = materials.at(material(0), hit.position, scratch_.workspace);
+  double weight = shares.all[0].weight;
+  for (int i = 1; i < shares.count; ++i) {
+    const double more = shares.all[static_cast<std::size_t>(i)].weight;
+    weight += more;
+    if (material(i) == material(0)) continue;
+    mixed = mix(mixed, materials.at(material(i), hit.position, scratch_.workspace), static_cast<float>(more / weight));
+  }
+  return mixed;
+}
+
+// Whether the path comes out of the solid whose surface it met, or else out of the open or of another medium.
+bool Integrator::is_inside(const Path& path, const Hit& hit, const SurfacePoint& point) const {
+  if (path.space.field == 0) return hit.side < 0;
+  return world_.media.material(path.space.field - 1) == point.material;
+}
+
+// What a path gets into that goes through the surface. Of what is opaque only the index matters.
+Space Integrator::beyond(const Vertex& v) {
+  const Media& media = world_.media;
+  Space space = v.path.space;
+  if (!v.material.transmits()) {
+    space.ior = v.material.ior;
+    return space;
+  }
+  const glm::dvec3 place = spawn(v.hit, v.point, true);
+  std::optional<std::uint32_t> medium;
+  if (media.size() > 1 || !v.inside) medium = media.at(place, scratch_);
+  if (!medium) return no_medium(v, place);
+  space.field = *medium + 1;
+  space.side = -1;
+  const std::uint32_t material = media.material(*medium);
+  const MaterialPoint filling = material == v.point.material ? v.material : world_.materials.at(material, place, scratch_.workspace);
+  if (filling.fills()) {
+    space.ior = filling.ior;
+    space.absorption = filling.absorption;
+  }
+  return space;
+}
+
+// The open; or, where blends and cuts of several materials leave a solid without a medium, that solid as a whole.
+Space Integrator::no_medium(const Vertex& v, glm::dvec3 place) {
+  Space space;
+  space.side = 1;
+  if (v.inside) return space;
+  std::uint64_t instructions = 0;
+  if (world_.field.evaluate(place, scratch_, instructions) >= 0) return space;
+  space.side = -1;
+  if (v.material.fills()) {
+    space.ior = v.material.ior;
+    space.absorption = v.material.absorption;
+  }
+  return space;
+}
+
+void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
+  ++stats_.primary_hits;
+  PathSample& result = v.path.result;
+  result.hit = true;
+  result.albedo = albedo_of(v.material);
+  result.normal = v.point.normal;
+  result.depth = arrival.t;
+}
+
+void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {
+  if (v.material.emission == glm::vec3(0)) return;
+  const Path& path = v.path;
+  float light_pdf = 0;
+  if (path.pdf > 0) {
+    light_pdf = world_.lights.pdf_of_hit(path.from, v.point.surface, v.hit.position, -v.hit.wo, arrival.t);
+  }
+  const float share = hit_share(path, light_pdf);
+  if (share > 0) add_light(v.path, path.throughput * v.material.emission * share, path.bounces);
+}
+
+// A light is chosen and a place on it; what it would bring is kept until the shadow ray has told.
+std::optional<Integrator::ShadowRay> Integrator::look_for_light(const Vertex& v, const Bsdf& bsdf) {
+  Path& path = v.path;
+  const Settings& settings = world_.settings;
+  path.from = {spawn(v.hit, v.point, false), v.point.normal, v.material.transmits()};
+  const float choice = path.sampler.next();
+  const glm::vec2 place = path.sampler.next2();
+  if (bsdf.is_delta() || world_.lights.empty()) return std::nullopt;
+  if (settings.cut_after && path.bounces >= *settings.cut_after) return std::nullopt;
+  const LightSample light = world_.lights.sample(path.from, choice, place);
+  if (!(light.pdf > 0) || (!light.delta && settings.light_sampling == LightSampling::Hits)) return std::nullopt;
+  const BsdfValue value = bsdf.evaluate(light.wi);
+  const bool both = !light.delta && settings.light_sampling == LightSampling::Both;
+  const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;
+  const bool through = glm::dot(light.wi, v.point.normal) < 0;
+  const Space& space = through ? v.beyond : path.space;
+  path.shadow_radiance =
+      path.throughput * value.f * light.radiance * transmittance(space, light.distance) * (share / light.pdf);
+  if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
+  ShadowRay shadow{space.field, leave(v.hit, v.point, glm::dvec3(light.wi), through)};
+  shadow.ray.side = space.side;
+  shadow.ray.t_max = shadow_length(light, v.point);
+  return shadow;
+}
+
+void Integrator::sample_next(const Vertex& v, const Bsdf& bsdf) {
+  Path& path = v.path;
+  const float lobe = path.sampler.next();
+  const BsdfSample next = bsdf.sample(lobe, path.sampler.next2());
+  path.throughput *= next.weight;
+  path.eta_scale *= next.eta_scale;
+  path.pdf = next.pdf;
+  ++path.bounces;
+  path.ends = !(max_component(path.throughput) > 0) || !survives_roulette(path);
+  if (path.ends) return;
+  path.next = leave(v.hit, v.point, glm::dvec3(next.wi), next.through);
+  path.next_space = next.through ? v.beyond : path.space;
+  path.next.side = path.next_space.side;
+}
+
+// Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
+// What refraction does to radiance is no reason to end a path, for it is undone where the path comes out again.
+bool Integrator::survives_roulette(Path& path) {
+  if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
+  if (path.bounces < world_.settings.bounces) return true;
+  const float q = std::min(kMostSurvival, max_component(path.throughput) * path.eta_scale);
+  if (path.sampler.next() >= q) return false;
+  path.throughput /= q;
+  return true;
+}
+
+void Integrator::end_shadow_test(const Arrival& arrival) {
+  Path& path = paths_[arrival.id];
+  path.in_shadow_test = false;
+  const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
+  if (free) add_light(path, path.shadow_radiance, path.bounces);
+  go_on(arrival.id);
+}
+
+void Integrator::go_on(std::uint32_t id) {
+  Path& path = paths_[id];
+  if (path.ends) return ended_.push_back(id);
+  path.space = path.next_space;
+  follow(id, path.next);
+}
+
+}  // namespace fathom::runtime

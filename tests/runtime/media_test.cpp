@@ -1,0 +1,80 @@
+// Light through glass that touches, holds or lies in something else.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "runtime/render.h"
+#include "tests/runtime/scenes.h"
+
+namespace fathom::runtime {
+namespace {
+
+// The radiance straight down through slabs that overlap, before an even light.
+glm::dvec3 seen_through(const std::string& materials, const std::string& objects) {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 256;
+  const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 3, 0], "target": [0, 0, 0],
+      "up": [0, 0, 1], "width": 0.1}, "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"bounces": 40},
+      "materials": {)" + materials +
+                              R"(}, "objects": [)" + objects + "]");
+  const RenderResult result = render(scene, options);
+  CHECK(result.stats.march.invalid == 0);
+  glm::dvec3 sum(0);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) sum += result.film.means(x, y).radiance;
+  }
+  return sum / 256.0;
+}
+
+std::string layer(double top, double bottom, const char* material) {
+  return R"({"type": "box", "half_size": [1, )" + std::to_string((top - bottom) / 2) + R"(, 1], "translate": [0, )" +
+         std::to_string((top + bottom) / 2) + R"(, 0], "material": ")" + material + "\"}";
+}
+
+TEST_CASE("media: absorption says where one medium ends and another begins", "[render]") {
+  // Without refraction: through 0.4 of red glass and 0.6 of blue, which overlap.
+  const std::string materials = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1], "priority": 1},
+      "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
+  const glm::dvec3 seen = seen_through(materials, layer(0.5, 0.1, "red") + "," + layer(0.3, -0.5, "blue"));
+  CHECK(seen.x == Approx(2 * std::exp(-2 * 0.6)).epsilon(1e-4));
+  CHECK(seen.y == Approx(2 * std::exp(-1 * 0.4 - 1 * 0.6)).epsilon(1e-4));
+  CHECK(seen.z == Approx(2 * std::exp(-1 * 0.4)).epsilon(1e-4));
+  // Of equal priority the first in the file fills the overlap.
+  const std::string equal = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1]},
+      "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
+  CHECK(seen_through(equal, layer(0.3, -0.5, "blue") + "," + layer(0.5, 0.1, "red")).x ==
+        Approx(2 * std::exp(-2 * 0.6)).epsilon(1e-4));
+}
+
+TEST_CASE("media: where water meets glass the step of the index is that between the two", "[render]") {
+  // Air, glass 1.5, water 1.5 of another name, air: the middle surface reflects nothing, so it is one slab.
+  const std::string same = R"("glass": {"type": "transparent"}, "water": {"type": "transparent"})";
+  const std::string layers = layer(0.5, -0.1, "glass") + "," + layer(0, -0.5, "water");
+  CHECK(seen_through(same, layers).x == Approx(2 * 0.96 / 1.04).epsilon(1e-2));
+  // Three surfaces of reflectances r: without interference they pass (1 + sum of r / (1 - r))^-1.
+  const auto r = [](double a, double b) { return (a - b) * (a - b) / ((a + b) * (a + b)); };
+  const std::string two =
+      R"("glass": {"type": "transparent", "ior": 1.8}, "water": {"type": "transparent", "ior": 1.33})";
+  double resistance = 1;
+  for (const double one : {r(1, 1.8), r(1.8, 1.33), r(1.33, 1)}) resistance += one / (1 - one);
+  CHECK(seen_through(two, layers).x == Approx(2 / resistance).epsilon(1e-2));
+}
+
+TEST_CASE("media: what lies within glass is seen through it", "[render]") {
+  const std::string materials = R"("glass": {"type": "transparent", "ior": 1, "absorption": [1, 1, 1]},
+      "lamp": {"type": "emissive", "emission": [1, 1, 1]})";
+  const glm::dvec3 seen = seen_through(materials, layer(0.5, -0.5, "glass") + "," + layer(0, -0.3, "lamp"));
+  CHECK(seen.x == Approx(std::exp(-0.5)).epsilon(1e-4));
+}
+
+// Once, light that came out of the glass on a table went on within the table, for a union has no surface there.
+TEST_CASE("media: glass that stands in a table shows the table", "[render]") {
+  const std::string materials = R"("glass": {"type": "transparent", "ior": 1},
+      "table": {"type": "emissive", "emission": [1, 0.5, 0]})";
+  const glm::dvec3 seen = seen_through(materials, layer(0.5, -0.2, "glass") + "," + layer(0, -1, "table"));
+  CHECK(seen.x == Approx(1).epsilon(1e-4));
+  CHECK(seen.y == Approx(0.5).epsilon(1e-4));
+}
+
+}  // namespace
+}  // namespace fathom::runtime

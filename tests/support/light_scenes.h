@@ -1,0 +1,140 @@
+// Scenes whose light is known in closed form. The text of each is what follows `"version": 1`; every one is seen by a
+// camera for which all pixels have the same value, or that value is the mean.
+// Sources: P1 to P10 of the tests' names are those of docs/LIGHT.md.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fathom::tests {
+
+inline std::string grey(double value) {
+  const std::string number = std::to_string(value);
+  return "[" + number + "," + number + "," + number + "]";
+}
+
+struct LightScene {
+  std::string name;
+  std::string json;
+  double radiance;  // of the picture's mean
+};
+
+// P1: within a closed body whose walls emit 1 and have albedo a, all is 1 + a + a^2 + ...
+inline LightScene closed_room(double albedo, const std::string& body = R"("type": "sphere", "radius": 1)") {
+  return {"closed room of albedo " + std::to_string(albedo),
+          R"("camera": {"position": [0.3, 0.1, 0.2], "target": [0, 0, -1], "fov": 90},
+             "materials": {"lamp": {"type": "emissive", "emission": [1, 1, 1], "color": )" +
+              grey(albedo) + R"(}}, "objects": [{)" + body + R"(, "material": "lamp"}])",
+          1 / (1 - albedo)};
+}
+
+// P2, P7: what absorbs nothing cannot be told from an even background.
+inline LightScene in_even_light(const std::string& material,
+                                const std::string& body = R"("type": "sphere", "radius": 1)") {
+  return {material,
+          R"("camera": {"position": [0, 0, 3], "fov": 30}, "background": [1, 1, 1], "render": {"bounces": 60},
+             "materials": {"m": )" +
+              material + R"(}, "objects": [{)" + body + R"(, "material": "m"}])",
+          1};
+}
+
+// A floor of albedo 1/2 round the origin, of which only a spot is seen that is too small for its light to vary.
+inline std::string floor_spot(const std::string& lights, const std::string& objects) {
+  return R"("camera": {"type": "orthographic", "position": [3, 0.4, 0.2], "target": [0, 0, 0], "width": 0.002},
+            "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
+                          "lamp": {"type": "emissive", "emission": [8, 8, 8]}}, )" +
+         lights + R"("objects": [{"type": "plane", "normal": [0, 1, 0], "material": "floor"})" + objects + "]";
+}
+
+// P3: irradiance pi L (R/d)^2 cos of a ball that is all above the horizon.
+inline LightScene under_ball(double radius, double x, double y) {
+  const double squared = x * x + y * y;
+  return {"under a ball",
+          floor_spot("", R"(, {"type": "sphere", "radius": )" + std::to_string(radius) + R"(, "translate": [0, )" +
+                             std::to_string(y) + ", " + std::to_string(x) + R"(], "material": "lamp"})"),
+          0.5 * 8 * radius * radius / squared * y / std::sqrt(squared)};
+}
+
+// P4: pi L R^2 / (R^2 + h^2) of a disc straight above.
+inline LightScene under_disc(double radius, double height) {
+  return {"under a disc",
+          floor_spot("", R"(, {"type": "cylinder", "radius": )" + std::to_string(radius) +
+                             R"(, "half_height": 0.05, "translate": [0, )" + std::to_string(height + 0.05) +
+                             R"(, 0], "material": "lamp"})"),
+          0.5 * 8 * radius * radius / (radius * radius + height * height)};
+}
+
+// P5: Lambert's sum over the edges of a polygon (Lambert, "Photometria", 1760): E = L/2 sum angle_i (edge normal_i .
+// n).
+inline double polygon_irradiance(const std::vector<std::array<double, 3>>& corners, double radiance) {
+  double sum = 0;
+  const auto dot = [](const auto& a, const auto& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const std::array<double, 3> cross{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                                      a[0] * b[1] - a[1] * b[0]};
+    const double length = std::sqrt(dot(cross, cross));
+    sum += std::atan2(length, dot(a, b)) * cross[1] / length;
+  }
+  return radiance * std::abs(sum) / 2;
+}
+
+// A box lamp whose lower face alone is seen from the floor's spot, for it is thin and far from the side.
+inline LightScene under_rectangle(double half_x, double half_z, double x, double y) {
+  const auto face = [&] {
+    return std::vector<std::array<double, 3>>{
+        {x - half_x, y, -half_z}, {x + half_x, y, -half_z}, {x + half_x, y, half_z}, {x - half_x, y, half_z}};
+  }();
+  return {"under a rectangle",
+          floor_spot("", R"(, {"type": "box", "half_size": [)" + std::to_string(half_x) + ", 0.05, " +
+                             std::to_string(half_z) + R"(], "translate": [)" + std::to_string(x) + ", " +
+                             std::to_string(y + 0.05) + R"(, 0], "material": "lamp"})"),
+          0.5 * polygon_irradiance(face, 8) / std::numbers::pi};
+}
+
+// P6: a spherical cavity of albedo rho with a hole of half angle a under an even light 1: rho f / (1 - rho (1 - f)),
+// f = (1 - cos a) / 2. The camera looks in through the hole at a spot of the wall.
+inline LightScene cavity(double albedo, double degrees) {
+  const double f = (1 - std::cos(degrees * std::numbers::pi / 180)) / 2;
+  return {"cavity",
+          R"("camera": {"type": "orthographic", "position": [0, 0, 3], "target": [0, 0, 0], "width": 0.02},
+             "background": [1, 1, 1], "render": {"bounces": 40},
+             "materials": {"wall": {"type": "diffuse", "color": )" +
+              grey(albedo) + R"(}}, "objects": [{"type": "subtraction", "material": "wall", "of": [
+                {"type": "onion", "thickness": 0.0005, "of": {"type": "sphere", "radius": 1}},
+                {"type": "solid_angle", "radius": 2, "angle": )" +
+              std::to_string(degrees) + R"(, "rotate": [90, 0, 0]}]}])",
+          albedo * f / (1 - albedo * (1 - f))};
+}
+
+// P8: through a slab of glass, head-on, with reflections within: (1 - R) / (1 + R), R = .04. What it reflects is
+// dark.
+inline LightScene slab() {
+  return {
+      "slab of glass",
+      R"("camera": {"type": "orthographic", "position": [0, 3, 0], "target": [0, 0, 0], "up": [0, 0, 1], "width": 0.5},
+             "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"bounces": 60},
+             "materials": {"glass": {"type": "transparent"}},
+             "objects": [{"type": "box", "half_size": [1, 0.25, 1], "material": "glass"}])",
+      2 * 0.96 / 1.04};
+}
+
+// P10: a white ball under a distant lamp at phase angle g, over the ball's disc: 2 (sin g + (pi - g) cos g) / (3 pi)
+// times irradiance / pi (Lambert's sphere).
+inline LightScene moon(double degrees) {
+  const double g = degrees * std::numbers::pi / 180;
+  const double irradiance = 3, disc = std::numbers::pi / 4;  // the disc fills so much of the picture
+  const double phase = 2 * (std::sin(g) + (std::numbers::pi - g) * std::cos(g)) / (3 * std::numbers::pi);
+  return {"moon",
+          R"("camera": {"type": "orthographic", "position": [0, 0, 5], "width": 2}, "render": {"bounces": 1},
+             "lights": {"sun": {"type": "directional", "direction": [)" +
+              std::to_string(-std::sin(g)) + ", 0, " + std::to_string(-std::cos(g)) + R"(], "irradiance": [3, 3, 3]}},
+             "materials": {"white": {"type": "diffuse", "color": [1, 1, 1]}},
+             "objects": [{"type": "sphere", "radius": 1, "material": "white"}])",
+          disc * phase * irradiance / std::numbers::pi};
+}
+
+}  // namespace fathom::tests
