@@ -25,6 +25,14 @@ glm::vec3 background_radiance(const compiler::Background& background, glm::dvec3
   return glm::vec3(background.bottom * (1 - share) + background.top * share);
 }
 
+MaterialPoint at_point(const Material& m) {
+  MaterialPoint point;
+  point.type = m.type;
+  point.base_color = m.color;
+  point.ior = m.ior;
+  return point;
+}
+
 bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 }  // namespace
@@ -149,15 +157,18 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   if (path.absorption != glm::vec3(0)) path.throughput *= exp(-path.absorption * static_cast<float>(arrival.t));
   path.result.radiance += path.throughput * material.emission;
 
-  const BsdfSample next = sample_bsdf(material, hit.wo, point.normal, inside, path.sampler);
-  path.throughput *= next.weight;
+  const Bsdf bsdf(at_point(material), point.normal, hit.wo, inside ? 1 / material.ior : material.ior, inside);
+  const float lobe = path.sampler.next();
+  const BsdfSample next = bsdf.sample(lobe, path.sampler.next2());
+  // Light is seen where it leaves glass again: there the scalings of radiance cancel.
+  path.throughput *= next.weight * next.eta_scale;
   ++path.bounces;
   if (!(max_component(path.throughput) > 0) || !survives_roulette(path)) {
     ended_.push_back(arrival.id);
     return;
   }
   path.direction = next.wi;
-  if (next.through) path.absorption = inside ? glm::vec3(0) : material.absorption;
+  if (next.through && !next.straight) path.absorption = inside ? glm::vec3(0) : material.absorption;
   go_on(arrival.id, hit, point, next.through);
 }
 
