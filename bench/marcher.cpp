@@ -11,10 +11,10 @@
 #include "bench/clouds.h"
 #include "bench/comparison.h"
 #include "bench/compiled_scenes.h"
-#include "runtime/bsdf.h"
 #include "runtime/camera.h"
 #include "runtime/march.h"
 #include "runtime/surface.h"
+#include "runtime/warp.h"
 
 namespace {
 
@@ -66,8 +66,8 @@ class Scene {
       runtime::SurfacePoint point{};
       runtime::find_surfaces(scene_, field_, {&hit, 1}, {&point, 1}, workspace);
       runtime::Sampler sampler(1, arrival.id, 0, 0);
-      diffuse_.push_back(
-          runtime::leave(hit, point, runtime::sample_diffuse(glm::vec3(1), point.normal, sampler).wi, false));
+      diffuse_.push_back(runtime::leave(
+          hit, point, runtime::to_frame(point.normal, runtime::square_to_cosine_hemisphere(sampler.next2())), false));
     }
   }
 

@@ -20,7 +20,7 @@ inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
 
 // How a surface scatters light. Colours are linear sRGB in [0,1] unless said.
 struct Material {
-  enum class Type { Diffuse, Emissive, Specular, Transparent };
+  enum class Type { Diffuse, Emissive, Specular, Transparent, Principled };
   std::string name;
   Type type = Type::Diffuse;
   glm::dvec3 color{0.8};       // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;

@@ -21,15 +21,23 @@ inline glm::vec3 square_to_cosine_hemisphere(glm::vec2 u) {
 }
 inline float square_to_cosine_hemisphere_pdf(glm::vec3 w) { return w.z > 0 ? w.z * 0.318309886183790672f : 0.0f; }
 
-// `local` in the frame whose z axis is the unit vector n; both tangents are unit vectors.
+// Axes of unit length about the unit vector z; all directions are unit vectors.
 // Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017, listing 3.
-inline glm::vec3 to_frame(glm::vec3 n, glm::vec3 local) {
-  const float sign = std::copysign(1.0f, n.z);
-  const float a = -1 / (sign + n.z);
-  const float b = n.x * n.y * a;
-  const glm::vec3 tangent(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-  const glm::vec3 bitangent(b, sign + n.y * n.y * a, -n.y);
-  return tangent * local.x + bitangent * local.y + n * local.z;
-}
+struct Frame {
+  glm::vec3 x, y, z;
+
+  explicit Frame(glm::vec3 n) : z(n) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1 / (sign + n.z);
+    const float b = n.x * n.y * a;
+    x = glm::vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    y = glm::vec3(b, sign + n.y * n.y * a, -n.y);
+  }
+  glm::vec3 to_world(glm::vec3 local) const { return x * local.x + y * local.y + z * local.z; }
+  glm::vec3 to_local(glm::vec3 world) const { return {glm::dot(world, x), glm::dot(world, y), glm::dot(world, z)}; }
+};
+
+// `local` in the frame whose z axis is n.
+inline glm::vec3 to_frame(glm::vec3 n, glm::vec3 local) { return Frame(n).to_world(local); }
 
 }  // namespace fathom::runtime

@@ -1,10 +1,117 @@
 #include "runtime/bsdf.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/common.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/sampler.h"
+#include "support/chi_square.h"
+#include "support/effort.h"
 
 namespace fathom::runtime {
 namespace {
+
+const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
+const float kCosines[] = {1, 0.8f, 0.5f, 0.2f, 0.05f};
+
+// A direction on the normal's side.
+glm::vec3 towards(float cos, float turn) {
+  const float sin = std::sqrt(1 - cos * cos);
+  return to_frame(kNormal, {sin * sincos_turn(turn).cos, sin * sincos_turn(turn).sin, cos});
+}
+
+struct Case {
+  std::string name;
+  MaterialPoint material;
+  bool inside = false;
+
+  float eta() const { return inside ? 1 / material.ior : material.ior; }
+  Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
+};
+
+MaterialPoint principled(float roughness) {
+  MaterialPoint m;
+  m.type = Material::Type::Principled;
+  m.base_color = glm::vec3(1);
+  m.roughness = roughness;
+  return m;
+}
+MaterialPoint metal(float alpha) {
+  MaterialPoint m = principled(std::sqrt(alpha));
+  m.metalness = 1;
+  return m;
+}
+MaterialPoint glass(float alpha, bool thin = false) {
+  MaterialPoint m = principled(std::sqrt(alpha));
+  m.transmission = 1;
+  m.thin_walled = thin;
+  return m;
+}
+MaterialPoint coated(float coat_roughness) {
+  MaterialPoint m = principled(0.5f);
+  m.coat_weight = 1;
+  m.coat_roughness = coat_roughness;
+  return m;
+}
+MaterialPoint matte(float diffuse_roughness) {
+  MaterialPoint m = principled(0.3f);
+  m.diffuse_roughness = diffuse_roughness;
+  m.specular_weight = 0;
+  return m;
+}
+MaterialPoint mix() {
+  MaterialPoint m = principled(0.6f);
+  m.base_color = {0.9f, 0.5f, 0.2f};
+  m.diffuse_roughness = 0.5f;
+  m.metalness = 0.3f;
+  m.specular_weight = 0.8f;
+  m.specular_color = {1, 0.8f, 0.7f};
+  m.transmission = 0.4f;
+  m.transmission_color = {0.5f, 0.9f, 0.8f};
+  m.coat_weight = 0.6f;
+  m.coat_roughness = 0.4f;
+  m.coat_color = {0.8f, 0.9f, 1};
+  m.opacity = 0.8f;
+  return m;
+}
+
+std::vector<Case> materials() {
+  std::vector<Case> cases;
+  cases.push_back({"diffuse", {}});
+  cases.push_back({"rough diffuse", matte(1)});
+  for (float alpha : {0.02f, 0.1f, 0.5f, 1.0f}) cases.push_back({"metal " + std::to_string(alpha), metal(alpha)});
+  for (float alpha : {0.1f, 0.5f}) {
+    cases.push_back({"glass " + std::to_string(alpha), glass(alpha)});
+    cases.push_back({"glass from inside " + std::to_string(alpha), glass(alpha), true});
+  }
+  cases.push_back({"plastic", principled(0.5f)});
+  cases.push_back({"varnish", coated(0)});
+  cases.push_back({"rough coat", coated(0.5f)});
+  cases.push_back({"thin wall", glass(0.2f, true)});
+  cases.push_back({"mix", mix()});
+  cases.push_back({"mix from inside", mix(), true});
+  return cases;
+}
+
+// The mean weight of many samples, without the scaling of radiance. Points of Roberts' sequence R3, "The Unreasonable
+// Effectiveness of Quasirandom Sequences", 2018: far closer to the integral than as many random ones.
+glm::dvec3 albedo(const Bsdf& bsdf, int n) {
+  constexpr double kG = 1.2207440846057596;
+  glm::dvec3 sum(0), at(0.5);
+  for (int i = 0; i < n; ++i) {
+    at = glm::fract(at + glm::dvec3(1 / kG, 1 / (kG * kG), 1 / (kG * kG * kG)));
+    const auto below_one = [](double x) { return std::min(static_cast<float>(x), 0x1.fffffep-1f); };
+    const BsdfSample s = bsdf.sample(below_one(at.x), {below_one(at.y), below_one(at.z)});
+    sum += glm::dvec3(s.weight * s.eta_scale);
+  }
+  return sum / static_cast<double>(n);
+}
+
+float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
 TEST_CASE("bsdf: Fresnel's equations at their known points", "[runtime]") {
   CHECK(fresnel(1, 1.5f) == Approx(0.04).epsilon(1e-6));
@@ -37,19 +144,263 @@ TEST_CASE("bsdf: mirrors and Snell's law", "[runtime]") {
 }
 
 TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only what passes", "[runtime]") {
-  Material glass{Material::Type::Transparent, glm::vec3(0.5f), glm::vec3(0), 1.5f, glm::vec3(0)};
+  MaterialPoint m;
+  m.type = Material::Type::Transparent;
+  m.base_color = glm::vec3(0.5f);
   const glm::vec3 normal(0, 0, 1), wo = glm::normalize(glm::vec3(1, 0, 0.3f));
+  const Bsdf bsdf(m, normal, wo, 1.5f, false);
+  CHECK(bsdf.is_delta());
   const double expected = static_cast<double>(fresnel(wo.z, 1.5f));
   const int n = 200000;
   int reflected = 0;
   for (int i = 0; i < n; ++i) {
     Sampler sampler(0, static_cast<std::uint32_t>(i), 0, 0);
-    const BsdfSample s = sample_bsdf(glass, wo, normal, false, sampler);
+    const float lobe = sampler.next();
+    const BsdfSample s = bsdf.sample(lobe, sampler.next2());
     reflected += !s.through;
-    CHECK(s.weight == (s.through ? glm::vec3(0.5f) : glm::vec3(1)));
+    CHECK(glm::length(s.weight * s.eta_scale - (s.through ? glm::vec3(0.5f) : glm::vec3(1))) < 1e-6f);
     CHECK((s.wi.z < 0) == s.through);
   }
   CHECK(std::abs(reflected - n * expected) < 4 * std::sqrt(n * expected * (1 - expected)));
+}
+
+TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime]") {
+  for (const Case& c : materials()) {
+    for (float cos : kCosines) {
+      const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
+      CHECK(!bsdf.is_delta());
+      double worst = 0;
+      for (int i = 0; i < 2000; ++i) {
+        Sampler sampler(3, static_cast<std::uint32_t>(i), 0, 0);
+        const float lobe = sampler.next();
+        const BsdfSample s = bsdf.sample(lobe, sampler.next2());
+        if (!(s.pdf > 0)) continue;
+        const BsdfValue value = bsdf.evaluate(s.wi);
+        const float error = greatest(glm::abs(s.weight * s.pdf - value.f)) / greatest(value.f);
+        worst = std::max(worst, static_cast<double>(error));
+        if (value.pdf != s.pdf) FAIL(c.name << ": the densities differ");
+        if (s.through != (glm::dot(s.wi, kNormal) < 0)) FAIL(c.name << ": the side is wrong");
+      }
+      CAPTURE(c.name, cos);
+      CHECK(worst <= 1e-6);
+    }
+  }
+}
+
+// How often each lobe is drawn holds against its density, for every material from five directions.
+void check_densities(int samples, int rows) {
+  const std::vector<Case> cases = materials();
+  const double level = test::sidak(0.01, static_cast<int>(cases.size()) * 5);
+  std::uint64_t seed = 0;
+  for (const Case& c : cases) {
+    for (float cos : kCosines) {
+      const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
+      const auto sample = [&](Sampler& sampler) -> std::optional<glm::vec3> {
+        const float lobe = sampler.next();
+        const BsdfSample s = bsdf.sample(lobe, sampler.next2());
+        if (!(s.pdf > 0)) return std::nullopt;
+        return s.wi;
+      };
+      const auto pdf = [&](glm::vec3 wi) { return static_cast<double>(bsdf.evaluate(wi).pdf); };
+      test::ChiSquareSetup setup;
+      setup.samples = samples;
+      setup.rows = rows;
+      setup.columns = 2 * rows;
+      setup.pole = kNormal;
+      setup.seed = ++seed;
+      const test::ChiSquare result = test::chi_square(sample, pdf, setup);
+      CAPTURE(c.name, cos, result.describe());
+      CHECK(result.p > level);
+      CHECK(result.integral <= 1.001);
+    }
+  }
+}
+
+TEST_CASE("bsdf: every material passes a chi-square test against its density", "[runtime]") {
+  check_densities(test::few(20000), 20);
+}
+
+TEST_CASE("bsdf: every material passes a chi-square test of a million samples", "[runtime][heavy]") {
+  check_densities(1000000, 40);
+}
+
+TEST_CASE("bsdf: light goes either way alike", "[runtime]") {
+  for (const Case& c : materials()) {
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+      Sampler sampler(7, static_cast<std::uint32_t>(i), 0, 0);
+      const glm::vec3 wo = to_frame(kNormal, square_to_cosine_hemisphere(sampler.next2()));
+      const bool through = i % 2 == 1;
+      const glm::vec3 wi = to_frame(through ? -kNormal : kNormal, square_to_cosine_hemisphere(sampler.next2()));
+      const float cos_o = glm::dot(wo, kNormal), cos_i = std::abs(glm::dot(wi, kNormal));
+      if (cos_o < 0.01f || cos_i < 0.01f) continue;
+      const bool enters = through && !c.material.thin_walled;
+      const Bsdf back(c.material, through ? -kNormal : kNormal, wi, through ? 1 / c.eta() : c.eta(),
+                      through != c.inside);
+      const glm::vec3 there = c.bsdf(wo).evaluate(wi).f / cos_i;
+      const glm::vec3 here = back.evaluate(wo).f / cos_o;
+      float index = 1;  // radiance counts by the square of its side's
+      if (enters) {
+        const float s = std::sqrt(c.material.specular_weight) * (c.eta() - 1) / (c.eta() + 1);
+        index = (1 + s) / (1 - s);
+      }
+      const glm::vec3 difference = glm::abs(there * (index * index) - here);
+      if (greatest(here) < 1e-6f) continue;
+      worst = std::max(worst, static_cast<double>(greatest(difference) / greatest(here)));
+    }
+    CAPTURE(c.name);
+    CHECK(worst <= 1e-5);
+  }
+}
+
+TEST_CASE("bsdf: nothing gives more light than it gets", "[runtime]") {
+  std::vector<Case> cases = materials();
+  for (float roughness : {0.0f, 0.15f, 0.4f, 0.8f}) {
+    for (float diffuse_roughness : {0.0f, 0.5f, 1.0f}) {
+      MaterialPoint m = coated(0.3f);
+      m.roughness = roughness;
+      m.diffuse_roughness = diffuse_roughness;
+      cases.push_back({"coated plastic", m});
+      m.metalness = 0.5f;
+      m.transmission = 0.5f;
+      cases.push_back({"all in one", m});
+      cases.push_back({"all in one from inside", m, true});
+    }
+    MaterialPoint m = glass(roughness * roughness);
+    m.coat_weight = 0.7f;
+    cases.push_back({"coated glass", m});
+    cases.push_back({"coated glass from inside", m, true});
+    m.thin_walled = true;
+    cases.push_back({"coated pane", m});
+  }
+  for (const Case& c : cases) {
+    for (float cos : kCosines) {
+      CAPTURE(c.name, c.material.roughness, c.material.diffuse_roughness, cos);
+      CHECK(greatest(glm::vec3(albedo(c.bsdf(towards(cos, 0.2f)), test::few(8000)))) <= 1.001);
+    }
+  }
+}
+
+TEST_CASE("bsdf: what is white loses nothing", "[runtime]") {
+  std::vector<Case> cases{{"diffuse", {}}, {"rough diffuse", matte(1)}, {"matte", matte(0)}};
+  cases[0].material.base_color = glm::vec3(1);
+  for (float roughness : {0.0f, 0.1f, 0.3f, 0.5f, 0.7f, 1.0f}) {
+    const float alpha = roughness * roughness;
+    cases.push_back({"metal", metal(alpha)});
+    cases.push_back({"glass", glass(alpha)});
+    cases.push_back({"glass from inside", glass(alpha), true});
+    cases.push_back({"pane", glass(alpha, true)});
+    cases.push_back({"plastic", principled(roughness)});
+    cases.push_back({"plastic from inside", principled(roughness), true});
+  }
+  for (const Case& c : cases) {
+    for (float cos : kCosines) {
+      CAPTURE(c.name, c.material.roughness, cos);
+      CHECK(albedo(c.bsdf(towards(cos, 0.2f)), test::few(40000)).x == Approx(1).margin(3e-3));
+    }
+  }
+}
+
+TEST_CASE("bsdf: varnish over a white surface loses at most a few hundredths", "[runtime]") {
+  for (const MaterialPoint& base : {metal(0.25f), metal(0), principled(0.5f), principled(0)}) {
+    for (float coat_roughness : {0.0f, 0.4f}) {
+      Case c{"varnish", base};
+      c.material.coat_weight = 1;
+      c.material.coat_roughness = coat_roughness;
+      for (float cos : kCosines) {
+        CAPTURE(base.metalness, base.roughness, coat_roughness, cos);
+        CHECK(albedo(c.bsdf(towards(cos, 0.2f)), test::few(16000)).x >= 0.97);
+      }
+    }
+  }
+}
+
+TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees", "[runtime]") {
+  MaterialPoint gold = metal(0);
+  gold.base_color = {1, 0.7f, 0.3f};
+  gold.specular_color = {0.9f, 1, 0.5f};
+  const F82Tint tint(gold.base_color, gold.specular_color);
+  CHECK(glm::length(Bsdf(gold, kNormal, kNormal, 1.5f, false).sample(0.5f, {0, 0}).weight - gold.base_color) < 1e-5f);
+  const float x = 6.0f / 7;
+  const glm::vec3 schlick = gold.base_color + (1.0f - gold.base_color) * (x * x * x * x * x);
+  CHECK(glm::length(tint(1.0f / 7) - schlick * gold.specular_color) < 1e-5f);
+  CHECK(glm::length(tint(0) - glm::vec3(1)) < 1e-5f);
+  glm::dvec3 sum(0);
+  for (int i = 0; i < 10000; ++i) {
+    const float cos = (static_cast<float>(i) + 0.5f) / 10000;
+    sum += glm::dvec3(tint(cos) * (2 * cos / 10000));
+  }
+  CHECK(glm::length(glm::vec3(sum) - tint.average()) < 1e-4f);
+}
+
+TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]") {
+  MaterialPoint smooth;
+  smooth.type = Material::Type::Transparent;
+  smooth.base_color = glm::vec3(1);
+  for (const MaterialPoint& m : {smooth, glass(0)}) {
+    const glm::vec3 wo = towards(0.6f, 0.1f);
+    const BsdfSample in = Bsdf(m, kNormal, wo, 1.5f, false).sample(0.999f, {0.3f, 0.4f});
+    REQUIRE(in.through);
+    CHECK(in.eta_scale == Approx(2.25).epsilon(1e-5));
+    CHECK(in.weight.x == Approx(1 / 2.25).epsilon(1e-5));
+    // The far side of a slab.
+    const BsdfSample out = Bsdf(m, kNormal, -in.wi, 1 / 1.5f, true).sample(0.999f, {0.3f, 0.4f});
+    REQUIRE(out.through);
+    CHECK(in.weight.x * out.weight.x == Approx(1).epsilon(1e-5));
+    CHECK(in.eta_scale * out.eta_scale == Approx(1).epsilon(1e-5));
+    CHECK(glm::length(out.wi + wo) < 1e-5f);
+  }
+}
+
+TEST_CASE("bsdf: a thin wall lets straight through what a slab does", "[runtime]") {
+  const Bsdf pane(glass(0, true), kNormal, kNormal, 1.5f, false);
+  CHECK(pane.is_delta());
+  // T / (1 + R) with R = .04.
+  int passed = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const BsdfSample s = pane.sample((static_cast<float>(i) + 0.5f) / 10000, {0.5f, 0.5f});
+    if (!s.through) continue;
+    ++passed;
+    if (s.wi != -kNormal || !s.straight || s.eta_scale != 1) FAIL("bent");
+  }
+  CHECK(passed / 1e4 == Approx(0.92308).margin(2e-4));
+}
+
+TEST_CASE("bsdf: what is not opaque has holes", "[runtime]") {
+  MaterialPoint m = principled(0.5f);
+  m.opacity = 0.25f;
+  const glm::vec3 wo = towards(0.4f, 0.7f);
+  const Bsdf bsdf(m, kNormal, wo, 1.5f, false);
+  int holes = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const BsdfSample s = bsdf.sample((static_cast<float>(i) + 0.5f) / 10000, {0.5f, 0.5f});
+    if (!s.through) continue;
+    ++holes;
+    if (s.wi != -wo || !s.straight || s.weight != glm::vec3(1)) FAIL("a hole changes light");
+  }
+  CHECK(holes == Approx(7500).margin(2));
+  CHECK(albedo(bsdf, 20000).x == Approx(1).margin(2e-3));
+}
+
+TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[runtime]") {
+  const auto is_delta = [](const MaterialPoint& m) { return Bsdf(m, kNormal, kNormal, 1.5f, false).is_delta(); };
+  MaterialPoint mirror;
+  mirror.type = Material::Type::Specular;
+  CHECK(is_delta(mirror));
+  CHECK(is_delta(metal(0)));
+  CHECK(is_delta(glass(0)));
+  CHECK(!is_delta(metal(0.01f)));
+  CHECK(!is_delta(glass(0.01f)));
+  CHECK(!is_delta(principled(0)));
+  CHECK(!is_delta(MaterialPoint{}));
+  MaterialPoint coated_mirror = metal(0);
+  coated_mirror.coat_weight = 1;
+  CHECK(is_delta(coated_mirror));
+  coated_mirror.coat_roughness = 0.3f;
+  CHECK(!is_delta(coated_mirror));
+  const BsdfSample s = Bsdf(mirror, kNormal, towards(0.3f, 0), 1.5f, false).sample(0.5f, {0.5f, 0.5f});
+  CHECK(s.weight == mirror.base_color);
+  CHECK(s.pdf == 0);
 }
 
 }  // namespace

@@ -1,0 +1,233 @@
+#include "runtime/energy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "runtime/fresnel.h"
+#include "runtime/microfacet.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr int kNodes = AlbedoRow::kNodes;
+// What the tables are made with: integrals that err by less than 1e-3, from the denser side 3e-3, where total
+// reflection breaks the integrand.
+constexpr Lattice kOutside{377, 233}, kInside{987, 610};
+constexpr float kLeastAlpha = 1e-4f;
+
+// Four neighbours of a place among nodes 0, 1 ... and what each of them counts: Lagrange's cubic.
+struct Stencil {
+  int first;
+  std::array<float, 4> weight;
+};
+
+Stencil stencil_at(float place) {
+  const int first = std::clamp(static_cast<int>(place) - 1, 0, kNodes - 4);
+  const float t = place - static_cast<float>(first);
+  const float a = t, b = t - 1, c = t - 2, d = t - 3;
+  return {first, {b * c * d / -6, a * c * d / 2, a * b * d / -2, a * b * c / 6}};
+}
+
+float place_of(float cos) { return std::sqrt(std::sqrt(cos)) * (kNodes - 1); }
+
+// What each node counts in the average: int w(x) 8 x^7 dx, x = cos^(1/4).
+std::array<float, kNodes> average_weights() {
+  constexpr int kParts = 8192;
+  std::array<double, kNodes> sums{};
+  for (int i = 0; i < kParts; ++i) {
+    const double x = (i + 0.5) / kParts, x2 = x * x;
+    const Stencil s = stencil_at(static_cast<float>(x * (kNodes - 1)));
+    for (std::size_t k = 0; k < 4; ++k) {
+      sums[static_cast<std::size_t>(s.first) + k] += 8 * x2 * x2 * x2 * x / kParts * static_cast<double>(s.weight[k]);
+    }
+  }
+  std::array<float, kNodes> weights;
+  for (std::size_t k = 0; k < kNodes; ++k) weights[k] = static_cast<float>(sums[k]);
+  return weights;
+}
+
+// Roughnesses lie as cosines do: alpha^(1/4) = 0, 1/23 ... 1.
+float node_alpha(int i) { return std::max(AlbedoRow::node_cos(i), kLeastAlpha); }
+
+// A table of rows, one for each roughness, each made when it is first asked for.
+template <typename Row>
+class RowTable {
+ public:
+  template <typename Make>
+  const Row& row(int i, Make&& make) {
+    Entry& entry = entries_[static_cast<std::size_t>(i)];
+    std::call_once(entry.made, [&] {
+      for (int k = 0; k < kNodes; ++k) make(AlbedoRow::node_cos(k), static_cast<std::size_t>(k), entry.row);
+    });
+    return entry.row;
+  }
+
+ private:
+  struct Entry {
+    std::once_flag made;
+    Row row;
+  };
+  std::array<Entry, kNodes> entries_;
+};
+
+// Adds `share` times what lies at alpha between the rows that `row_at(node)` gives.
+template <typename RowAt>
+void add_rows(float alpha, float share, AlbedoRow& sum, RowAt&& row_at) {
+  const Stencil s = stencil_at(place_of(alpha));
+  for (int k = 0; k < 4; ++k) {
+    const AlbedoRow& row = row_at(s.first + k);
+    const float weight = share * s.weight[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < kNodes; ++i) sum.node[i] += weight * row.node[i];
+  }
+}
+
+// Of dielectrics from their thinner side.
+struct OutsideRow {
+  AlbedoRow reflected, both;
+};
+
+// By s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Where it is near 0 slices lie close:
+// there the reflectance at the horizon goes from 0 to 1.
+constexpr int kSlices = 16;
+constexpr float kMostS = (kMostEta - 1) / (kMostEta + 1);
+constexpr float slice_s(int slice) {
+  return kMostS * static_cast<float>(slice * slice) / ((kSlices - 1) * (kSlices - 1));
+}
+float slice_eta(int slice) { return (1 + slice_s(slice)) / (1 - slice_s(slice)); }
+
+const OutsideRow& outside_row(int slice, int roughness) {
+  static std::array<RowTable<OutsideRow>, kSlices> tables;
+  const auto make = [&](float cos, std::size_t k, OutsideRow& row) {
+    const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), slice_eta(slice), kOutside);
+    row.reflected.node[k] = albedo.reflected;
+    row.both.node[k] = albedo.reflected + albedo.transmitted;
+  };
+  return tables[static_cast<std::size_t>(slice)].row(roughness, make);
+}
+
+const AlbedoRow& inside_row(int slice, int roughness) {
+  static std::array<RowTable<AlbedoRow>, kSlices> tables;
+  const auto make = [&](float cos, std::size_t k, AlbedoRow& row) {
+    const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), 1 / slice_eta(slice), kInside);
+    row.node[k] = albedo.reflected + albedo.transmitted;
+  };
+  return tables[static_cast<std::size_t>(slice)].row(roughness, make);
+}
+
+// Between two indices in proportion to s^2, in which Fresnel's reflectance is nearly linear (Schlick, "An Inexpensive
+// BRDF Model for Physically-Based Rendering", 1994). `row_at(slice, node)`; eta >= 1.
+template <typename RowAt>
+AlbedoRow between_indices(float alpha, float eta, RowAt&& row_at) {
+  const float s = std::min((eta - 1) / (eta + 1), kMostS);
+  const int slice = std::clamp(static_cast<int>(std::sqrt(s / kMostS) * (kSlices - 1)), 0, kSlices - 2);
+  const float low = slice_s(slice), high = slice_s(slice + 1);
+  const float share = std::clamp((s * s - low * low) / (high * high - low * low), 0.0f, 1.0f);
+  AlbedoRow row = AlbedoRow::constant(0);
+  const auto add = [&](int at, float part) {
+    if (part > 0) add_rows(alpha, part, row, [&](int node) -> const AlbedoRow& { return row_at(at, node); });
+  };
+  add(slice, 1 - share);
+  add(slice + 1, share);
+  return row;
+}
+
+// Points of a Fibonacci lattice as visible normals of `cos`, and what each counts. They lie denser where few normals
+// are, u = 1 - v^2, for there the light that is lost is lost. (Sloan and Joe, "Lattice Methods for Multiple
+// Integration", 1994, section 4.)
+template <typename Visit>
+void for_visible_normals(float cos, const Ggx& ggx, Lattice lattice, Visit&& visit) {
+  const glm::vec3 wo(std::sqrt(std::max(1 - cos * cos, 0.0f)), 0, cos);
+  const float n = static_cast<float>(lattice.points);
+  int turn = 0;
+  for (int i = 0; i < lattice.points; ++i) {
+    const float v = (static_cast<float>(i) + 0.5f) / n;
+    visit(wo, ggx.sample_visible(wo, {1 - v * v, static_cast<float>(turn) / n}), 2 * v / n);
+    turn = (turn + lattice.step) % lattice.points;
+  }
+}
+
+}  // namespace
+
+float AlbedoRow::at(float cos) const {
+  const Stencil s = stencil_at(place_of(cos));
+  float sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) sum += s.weight[k] * node[static_cast<std::size_t>(s.first) + k];
+  return std::clamp(sum, 0.0f, 1.0f);
+}
+
+AlbedoRow AlbedoRow::constant(float value) {
+  AlbedoRow row;
+  row.node.fill(value);
+  return row;
+}
+
+float AlbedoRow::average() const {
+  static const std::array<float, kNodes> weights = average_weights();
+  float sum = 0;
+  for (std::size_t i = 0; i < kNodes; ++i) sum += weights[i] * node[i];
+  return std::clamp(sum, 0.0f, 1.0f);
+}
+
+float AlbedoRow::greatest() const { return *std::max_element(node.begin(), node.end()); }
+
+AlbedoRow conductor_albedo(float alpha) {
+  static RowTable<AlbedoRow> table;
+  AlbedoRow row = AlbedoRow::constant(0);
+  add_rows(alpha, 1, row, [](int node) -> const AlbedoRow& {
+    return table.row(node, [&](float cos, std::size_t k, AlbedoRow& made) {
+      made.node[k] = integrate_conductor(cos, node_alpha(node), kOutside);
+    });
+  });
+  return row;
+}
+
+AlbedoRow reflection_albedo(float alpha, float eta) {
+  const auto row_at = [](int slice, int node) -> const AlbedoRow& { return outside_row(slice, node).reflected; };
+  return between_indices(alpha, eta, row_at);
+}
+
+AlbedoRow dielectric_albedo(float alpha, float eta) {
+  if (eta < 1) return between_indices(alpha, 1 / eta, inside_row);
+  const auto row_at = [](int slice, int node) -> const AlbedoRow& { return outside_row(slice, node).both; };
+  return between_indices(alpha, eta, row_at);
+}
+
+AlbedoRow smooth_albedo(float eta) {
+  AlbedoRow row;
+  for (int i = 0; i < kNodes; ++i) row.node[static_cast<std::size_t>(i)] = fresnel(AlbedoRow::node_cos(i), eta);
+  return row;
+}
+
+// A visible normal counts G2 / G1(wo): what of the light reflected there gets away.
+float integrate_conductor(float cos, float alpha, Lattice lattice) {
+  const Ggx ggx(alpha);
+  double sum = 0;
+  for_visible_normals(cos, ggx, lattice, [&](glm::vec3 wo, glm::vec3 m, float weight) {
+    const float cos_i = 2 * glm::dot(wo, m) * m.z - wo.z;
+    if (cos_i > 0) {
+      sum += static_cast<double>(weight * 4 * cos_i * ggx.g2_by_4_cos(cos, cos_i) / ggx.g1_by_cos(cos));
+    }
+  });
+  return static_cast<float>(sum);
+}
+
+BoundaryAlbedo integrate_dielectric(float cos, float alpha, float eta, Lattice lattice) {
+  const Ggx ggx(alpha);
+  double reflected = 0, transmitted = 0;
+  for_visible_normals(cos, ggx, lattice, [&](glm::vec3 wo, glm::vec3 m, float weight) {
+    const float cos_m = std::min(glm::dot(wo, m), 1.0f);
+    const float share = fresnel(cos_m, eta);
+    const float cos_i = 2 * cos_m * m.z - wo.z;
+    if (cos_i > 0) {
+      const float seen = 4 * cos_i * ggx.g2_by_4_cos(cos, cos_i) / ggx.g1_by_cos(cos);
+      reflected += static_cast<double>(weight * share * seen);
+    }
+    if (share >= 1) return;
+    const float cos_t = -refract_through(wo, m, eta).z;
+    if (cos_t > 0) transmitted += static_cast<double>(weight * (1 - share) * ggx.g1(cos_t));
+  });
+  return {static_cast<float>(reflected), static_cast<float>(transmitted)};
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,104 @@
+#include "runtime/energy.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "runtime/fresnel.h"
+#include "runtime/sampler.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr Lattice kFine{10946, 6765};
+
+TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[runtime]") {
+  struct Row {
+    float alpha;
+    std::array<double, 4> albedo;  // at cosines 1, .8, .5, .2
+  };
+  const std::array<float, 4> cosines{1, 0.8f, 0.5f, 0.2f};
+  const Row rows[] = {{0.1f, {0.98830, 0.98456, 0.96921, 0.9046}},
+                      {0.25f, {0.91581, 0.89727, 0.85726, 0.84816}},
+                      {0.5f, {0.68785, 0.68205, 0.69825, 0.78993}},
+                      {0.75f, {0.46392, 0.49232, 0.56462, 0.71553}},
+                      {1, {0.30685, 0.35126, 0.45069, 0.64165}}};
+  for (const Row& row : rows) {
+    const AlbedoRow table = conductor_albedo(row.alpha);
+    for (std::size_t i = 0; i < 4; ++i) {
+      CAPTURE(row.alpha, cosines[i]);
+      CHECK(static_cast<double>(integrate_conductor(cosines[i], row.alpha, kFine)) ==
+            Approx(row.albedo[i]).margin(2e-4));
+      CHECK(static_cast<double>(table.at(cosines[i])) == Approx(row.albedo[i]).margin(2e-3));
+    }
+  }
+  CHECK(static_cast<double>(conductor_albedo(1).at(1)) == Approx(1 - std::log(2.0)).margin(1e-3));
+}
+
+TEST_CASE("energy: tables are within 5e-3 of their integrals, 1e-3 in the mean", "[runtime]") {
+  const int n = 300;
+  std::array<double, 4> worst{}, squares{};
+  Sampler sampler(5, 0, 0, 0);
+  for (int i = 0; i < n; ++i) {
+    const float cos = sampler.next(), u = sampler.next(), v = sampler.next();
+    const float alpha = 1e-3f + 0.999f * u * u * u, eta = 1.02f + 2.9f * v * v;
+    const BoundaryAlbedo outside = integrate_dielectric(cos, alpha, eta, kFine);
+    const BoundaryAlbedo inside = integrate_dielectric(cos, alpha, 1 / eta, kFine);
+    const std::array<float, 4> errors{
+        conductor_albedo(alpha).at(cos) - integrate_conductor(cos, alpha, kFine),
+        reflection_albedo(alpha, eta).at(cos) - outside.reflected,
+        dielectric_albedo(alpha, eta).at(cos) - outside.reflected - outside.transmitted,
+        dielectric_albedo(alpha, 1 / eta).at(cos) - inside.reflected - inside.transmitted};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double error = std::abs(static_cast<double>(errors[k]));
+      worst[k] = std::max(worst[k], error);
+      squares[k] += error * error / n;
+    }
+  }
+  for (std::size_t k = 0; k < 4; ++k) {
+    CAPTURE(k, worst[k], std::sqrt(squares[k]));
+    CHECK(worst[k] <= 5e-3);
+    CHECK(std::sqrt(squares[k]) <= 1e-3);
+  }
+}
+
+TEST_CASE("energy: a row's average is that of the function it gives", "[runtime]") {
+  for (const AlbedoRow& row : {smooth_albedo(1.5f), conductor_albedo(0.3f), dielectric_albedo(0.6f, 1 / 1.5f)}) {
+    double sum = 0;
+    const int n = 20000;
+    for (int i = 0; i < n; ++i) {
+      const double cos = (i + 0.5) / n;
+      sum += static_cast<double>(row.at(static_cast<float>(cos))) * 2 * cos / n;
+    }
+    CHECK(static_cast<double>(row.average()) == Approx(sum).margin(1e-5));
+  }
+  CHECK(AlbedoRow::constant(0.25f).average() == Approx(0.25).epsilon(1e-5));
+  CHECK(AlbedoRow::constant(0.25f).at(0.3f) == Approx(0.25).epsilon(1e-5));
+}
+
+TEST_CASE("energy: a smooth dielectric reflects as Fresnel's equations say", "[runtime]") {
+  for (float eta : {1.1f, 1.5f, 3.0f}) {
+    const AlbedoRow row = smooth_albedo(eta);
+    double worst = 0;
+    for (float cos = 0; cos <= 1; cos += 1e-3f) {
+      worst = std::max(worst, std::abs(static_cast<double>(row.at(cos) - fresnel(cos, eta))));
+    }
+    CHECK(worst <= 3e-4);
+  }
+  // Diffuse reflectance of glass, Duntley 1942: .0918.
+  CHECK(smooth_albedo(1.5f).average() == Approx(0.0918).margin(1e-4));
+}
+
+TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
+  std::array<AlbedoRow, 4> rows;
+  std::vector<std::thread> threads;
+  for (AlbedoRow& row : rows) threads.emplace_back([&row] { row = dielectric_albedo(0.37f, 1.77f); });
+  for (std::thread& thread : threads) thread.join();
+  for (const AlbedoRow& row : rows) CHECK(row.node == rows[0].node);
+}
+
+}  // namespace
+}  // namespace fathom::runtime

@@ -1,0 +1,46 @@
+// Pearson's test of whether directions are drawn with the density that they are said to have.
+//
+// The sphere is cut into cells of polar angle and azimuth; the density is integrated over each (adaptive Gauss rule,
+// in double) and held against what fell into it. Cells that expect fewer than 5 go together, and what was not drawn
+// at all is one more cell: a density may integrate to less than 1. As in Wenzel Jakob's chi2 tests of Nori, Mitsuba
+// and pbrt (2012-2024), after Press et al., "Numerical Recipes".
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+#include "runtime/sampler.h"
+
+namespace fathom::test {
+
+// One direction, or none; unit vectors.
+using DirectionSampler = std::function<std::optional<glm::vec3>(runtime::Sampler& sampler)>;
+using DirectionPdf = std::function<double(glm::vec3 direction)>;  // per solid angle
+
+struct ChiSquareSetup {
+  int samples = 1000000;
+  int rows = 40, columns = 80;  // of polar angle and of azimuth; an even number of rows has the horizon between cells
+  glm::vec3 pole{0, 0, 1};
+  std::uint64_t seed = 1;
+};
+
+struct ChiSquare {
+  double p = 0;  // that a true density gives so much deviation or more
+  double statistic = 0;
+  int freedom = 0;
+  double integral = 0;  // of the density over the sphere
+  std::string describe() const;
+};
+
+ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, const ChiSquareSetup& setup = {});
+
+// The level that each of `tests` independent tests is held to so that all together have the level alpha (Sidak 1967).
+double sidak(double alpha, int tests);
+
+// P(X >= statistic) for X of the chi-square distribution.
+double chi_square_tail(double statistic, double freedom);
+
+}  // namespace fathom::test
