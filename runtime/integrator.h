@@ -21,6 +21,7 @@
 #include "runtime/camera.h"
 #include "runtime/field.h"
 #include "runtime/film.h"
+#include "runtime/filter.h"
 #include "runtime/march.h"
 #include "runtime/material.h"
 #include "runtime/options.h"
@@ -35,6 +36,7 @@ struct World {
   const compiler::CompiledScene& scene;
   Settings settings;
   Camera camera;
+  Filter filter;
   Field field;
   std::vector<Material> materials;
 };
@@ -64,6 +66,7 @@ class Integrator {
     glm::dvec3 origin;  // of the current ray, scene units
     glm::dvec3 direction;
     glm::vec3 throughput;
+    float weight;          // of the path in its pixel, by the filter
     glm::vec3 absorption;  // of the medium the ray travels through, per scene unit
     int bounces;           // made so far
     PathSample result;

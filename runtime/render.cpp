@@ -102,7 +102,11 @@ class Worker {
 };
 
 World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
-  World world{scene, settings, Camera(scene.camera, settings.width, settings.height), make_field(scene, settings.far),
+  World world{scene,
+              settings,
+              Camera(scene.camera, settings.width, settings.height),
+              Filter(settings.filter, settings.filter_width),
+              make_field(scene, settings.far),
               to_materials(scene)};
   if (settings.regions) {
     add_regions(world.field, scene, {.threads = settings.threads, .memory = settings.region_memory});
@@ -142,6 +146,9 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.bounces = options.bounces.value_or(scene.settings.bounces);
   settings.tile = options.tile.value_or(scene.settings.tile);
   settings.seed = options.seed.value_or(scene.settings.seed);
+  settings.sampler = options.sampler.value_or(scene.settings.sampler);
+  settings.filter = options.filter.value_or(scene.film.filter);
+  settings.filter_width = options.filter || options.filter_width ? options.filter_width : scene.film.filter_width;
   settings.cut_after = options.cut_after;
   settings.marching = options.marching;
   settings.regions = options.regions;
