@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <cstddef>
+#include <iterator>
 
 #include "runtime/elementary.h"
 
 namespace fathom::runtime {
 namespace {
-
-// Steps of the sums over half a support. A multiple of the quantiles' number, for the box filter to be exact.
-constexpr int kSteps = 1 << 14;
 
 double box(double) { return 1; }
 
@@ -49,40 +47,44 @@ const Shape& shape_of(FilterKind kind) { return kShapes[static_cast<std::size_t>
 double filter_value(FilterKind kind, double t) { return shape_of(kind).value(t); }
 
 Filter::Filter(FilterKind kind, std::optional<double> width) : radius_(width.value_or(shape_of(kind).width) / 2) {
-  const double step = radius_ / kSteps;
-  std::vector<double> below(kSteps + 1, 0.0);  // [i] the magnitude nearer than i steps
-  int positive = kSteps;                       // steps before the filter changes its sign
-  for (int i = 0; i < kSteps; ++i) {
-    const double value = filter_value(kind, (i + 0.5) / kSteps);
+  std::size_t positive = kCells;  // cells before the filter changes its sign
+  for (std::size_t i = 0; i <= kCells; ++i) {
+    const double value = filter_value(kind, static_cast<double>(i) / kCells);
     if (value < 0) positive = std::min(positive, i);
-    below[static_cast<std::size_t>(i) + 1] = below[static_cast<std::size_t>(i)] + std::abs(value);
+    magnitude_[i] = std::abs(value);
+    below_[i] = i == 0 ? 0 : below_[i - 1] + (magnitude_[i - 1] + magnitude_[i]) / 2;
   }
-  std::size_t at = 0;
-  for (int k = 0; k < kQuantiles; ++k) {
-    const double share = below.back() * k / kQuantiles;
-    while (below[at + 1] <= share) ++at;
-    const double part = (share - below[at]) / (below[at + 1] - below[at]);
-    quantiles_[static_cast<std::size_t>(k)] = static_cast<float>((static_cast<double>(at) + part) * step);
+  const double all = below_[kCells];
+  for (double& share : below_) share /= all;
+  std::size_t cell = 0;
+  for (std::size_t k = 0; k < kCells; ++k) {
+    while (below_[cell + 1] <= static_cast<double>(k) / kCells) ++cell;
+    first_[k] = static_cast<std::uint16_t>(cell);
   }
-  quantiles_[kQuantiles] = static_cast<float>(radius_);
-  negative_from_ = positive == kSteps ? INFINITY : static_cast<float>(positive * step);
-  // A positive coordinate is drawn so often; the weights' mean is 1.
-  const double positive_share = below[static_cast<std::size_t>(positive)] / below.back();
-  weight_ = static_cast<float>(1 / (2 * positive_share - 1));
+  negative_from_ = positive == kCells ? INFINITY : radius_ * static_cast<double>(positive) / kCells;
+  // A coordinate is positive so often, else negative; the weights' mean is 1.
+  weight_ = static_cast<float>(1 / (2 * below_[positive] - 1));
 }
 
-// The |offset| below which that share of the magnitude lies.
-float Filter::distance(float share) const {
-  const float along = share * kQuantiles;
-  const auto k = std::min(static_cast<std::size_t>(along), static_cast<std::size_t>(kQuantiles - 1));
-  return quantiles_[k] + (along - static_cast<float>(k)) * (quantiles_[k + 1] - quantiles_[k]);
+// The |offset| below which that share of the magnitude lies, in [0,1): in its cell the root of the quadratic that a
+// linear density has as its integral.
+double Filter::distance(double share) const {
+  std::size_t cell = first_[static_cast<std::size_t>(share * kCells)];
+  while (below_[cell + 1] <= share) ++cell;
+  const double t = (share - below_[cell]) / (below_[cell + 1] - below_[cell]);
+  if (!(t > 0)) return radius_ * static_cast<double>(cell) / kCells;
+  const double p = magnitude_[cell], q = magnitude_[cell + 1];
+  const double part = t * (p + q) / (p + std::sqrt(p * p + t * (q * q - p * p)));
+  return radius_ * (static_cast<double>(cell) + part) / kCells;
 }
 
 FilterSample Filter::sample(glm::vec2 u) const {
   FilterSample sample;
   for (int axis = 0; axis < 2; ++axis) {
-    const float side = 2 * u[axis] - 1, away = distance(std::abs(side));
-    sample.offset[axis] = std::copysign(away, side);
+    const double side = 2 * static_cast<double>(u[axis]) - 1;
+    // Of the share 1, which is that of u = 0, the place is the support's end.
+    const double away = side == -1 ? radius_ : distance(std::abs(side));
+    sample.offset[axis] = static_cast<float>(std::copysign(away, side));
     sample.weight *= away >= negative_from_ ? -weight_ : weight_;
   }
   return sample;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <optional>
 
@@ -37,15 +38,16 @@ class Filter {
   double radius() const { return radius_; }  // half the support's width, pixels
 
  private:
-  static constexpr int kQuantiles = 1024;
+  static constexpr int kCells = 1024;  // of equal width from the centre to the support's end
 
-  float distance(float share) const;
+  double distance(double share) const;
 
   double radius_;
-  // [k] |offset| below which k/kQuantiles of the filter's magnitude lies; between, the density is taken as constant.
-  std::array<float, kQuantiles + 1> quantiles_;
-  float negative_from_;  // |offset| from which on the filter is negative, pixels
-  float weight_;         // of a positive coordinate: the filter's magnitude over its integral
+  std::array<double, kCells + 1> magnitude_;  // at the cells' ends; linear between
+  std::array<double, kCells + 1> below_;      // [i] the share of the magnitude that lies before cell i
+  std::array<std::uint16_t, kCells> first_;   // [k] the cell in which the share k/kCells is reached
+  double negative_from_ = 0;                  // |offset| from which on the filter is negative, pixels
+  float weight_ = 1;                          // of a positive coordinate: the magnitude's integral over the filter's
 };
 
 // The filter at t radii from the centre, t in [0,1]; 1 is the end of the support.
