@@ -1,11 +1,13 @@
 // What the compiler hands over to the renderer: programs and plain tables. No graph, no syntax.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/box.h"
@@ -17,6 +19,8 @@ namespace fathom::compiler {
 // Largest settings a render takes, from the scene file or the command line.
 inline constexpr int kMaxSide = 65535;  // pixels; what the image formats can say
 inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
+inline constexpr int kMaxBlades = 32;
+inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
 
 // How a surface scatters light. Colours are linear sRGB in [0,1] unless said.
 struct Material {
@@ -41,26 +45,48 @@ struct Surface {
 };
 
 struct Camera {
-  enum class Projection { Perspective, Orthographic };
+  // A panorama shows all directions: 360 degrees from left to right, 180 from top to bottom.
+  enum class Projection { Perspective, Orthographic, Panorama };
   Projection projection = Projection::Perspective;
   glm::dvec3 position{0, 0, 5};
   glm::dvec3 target{0, 0, 0};
   glm::dvec3 up{0, 1, 0};
   double fov = 0.7853981633974483;     // perspective: horizontal field of view, radians
   std::optional<double> vertical_fov;  // instead of fov when the file gives fov_y, radians
+  std::optional<double> focal_length;  // instead of fov, mm
+  double sensor_width = 36;            // as wide as the picture, mm
   double width = 4;                    // orthographic: width of the picture, scene units
+
+  // Perspective: the lens. Without lens_radius and f_stop the camera is a pinhole.
+  std::optional<double> lens_radius;  // of the circle round the aperture, scene units
+  std::optional<double> f_stop;       // instead of lens_radius: focal length over aperture; a scene unit is a metre
+  std::optional<double> focus_distance;  // of the plane that is sharp, along the view, scene units; else the target's
+  int blades = 0;                        // sides of the aperture; below 3: it is round
+  double blade_rotation = 0;             // radians, counter-clockwise in the picture; at 0 a corner is up
 };
+
+// How a pixel weighs the light around its centre (runtime/filter.h).
+enum class FilterKind { Box, Tent, Gaussian, BlackmanHarris, Mitchell };
+inline constexpr std::array<std::string_view, 5> kFilterNames = {"box", "tent", "gaussian", "blackman-harris",
+                                                                 "mitchell"};  // [FilterKind]
 
 struct Film {
   int width = 640, height = 360;  // pixels
   double exposure = 0;            // stops: the picture is multiplied by 2^exposure
+  FilterKind filter = FilterKind::Box;
+  std::optional<double> filter_width;  // of its support, pixels; else the filter's own
 };
+
+// Where a render's random numbers come from (runtime/sampler.h).
+enum class SamplerKind : std::uint8_t { Blue, Sobol, Independent };
+inline constexpr std::array<std::string_view, 3> kSamplerNames = {"blue", "sobol", "independent"};  // [SamplerKind]
 
 struct RenderSettings {
   int spp = 16;      // samples per pixel
   int bounces = 10;  // before Russian roulette may end a path
   int tile = 16;     // pixels a side
   std::uint64_t seed = 0;
+  SamplerKind sampler = SamplerKind::Blue;
   std::optional<double> far;  // how far from the camera rays are followed, scene units; default: see render
 };
 

@@ -315,7 +315,7 @@ class Linter {
   }
 
   void check_camera(const vm::VerifiedProgram& surface) {
-    if (tables_.camera.projection != Camera::Projection::Perspective) return;
+    if (tables_.camera.projection == Camera::Projection::Orthographic) return;
     vm::Workspace workspace;
     const vm::SurfaceValue value = vm::evaluate_surface(surface, tables_.camera.position, workspace);
     if (!(value.distance < 0)) return;

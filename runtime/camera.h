@@ -1,15 +1,21 @@
-// The camera: a pixel and a place within it -> a ray.
+// The camera: a pixel, a place within it and a place on the lens -> a ray.
 //
 // F = normalize(target - position), R = normalize(cross(F, up)), U = cross(R, F): x grows to the right and y
-// downwards in the picture, up is up. Pixels are square. Tested by: tests/runtime/camera_test.cpp
+// downwards in the picture, up is up. Pixels are square.
+//
+// The lens is thin and without flaws: rays from all of it through one place of the picture meet in one point of the
+// plane at the focus distance. Source: Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic
+// Image Generation", 1981. The field of view is that of the pinhole in its middle, whatever the focus.
+//
+// A panorama's poles are along `up`, its middle looks level towards the target.
+// Tested by: tests/runtime/camera_test.cpp
 #pragma once
 
-#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/elementary.h"
 
 namespace fathom::runtime {
 
@@ -21,46 +27,34 @@ struct CameraRay {
 class Camera {
  public:
   // `width` and `height` in pixels. `up` parallel to the view is replaced by an axis that is not.
-  Camera(const compiler::Camera& camera, int width, int height)
-      : orthographic_(camera.projection == compiler::Camera::Projection::Orthographic),
-        position_(camera.position),
-        size_(width, height) {
-    forward_ = glm::normalize(camera.target - camera.position);
-    glm::dvec3 right = glm::cross(forward_, camera.up);
-    if (!(glm::dot(right, right) > 1e-20 * glm::dot(camera.up, camera.up))) {
-      right = glm::cross(forward_, std::abs(forward_.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0));
-    }
-    right_ = glm::normalize(right);
-    up_ = glm::cross(right_, forward_);
-    half_ = half_size(camera, static_cast<double>(height) / width);
-  }
+  Camera(const compiler::Camera& camera, int width, int height);
 
-  // The ray through (x, y) in pixels, the top left corner of the picture at (0, 0).
-  CameraRay ray(double x, double y) const {
-    const double sx = (2 * x / size_.x - 1) * half_.x;
-    const double sy = (1 - 2 * y / size_.y) * half_.y;
-    const glm::dvec3 aside = right_ * sx + up_ * sy;
-    if (orthographic_) return {position_ + aside, forward_};
-    return {position_, glm::normalize(aside + forward_)};
-  }
+  // The ray through (x, y) in pixels, the top left corner of the picture at (0, 0), and the middle of the lens.
+  CameraRay ray(double x, double y) const;
+
+  // The ray through a place of the lens that is as likely as every other, `u` in the unit square.
+  CameraRay ray(double x, double y, glm::vec2 u) const;
+
+  // Whether it matters where on the lens a ray begins.
+  bool has_lens() const { return lens_radius_ > 0; }
+  double lens_radius() const { return lens_radius_; }        // of the circle round the aperture, scene units
+  double focus_distance() const { return focus_distance_; }  // along F, scene units
+
+  // The place of the lens: along R and U, scene units.
+  glm::dvec2 lens_point(glm::vec2 u) const;
 
  private:
-  // Half the picture's width and height, at unit distance when in perspective.
-  static glm::dvec2 half_size(const compiler::Camera& camera, double aspect) {
-    if (camera.projection == compiler::Camera::Projection::Orthographic) {
-      return {camera.width / 2, camera.width / 2 * aspect};
-    }
-    if (camera.vertical_fov) {
-      const double half = tangent(*camera.vertical_fov / 2);
-      return {half / aspect, half};
-    }
-    const double half = tangent(camera.fov / 2);
-    return {half, half * aspect};
-  }
+  void set_axes(const compiler::Camera& camera);
+  void set_lens(const compiler::Camera& camera);
+  CameraRay panorama_ray(double x, double y) const;
+  // A place of the picture, from the picture's middle on the plane at unit distance.
+  glm::dvec3 aside(double x, double y) const;
 
-  bool orthographic_;
+  compiler::Camera::Projection projection_;
   glm::dvec3 position_, forward_, right_, up_;
-  glm::dvec2 size_, half_;
+  glm::dvec2 size_, half_;  // of the picture: pixels; half of it, at unit distance when in perspective
+  double lens_radius_ = 0, focus_distance_ = 0;
+  std::vector<glm::dvec2> corners_;  // of the aperture in the unit circle, the first once more at the end; or none
 };
 
 }  // namespace fathom::runtime

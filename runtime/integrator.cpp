@@ -76,22 +76,24 @@ bool Integrator::start_paths(const NextPaths& next) {
 // In steps of one kind each, so that the processor has several paths' in hand.
 void Integrator::start(std::span<const PathKey> keys) {
   const Settings& settings = world_.settings;
+  const SamplePlan plan{settings.sampler, settings.seed, settings.spp};
   std::array<Sampler, kStartBatch> samplers;
   std::array<CameraRay, kStartBatch> rays;
-  std::uint64_t pixel_key = 0;
+  std::array<float, kStartBatch> weights;
+  PixelKey pixel;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const PathKey& key = keys[i];
     const bool same = i > 0 && key.x == keys[i - 1].x && key.y == keys[i - 1].y;
-    if (!same) {
-      pixel_key =
-          Sampler::pixel_key(settings.seed, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
-    }
-    samplers[i] = Sampler(pixel_key, key.sample);
+    if (!same) pixel = PixelKey(plan, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
+    samplers[i] = Sampler(pixel, key.sample);
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
     // A single sample shows what lies at the pixel's centre.
-    const glm::vec2 place = settings.spp == 1 ? glm::vec2(0.5f) : samplers[i].next2();
-    rays[i] = world_.camera.ray(keys[i].x + static_cast<double>(place.x), keys[i].y + static_cast<double>(place.y));
+    const FilterSample place = settings.spp == 1 ? FilterSample{} : world_.filter.sample(samplers[i].next2());
+    const double x = keys[i].x + 0.5 + static_cast<double>(place.offset.x);
+    const double y = keys[i].y + 0.5 + static_cast<double>(place.offset.y);
+    rays[i] = world_.camera.has_lens() ? world_.camera.ray(x, y, samplers[i].next2()) : world_.camera.ray(x, y);
+    weights[i] = place.weight;
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::uint32_t id = free_ids_.back();
@@ -101,6 +103,7 @@ void Integrator::start(std::span<const PathKey> keys) {
     path.sampler = samplers[i];
     path.space = world_.camera_space;
     path.throughput = glm::vec3(1);
+    path.weight = weights[i];
     path.eta_scale = 1;
     path.bounces = 0;
     path.pdf = 0;
@@ -179,6 +182,7 @@ void Integrator::add_to_film(std::uint32_t id) {
     ++stats_.dropped_samples;
     path.result.radiance = glm::vec3(0);
   }
+  path.result.radiance *= path.weight;
   if (!film_.add(path.key.x, path.key.y, path.result)) ++stats_.saturated;
   free_ids_.push_back(id);
 }

@@ -25,6 +25,7 @@
 #include "runtime/camera.h"
 #include "runtime/field.h"
 #include "runtime/film.h"
+#include "runtime/filter.h"
 #include "runtime/light.h"
 #include "runtime/march.h"
 #include "runtime/material.h"
@@ -41,6 +42,7 @@ struct World {
   const compiler::CompiledScene& scene;
   Settings settings;
   Camera camera;
+  Filter filter;
   Field field;
   Media media;
   Materials materials;

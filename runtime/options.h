@@ -31,6 +31,9 @@ struct RenderOptions {
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
+  std::optional<compiler::SamplerKind> sampler;
+  std::optional<compiler::FilterKind> filter;
+  std::optional<double> filter_width;  // pixels; not given beside `filter`: that filter's own
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
   LightSampling light_sampling = LightSampling::Both;
@@ -55,6 +58,9 @@ struct Settings {
   int tile;  // pixels a side
   int threads;
   std::uint64_t seed;
+  compiler::SamplerKind sampler;
+  compiler::FilterKind filter;
+  std::optional<double> filter_width;
   std::optional<double> far;
   std::optional<int> cut_after;
   LightSampling light_sampling;

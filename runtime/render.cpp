@@ -120,6 +120,7 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings)
   World world{scene,
               settings,
               Camera(scene.camera, settings.width, settings.height),
+              Filter(settings.filter, settings.filter_width),
               make_field(scene, settings.far),
               Media(scene, extent_of(scene), settings.far),
               Materials(scene),
@@ -166,6 +167,9 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.bounces = options.bounces.value_or(scene.settings.bounces);
   settings.tile = options.tile.value_or(scene.settings.tile);
   settings.seed = options.seed.value_or(scene.settings.seed);
+  settings.sampler = options.sampler.value_or(scene.settings.sampler);
+  settings.filter = options.filter.value_or(scene.film.filter);
+  settings.filter_width = options.filter || options.filter_width ? options.filter_width : scene.film.filter_width;
   settings.cut_after = options.cut_after;
   settings.light_sampling = options.light_sampling;
   settings.clamp = options.clamp;

@@ -38,6 +38,9 @@ class RecordReader {
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
 
+  // Which of the table's choices is given; the first when absent or unfit.
+  int choice(std::string_view name) const;
+
  private:
   struct Fit {
     std::string_view name;

@@ -1,5 +1,6 @@
 #include "compiler/frontend/records.h"
 
+#include <array>
 #include <utility>
 
 #include "compiler/compiled_scene.h"
@@ -31,23 +32,40 @@ PropertySpec other(std::string_view name, ValueType type, std::string_view doc, 
 PropertySpec choice(std::vector<std::string_view> choices, std::string_view doc, bool required) {
   return {"type", ValueType::Choice, doc, {}, required, Rule::Any, {}, std::move(choices)};
 }
+template <std::size_t N>
+PropertySpec choice(std::string_view name, std::string_view doc, const std::array<std::string_view, N>& names) {
+  return {name, ValueType::Choice, doc, {}, false, Rule::Any, {}, {names.begin(), names.end()}};
+}
+PropertySpec instead_of(std::vector<std::string_view> others, PropertySpec property) {
+  property.instead_of = std::move(others);
+  return property;
+}
 
 RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
   RecordSpec record{
       std::move(type),
       "`camera`",
       "camera",
-      {choice({"perspective", "orthographic"}, "the projection", false),
+      {choice({"perspective", "orthographic", "panorama"}, "the projection", false),
        vec3("position", "where the camera is", {0, 0, 5}), vec3("target", "what it looks at", {0, 0, 0}),
        vec3("up", "the direction that is up in the picture", {0, 1, 0}, Rule::NotZero)}};
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   return record;
 }
 
-PropertySpec vertical_fov() {
-  PropertySpec property = number("fov_y", "vertical field of view, degrees", {}, {0, 180, true});
-  property.instead_of = "fov";
-  return property;
+std::vector<PropertySpec> perspective() {
+  return {number("fov", "horizontal field of view, degrees", {45}, {0, 180, true}),
+          instead_of({"fov"}, number("fov_y", "vertical field of view, degrees", {}, {0, 180, true})),
+          instead_of({"fov", "fov_y"}, number("focal_length", "of the lens, mm", {}, {1e-3, 1e6})),
+          number("sensor_width", "as wide as the picture, mm", {36}, {1e-3, 1e6}),
+          number("lens_radius", "of the aperture, scene units; 0: all is sharp", {}, {}, Rule::NotNegative),
+          instead_of({"lens_radius"},
+                     number("f_stop", "focal length over the aperture's diameter; a scene unit is a metre", {}, {},
+                            Rule::Positive)),
+          number("focus_distance", "of the plane that is sharp, along the view, scene units", {}, {}, Rule::Positive),
+          instead_of({"focus_distance"}, other("focus", ValueType::Vec3, "a point that is sharp")),
+          integer("blades", "sides of the aperture; below 3 it is round", 0, {0, kMaxBlades}),
+          number("blade_rotation", "degrees, counter-clockwise in the picture; at 0 a corner is up", {0})};
 }
 
 RecordSpec material(std::string type, std::vector<PropertySpec> own) {
@@ -172,7 +190,9 @@ const RecordSpec& film_record() {
       "`film`",
       "film",
       {integer("width", "pixels", 640, {1, kMaxSide}), integer("height", "pixels", 360, {1, kMaxSide}),
-       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100})}};
+       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100}),
+       choice("filter", "how a pixel weighs the light around its centre", kFilterNames),
+       number("filter_width", "of the filter's support, pixels", {}, {kMinFilterWidth, kMaxFilterWidth})}};
   return record;
 }
 
@@ -185,6 +205,7 @@ const RecordSpec& render_record() {
        integer("bounces", "before Russian roulette may end a path", 10, {0, kMaxBounces}),
        integer("tile", "pixels a side", 16, {1, kMaxTile}),
        integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
+       choice("sampler", "where the random numbers come from", kSamplerNames),
        number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
   return record;
 }
@@ -217,9 +238,9 @@ const RecordSpec& rotation_record() {
 
 const std::vector<RecordSpec>& camera_records() {
   static const std::vector<RecordSpec> records = {
-      camera("perspective",
-             {number("fov", "horizontal field of view, degrees", {45}, {0, 180, true}), vertical_fov()}),
-      camera("orthographic", {number("width", "of the picture, scene units", {4}, {}, Rule::Positive)})};
+      camera("perspective", perspective()),
+      camera("orthographic", {number("width", "of the picture, scene units", {4}, {}, Rule::Positive)}),
+      camera("panorama", {})};
   return records;
 }
 

@@ -15,11 +15,11 @@ namespace fathom::compiler {
 enum class ValueType {
   Number,
   Integer,
-  Vec2,   // two numbers
-  Vec3,   // three numbers
-  Points,  // a list of [x, y], three or more
+  Vec2,     // two numbers
+  Vec3,     // three numbers
+  Points,   // a list of [x, y], three or more
   Formula,  // a string, or a list of them (formula.h)
-  Color,  // three numbers
+  Color,    // three numbers
   Text,
   Choice,  // one of PropertySpec::choices
   Record,  // a record with a table of its own
@@ -54,8 +54,8 @@ struct PropertySpec {
   bool required = false;
   Rule rule = Rule::Any;
   Range range = {};
-  std::vector<std::string_view> choices = {};  // the first is used when the property is absent
-  std::string_view instead_of = {};            // the property this one takes the place of: not both may be given
+  std::vector<std::string_view> choices = {};     // the first is used when the property is absent
+  std::vector<std::string_view> instead_of = {};  // the properties this one takes the place of: no two may be given
 };
 
 struct RecordSpec {

@@ -71,6 +71,7 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Text:
     case ValueType::Choice:
       if (property.name == "type") return {{"const", record.type}};
+      if (property.type == ValueType::Choice) return {{"enum", property.choices}};
       return string_schema();
     case ValueType::Record:
       return reference(property.name);
@@ -116,7 +117,9 @@ Json record_schema(const RecordSpec& record, bool type_required) {
   for (const PropertySpec& property : record.properties) {
     schema["properties"][std::string(property.name)] = property_schema(property, record);
     if (property.required || (type_required && property.name == "type")) schema["required"].push_back(property.name);
-    if (!property.instead_of.empty()) excluded.push_back({{"required", {property.instead_of, property.name}}});
+    for (const std::string_view other : property.instead_of) {
+      excluded.push_back({{"required", {other, property.name}}});
+    }
   }
   if (!excluded.empty()) schema["not"] = {{"anyOf", excluded}};
   schema["additionalProperties"] = false;

@@ -64,6 +64,43 @@ void check_view(const Camera& camera, const RecordReader& reader, Span place, Di
                                  camera.up.z == 0 ? "[0, 0, -1]" : "[0, 1, 0]")});
 }
 
+// Reports properties of which at most one may be given.
+void check_exclusions(const RecordSpec& row, const syntax::Record& record, Diagnostics& diagnostics) {
+  for (const PropertySpec& property : row.properties) {
+    for (const std::string_view other : property.instead_of) {
+      if (!record.find(other) || !record.find(property.name)) continue;
+      diagnostics.error(
+          "E0106", record.find(property.name)->name_span,
+          fmt::format("both `{}` and `{}` are given", other, property.name), "one follows from the other",
+          {fmt::format("keep `{}` ({}) or `{}` ({})", other, row.find(other)->doc, property.name, property.doc)});
+    }
+  }
+}
+
+void read_field_of_view(const RecordReader& reader, Camera& camera) {
+  camera.fov = reader.number("fov") * kDegree;
+  camera.sensor_width = reader.number("sensor_width");
+  if (reader.value("fov_y")) camera.vertical_fov = reader.number("fov_y") * kDegree;
+  if (reader.value("focal_length")) camera.focal_length = reader.number("focal_length");
+}
+
+// The aperture and the plane that is sharp. Of a camera that has a direction of view.
+void read_lens(const RecordReader& reader, Camera& camera, Diagnostics& diagnostics) {
+  if (reader.value("lens_radius")) camera.lens_radius = reader.number("lens_radius");
+  if (reader.value("f_stop")) camera.f_stop = reader.number("f_stop");
+  camera.blades = static_cast<int>(reader.number("blades"));
+  camera.blade_rotation = reader.number("blade_rotation") * kDegree;
+  if (reader.value("focus_distance")) camera.focus_distance = reader.number("focus_distance");
+  const syntax::Value* focus = reader.value("focus");
+  if (focus == nullptr) return;
+  const glm::dvec3 forward = glm::normalize(camera.target - camera.position);
+  camera.focus_distance = glm::dot(reader.vec3("focus") - camera.position, forward);
+  if (*camera.focus_distance > 0) return;
+  diagnostics.error("E0302", focus->span, "the camera's `focus` is not in front of it",
+                    fmt::format("{} along the direction of view", *camera.focus_distance),
+                    {"give a point that the camera sees"});
+}
+
 }  // namespace
 
 Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
@@ -72,34 +109,33 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
   const RecordSpec* row = row_by_type(camera_records(), "camera", record, opening(value.span), diagnostics);
   if (row == nullptr) return camera;
   const RecordReader reader(*row, record, opening(value.span), scope, diagnostics);
-  for (const PropertySpec& property : row->properties) {
-    const std::string_view other = property.instead_of;
-    if (other.empty() || !record.find(other) || !record.find(property.name)) continue;
-    diagnostics.error(
-        "E0106", record.find(property.name)->name_span,
-        fmt::format("both `{}` and `{}` are given", other, property.name),
-        "one follows from the other and the film's shape",
-        {fmt::format("keep `{}` ({}) or `{}` ({})", other, row->find(other)->doc, property.name, property.doc)});
-  }
+  check_exclusions(*row, record, diagnostics);
   camera.position = reader.vec3("position");
   camera.target = reader.vec3("target");
   camera.up = reader.vec3("up");
   if (row->type == "orthographic") {
     camera.projection = Camera::Projection::Orthographic;
     camera.width = reader.number("width");
+  } else if (row->type == "panorama") {
+    camera.projection = Camera::Projection::Panorama;
   } else {
-    camera.fov = reader.number("fov") * kDegree;
-    if (reader.value("fov_y")) camera.vertical_fov = reader.number("fov_y") * kDegree;
+    read_field_of_view(reader, camera);
   }
   if (reader.good()) check_view(camera, reader, opening(value.span), diagnostics);
+  if (reader.good() && camera.projection == Camera::Projection::Perspective) read_lens(reader, camera, diagnostics);
   return camera;
 }
 
 Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
   const RecordReader reader(film_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
                             diagnostics);
-  return {static_cast<int>(reader.number("width")), static_cast<int>(reader.number("height")),
-          reader.number("exposure")};
+  Film film;
+  film.width = static_cast<int>(reader.number("width"));
+  film.height = static_cast<int>(reader.number("height"));
+  film.exposure = reader.number("exposure");
+  film.filter = static_cast<FilterKind>(reader.choice("filter"));
+  if (reader.value("filter_width")) film.filter_width = reader.number("filter_width");
+  return film;
 }
 
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
@@ -110,6 +146,7 @@ RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagn
   settings.bounces = static_cast<int>(reader.number("bounces"));
   settings.tile = static_cast<int>(reader.number("tile"));
   settings.seed = static_cast<std::uint64_t>(reader.number("seed"));
+  settings.sampler = static_cast<SamplerKind>(reader.choice("sampler"));
   if (reader.value("far")) settings.far = reader.number("far");
   return settings;
 }

@@ -41,6 +41,17 @@ void add_output_options(Arguments& arguments, RenderRequest& request) {
                  request.options.profile);
 }
 
+Verdict read_filter_width(std::string_view text, double& width) {
+  const std::optional<double> number = to_number(text);
+  if (!number || *number < compiler::kMinFilterWidth || *number > compiler::kMaxFilterWidth) {
+    return Complaint{
+        fmt::format("`{}` is not a number from {} to {}", text, compiler::kMinFilterWidth, compiler::kMaxFilterWidth),
+        "pixels, from one side of the filter to the other"};
+  }
+  width = *number;
+  return std::nullopt;
+}
+
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (what is not given comes from the scene file)");
@@ -53,6 +64,16 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels, at most (16); never changes the picture",
                    whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
+  arguments.option("--sampler", "KIND",
+                   "Where the random numbers come from: blue (default; errors of neighbours cancel), sobol or "
+                   "independent",
+                   one_of({compiler::kSamplerNames.begin(), compiler::kSamplerNames.end()}, request.sampler));
+  arguments.option(
+      "--filter", "NAME",
+      "How a pixel weighs the light around it: box (default), tent, gaussian, blackman-harris or mitchell",
+      one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
+  arguments.option("--filter-width", "PIXELS", "Of the filter's support (box 1, tent 2, mitchell 4, the others 3)",
+                   into(read_filter_width, options.filter_width));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
                    into(read_positive, options.far));
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
@@ -151,6 +172,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.default_output = true;
   }
   request.options.threads = request.threads.value_or(0);
+  if (request.sampler >= 0) request.options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
+  if (request.filter >= 0) request.options.filter = static_cast<compiler::FilterKind>(request.filter);
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
   request.options.marching = std::get<runtime::Marching>(marching);
@@ -166,8 +189,12 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
       return fail(streams, kUsage, "--fov: the scene's camera is orthographic and has no field of view",
                   {"its `width` in the scene file says how much it sees"});
     }
+    if (scene.camera.projection == compiler::Camera::Projection::Panorama) {
+      return fail(streams, kUsage, "--fov: the scene's camera is a panorama, which shows all directions");
+    }
     scene.camera.fov = *request.fov;
     scene.camera.vertical_fov.reset();
+    scene.camera.focal_length.reset();
   }
   double width = request.resolution.value_or(scene.film.width), height = scene.film.height;
   if (request.aspect || request.resolution) {

@@ -22,6 +22,7 @@ struct RenderRequest {
   std::optional<PixelSize> size;
   std::optional<int> threads;
   runtime::RenderOptions options;  // width and height are not set
+  int sampler = -1, filter = -1;   // a SamplerKind, a FilterKind; -1: not given
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;

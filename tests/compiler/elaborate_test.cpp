@@ -44,6 +44,8 @@ TEST_CASE("defaults are those of the documentation", "[elaborate]") {
   CHECK((e.film.width == 640 && e.film.height == 360 && e.film.exposure == 0));
   CHECK((e.settings.spp == 16 && e.settings.bounces == 10 && e.settings.tile == 16 && e.settings.seed == 0));
   CHECK(!e.settings.far);
+  CHECK((e.settings.sampler == SamplerKind::Blue && e.film.filter == FilterKind::Box && !e.film.filter_width));
+  CHECK((!e.camera.focal_length && !e.camera.lens_radius && !e.camera.f_stop && !e.camera.focus_distance));
   CHECK(e.background.top == glm::dvec3(0));
   REQUIRE(e.materials.size() == 1);
   CHECK(e.materials[0].type == Material::Type::Diffuse);
@@ -58,6 +60,7 @@ TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
   CHECK(render_record().find("spp")->fallback[0] == RenderSettings().spp);
   CHECK(render_record().find("bounces")->fallback[0] == RenderSettings().bounces);
   CHECK(render_record().find("tile")->fallback[0] == RenderSettings().tile);
+  CHECK(camera_records()[0].find("sensor_width")->fallback[0] == Camera().sensor_width);
   CHECK(camera_records()[1].find("width")->fallback[0] == Camera().width);
   CHECK(camera_records()[0].find("position")->fallback[2] == Camera().position.z);
   CHECK(material_records()[0].find("color")->fallback[0] == Material().color.x);
@@ -87,6 +90,22 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(o.camera.width == 7);
   CHECK(o.background.bottom == glm::dvec3(1, 2, 3));
   CHECK(o.background.top == glm::dvec3(1, 2, 3));
+}
+
+TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
+  const std::string ball = R"({"type": "sphere", "radius": 1})";
+  const Elaborated e = of_objects(ball, R"(,
+      "camera": {"position": [0, 0, 5], "focal_length": 50, "sensor_width": 24, "f_stop": 1.4, "focus": [7, 2, 1],
+                 "blades": 6, "blade_rotation": 90},
+      "film": {"filter": "mitchell", "filter_width": 3.5}, "render": {"sampler": "independent"})");
+  CHECK((e.camera.focal_length == 50.0 && e.camera.sensor_width == 24 && e.camera.f_stop == 1.4));
+  CHECK(e.camera.focus_distance.value() == 4);  // along the view
+  CHECK((e.camera.blades == 6 && e.camera.blade_rotation == Approx(std::numbers::pi / 2)));
+  CHECK((e.film.filter == FilterKind::Mitchell && e.film.filter_width == 3.5));
+  CHECK(e.settings.sampler == SamplerKind::Independent);
+  const Elaborated o = of_objects(ball, R"(, "camera": {"lens_radius": 0.2, "focus_distance": 3})");
+  CHECK((o.camera.lens_radius == 0.2 && o.camera.focus_distance == 3.0 && !o.camera.f_stop));
+  CHECK(of_objects(ball, R"(, "camera": {"type": "panorama"})").camera.projection == Camera::Projection::Panorama);
 }
 
 TEST_CASE("materials are read", "[elaborate]") {
