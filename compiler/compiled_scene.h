@@ -69,12 +69,16 @@ struct Camera {
 enum class FilterKind { Box, Tent, Gaussian, BlackmanHarris, Mitchell };
 inline constexpr std::array<std::string_view, 5> kFilterNames = {"box", "tent", "gaussian", "blackman-harris",
                                                                  "mitchell"};  // [FilterKind]
+// How light becomes a display's (runtime/tone.h), and its names in scene files and on the command line, in order.
+enum class ToneCurve { None, Filmic, Aces, Agx, Neutral };
+inline constexpr std::array<std::string_view, 5> kToneCurves = {"none", "filmic", "aces", "agx", "neutral"};
 
 struct Film {
   int width = 640, height = 360;  // pixels
   double exposure = 0;            // stops: the picture is multiplied by 2^exposure
   FilterKind filter = FilterKind::Box;
   std::optional<double> filter_width;  // of its support, pixels; else the filter's own
+  ToneCurve tone = ToneCurve::None;
 };
 
 // Where a render's random numbers come from (runtime/sampler.h).

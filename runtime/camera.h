@@ -43,6 +43,15 @@ class Camera {
   // The place of the lens: along R and U, scene units.
   glm::dvec2 lens_point(glm::vec2 u) const;
 
+  // The camera's axes in the scene, unit length, and half the picture's width and height, at unit distance when in
+  // perspective.
+  glm::dvec3 position() const { return position_; }
+  glm::dvec3 right() const { return right_; }
+  glm::dvec3 up() const { return up_; }
+  glm::dvec3 forward() const { return forward_; }
+  glm::dvec2 half_size() const { return half_; }
+  bool orthographic() const { return orthographic_; }
+
  private:
   void set_axes(const compiler::Camera& camera);
   void set_lens(const compiler::Camera& camera);

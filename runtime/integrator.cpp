@@ -110,6 +110,7 @@ void Integrator::start(std::span<const PathKey> keys) {
     path.in_shadow_test = false;
     path.ends = false;
     path.result = {};
+    path.result.number = keys[i].sample;
     Ray ray{rays[i].origin, rays[i].direction};
     ray.side = path.space.side;
     follow(id, ray);

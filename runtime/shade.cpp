@@ -152,6 +152,9 @@ void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
   result.albedo = albedo_of(v.material);
   result.normal = v.point.normal;
   result.depth = arrival.t;
+  result.position = v.hit.position;
+  result.surface = v.point.surface;
+  result.material = v.point.material;
 }
 
 void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {

@@ -151,10 +151,11 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
   return std::nullopt;
 }
 
-// Whether the word is none of the property's choices. What `type` says has been looked up before.
-bool unknown_choice(const Value& value, const PropertySpec& spec) {
-  if (spec.type != ValueType::Choice || spec.name == "type") return false;
-  return std::find(spec.choices.begin(), spec.choices.end(), std::get<std::string>(value.data)) == spec.choices.end();
+// The place of the word among the row's choices; nullopt when it is none of them.
+std::optional<std::size_t> choice_of(const Value& value, const PropertySpec& row) {
+  const auto found = std::find(row.choices.begin(), row.choices.end(), std::get<std::string>(value.data));
+  if (found == row.choices.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - row.choices.begin());
 }
 
 std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("`{}`: {}", spec.name, spec.doc)}; }
@@ -287,14 +288,14 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
     const std::string instead = formula.empty() ? ", not " + describe(value) : formula;
     diagnostics_.error("E0101", value.span, fmt::format("`{}` must be {}{}", row.name, expected(row.type), instead),
                        "", retype(value, written, row));
-  } else if (unknown_choice(value, row)) {
-    const auto& word = std::get<std::string>(value.data);
-    diagnostics_.error("E0108", value.span, fmt::format("unknown {} `{}`", row.name, word), "",
-                       {did_you_mean(word, row.choices)});
   } else if (const std::optional<Broken> broken = first_broken(value, row)) {
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
                        about(row));
+  } else if (row.type == ValueType::Choice && !choice_of(value, row)) {
+    const std::string& word = std::get<std::string>(value.data);
+    diagnostics_.error("E0108", value.span, fmt::format("unknown {} of {} `{}`", row.name, spec_.title, word), "",
+                       {did_you_mean(word, row.choices), about(row)[0]});
   } else {
     fit_.push_back({row.name, &value});
   }
@@ -319,13 +320,11 @@ std::vector<double> RecordReader::numbers(std::string_view name) const {
   return all;
 }
 
-int RecordReader::choice(std::string_view name) const {
+std::size_t RecordReader::choice(std::string_view name) const {
   const PropertySpec* row = spec_.find(name);
-  CHECK(row != nullptr && row->type == ValueType::Choice, "a property of the table, with choices");
+  CHECK(row != nullptr && row->type == ValueType::Choice, "a property of the table, one of some words");
   const Value* given = value(name);
-  if (given == nullptr) return 0;
-  const auto& word = std::get<std::string>(given->data);
-  return static_cast<int>(std::find(row->choices.begin(), row->choices.end(), word) - row->choices.begin());
+  return given == nullptr ? 0 : *choice_of(*given, *row);
 }
 
 glm::dvec3 RecordReader::vec3(std::string_view name) const {

@@ -191,6 +191,7 @@ const RecordSpec& film_record() {
       "film",
       {integer("width", "pixels", 640, {1, kMaxSide}), integer("height", "pixels", 360, {1, kMaxSide}),
        number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100}),
+       choice("tone", "how light becomes a display's, after exposure", kToneCurves),
        choice("filter", "how a pixel weighs the light around its centre", kFilterNames),
        number("filter_width", "of the filter's support, pixels", {}, {kMinFilterWidth, kMaxFilterWidth})}};
   return record;

@@ -133,6 +133,7 @@ Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diag
   film.width = static_cast<int>(reader.number("width"));
   film.height = static_cast<int>(reader.number("height"));
   film.exposure = reader.number("exposure");
+  film.tone = static_cast<ToneCurve>(reader.choice("tone"));
   film.filter = static_cast<FilterKind>(reader.choice("filter"));
   if (reader.value("filter_width")) film.filter_width = reader.number("filter_width");
   return film;

@@ -20,9 +20,13 @@ struct RenderRequest {
   std::optional<double> aspect, fov;  // width over height; radians
   std::optional<int> resolution;      // width, pixels
   std::optional<PixelSize> size;
+  std::optional<CropSides> crop;
+  std::optional<double> exposure;  // stops
+  int tone = -1;                   // a compiler::ToneCurve; -1: not given
+  int bits = 0;                    // an index into 8, 16
   std::optional<int> threads;
-  runtime::RenderOptions options;  // width and height are not set
   int sampler = -1, filter = -1;   // a SamplerKind, a FilterKind; -1: not given
+  runtime::RenderOptions options;  // width and height are not set; crop is by override_scene()
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
@@ -38,7 +42,11 @@ struct RenderRequest {
 // The request, or the exit code after help or a message.
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
 
-// Puts the request's camera and size over the scene's. An ExitCode, after a message, when they do not fit together.
+// Whether the output holds all layers in one file, so that none is written beside it.
+bool holds_layers(const std::string& output);
+
+// Puts the request's camera, size, tone and crop over the scene's. An ExitCode, after a message, when they do not fit
+// together.
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
 
