@@ -62,6 +62,31 @@ inline float exp2(float x) {
   return exp((x - n) * 0.693147180559945309f) * std::bit_cast<float>((static_cast<int>(n) + 127) << 23);
 }
 
+// log2 x for x > 0, exact for powers of two; relative error <= 4e-7. -infinity for 0, NaN below. ln m = 2
+// artanh((m-1)/(m+1)) for m in [sqrt 1/2, sqrt 2), whose series' terms fall below 2^-29 of the sum after the tenth
+// power.
+inline float log2(float x) {
+  if (!(x > 0)) return x == 0 ? -INFINITY : NAN;
+  if (x == INFINITY) return x;
+  const bool subnormal = x < 0x1p-126f;
+  const auto bits = std::bit_cast<std::int32_t>(subnormal ? x * 0x1p32f : x);
+  constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
+  const std::int32_t exponent = (bits - kSqrtHalf) >> 23;
+  const float m = std::bit_cast<float>(bits - exponent * (1 << 23));
+  const float s = (m - 1) / (m + 1), z = s * s;
+  const float series = ((((1 / 11.0f * z + 1 / 9.0f) * z + 1 / 7.0f) * z + 1 / 5.0f) * z + 1 / 3.0f) * z + 1;
+  return static_cast<float>(exponent - (subnormal ? 32 : 0)) + 2.88539008177792682f * s * series;
+}
+
+// x^y for x >= 0; relative error <= 1e-7 (4 + |y log2 x|) while the result is a normal float. 0^y is 0 for y > 0;
+// x^0 is 1.
+inline float power(float x, float y) {
+  if (y == 0) return 1;
+  const float exponent = y * log2(x);
+  if (!(exponent >= -126)) return exponent != exponent ? exponent : 0.0f;
+  return exponent > 127 ? INFINITY : exp2(exponent);
+}
+
 // tan x for x in [0, pi/2), relative error <= 1e-14: Taylor series of sine and cosine, whose terms fall below 2^-53
 // of the sum after x^26/26! on this interval.
 inline double tangent(double x) {
