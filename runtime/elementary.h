@@ -62,31 +62,6 @@ inline float exp2(float x) {
   return exp((x - n) * 0.693147180559945309f) * std::bit_cast<float>((static_cast<int>(n) + 127) << 23);
 }
 
-// log2 x for x > 0, exact for powers of two; relative error <= 4e-7. -infinity for 0, NaN below. ln m = 2
-// artanh((m-1)/(m+1)) for m in [sqrt 1/2, sqrt 2), whose series' terms fall below 2^-29 of the sum after the tenth
-// power.
-inline float log2(float x) {
-  if (!(x > 0)) return x == 0 ? -INFINITY : NAN;
-  if (x == INFINITY) return x;
-  const bool subnormal = x < 0x1p-126f;
-  const auto bits = std::bit_cast<std::int32_t>(subnormal ? x * 0x1p32f : x);
-  constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
-  const std::int32_t exponent = (bits - kSqrtHalf) >> 23;
-  const float m = std::bit_cast<float>(bits - exponent * (1 << 23));
-  const float s = (m - 1) / (m + 1), z = s * s;
-  const float series = ((((1 / 11.0f * z + 1 / 9.0f) * z + 1 / 7.0f) * z + 1 / 5.0f) * z + 1 / 3.0f) * z + 1;
-  return static_cast<float>(exponent - (subnormal ? 32 : 0)) + 2.88539008177792682f * s * series;
-}
-
-// x^y for x >= 0; relative error <= 1e-7 (4 + |y log2 x|) while the result is a normal float. 0^y is 0 for y > 0;
-// x^0 is 1.
-inline float power(float x, float y) {
-  if (y == 0) return 1;
-  const float exponent = y * log2(x);
-  if (!(exponent >= -126)) return exponent != exponent ? exponent : 0.0f;
-  return exponent > 127 ? INFINITY : exp2(exponent);
-}
-
 // tan x for x in [0, pi/2), relative error <= 1e-14: Taylor series of sine and cosine, whose terms fall below 2^-53
 // of the sum after x^26/26! on this interval.
 inline double tangent(double x) {
@@ -113,11 +88,47 @@ inline double power_5_12(double x) {
   return y;
 }
 
+// log2 x for finite x > 0, subnormal ones too; error <= 4e-16 (1 + |log2 x|). x = 2^e m with m in [sqrt 1/2, sqrt 2],
+// then ln m = 2 artanh s, s = (m - 1)/(m + 1), by its Taylor series, whose terms fall below 2^-53 of the sum after
+// s^21.
+inline double log2(double x) {
+  const bool subnormal = x < 0x1p-1022;
+  const auto bits = std::bit_cast<std::uint64_t>(subnormal ? x * 0x1p54 : x);
+  int exponent = static_cast<int>(bits >> 52) - 1023 - (subnormal ? 54 : 0);
+  double m = std::bit_cast<double>((bits & 0xfffffffffffffu) | 0x3ff0000000000000u);
+  if (m > 1.4142135623730951) {
+    m /= 2;
+    ++exponent;
+  }
+  const double s = (m - 1) / (m + 1), z = s * s;
+  double sum = 0;
+  for (int n = 21; n > 0; n -= 2) sum = sum * z + 1.0 / n;
+  return exponent + s * sum * 2.8853900817779268;  // 2 / ln 2
+}
+
+// 2^x in double for |x| <= 1000, exact for whole x; relative error <= 1e-15. The whole part is the exponent; of the
+// rest the exponential's Taylor series, whose terms fall below 2^-53 after the 13th.
+inline double exp2(double x) {
+  const auto n = static_cast<std::int64_t>(x + (x < 0 ? -0.5 : 0.5));
+  const double r = (x - static_cast<double>(n)) * 0.6931471805599453;
+  double sum = 1;
+  for (int i = 13; i > 0; --i) sum = sum * r / i + 1;
+  return sum * std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+}
+
+// x^y for x >= 0, finite, and |y log2 x| <= 1000; relative error <= 1e-15 (1 + |y log2 x|). 0 for x = 0.
+inline double power(double x, double y) { return x > 0 ? exp2(y * log2(x)) : 0; }
+
 // Linear light to the sRGB signal, both clamped to [0,1]. Source: IEC 61966-2-1:1999. NaN becomes 0.
 inline double srgb_encode(double linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 1;
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * power_5_12(linear) - 0.055;
+}
+
+// The other way, for signals in [0,1].
+inline double srgb_decode(double signal) {
+  return signal <= 0.04045 ? signal / 12.92 : power((signal + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace fathom::runtime

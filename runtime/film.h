@@ -13,7 +13,8 @@ namespace fathom::runtime {
 
 // What one camera path adds to its pixel.
 struct PathSample {
-  glm::vec3 radiance{0};  // linear sRGB
+  glm::vec3 radiance{0};     // linear sRGB
+  std::uint32_t number = 0;  // among the pixel's samples
   // Of the first surface met; unused when there was none.
   bool hit = false;
   glm::vec3 albedo{0};
@@ -24,18 +25,20 @@ struct PathSample {
   std::uint64_t instructions = 0;  // over those evaluations
 };
 
-// What a film keeps beside radiance, 56 and 16 bytes a pixel.
+// What a film keeps beside radiance, 56, 16 and 32 bytes a pixel.
 struct FilmLayers {
   bool first_hit = true;  // albedo, normal, depth
   bool cost = false;      // evaluations, instructions
+  bool halves = false;    // radiance of the samples with even numbers apart from the others: what the denoiser needs
 };
 
 // Means over a pixel's samples; 0 for what the film does not keep.
 struct PixelMeans {
   glm::dvec3 radiance{0};
-  glm::dvec3 albedo{0};  // 0 where nothing was hit
-  glm::dvec3 normal{0};  // not normalised; 0 where nothing was hit
-  double depth = 0;      // over the samples that hit; 0 when none did
+  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // radiance of the samples with even and odd numbers
+  glm::dvec3 albedo{0};                                   // 0 where nothing was hit
+  glm::dvec3 normal{0};                                   // not normalised; 0 where nothing was hit
+  double depth = 0;                                       // over the samples that hit; 0 when none did
   double evaluations = 0;
   double instructions = 0;
   std::uint32_t hits = 0, samples = 0;
@@ -54,6 +57,9 @@ class Film {
   bool add(int x, int y, const PathSample& sample);
   PixelMeans means(int x, int y) const;
 
+  // Puts another mean in the place of the pixel's radiance, its halves stay; does nothing where there are no samples.
+  void set_radiance(int x, int y, glm::dvec3 mean);
+
   // A hash of every sum but the cost's: equal for equal pictures. FNV-1a (Fowler, Noll, Vo, 1991) over 64-bit words.
   std::uint64_t hash() const;
 
@@ -67,10 +73,17 @@ class Film {
     std::int64_t albedo[3] = {}, normal[3] = {};
     std::int64_t depth = 0;
   };
+  // The sums over odd numbers; the others are what is left of the pixel's.
+  struct OddHalf {
+    std::int64_t radiance[3] = {};
+    std::uint32_t samples = 0;
+  };
   // Plain sums: 64 bits of instructions take a pixel a lifetime.
   struct Cost {
     std::uint64_t evaluations = 0, instructions = 0;
   };
+
+  void read_halves(std::size_t at, PixelMeans& means) const;
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
@@ -82,6 +95,7 @@ class Film {
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;
   std::vector<Cost> costs_;
+  std::vector<OddHalf> odd_halves_;
 };
 
 }  // namespace fathom::runtime

@@ -18,6 +18,11 @@ using Planes = std::array<Plane, 3>;
 constexpr float kColorExponent = 0.7f, kNear = 0.4f, kNearShare = 0.95f;  // q_c, p_c, p_t
 constexpr float kFeatureExponent = 0.5f, kFeatureWidth = 0.082f;          // q_f; w, degrees
 
+// x^y for x, y >= 0; 0^0 is 1.
+float power_of(float x, float y) {
+  return y == 0 ? 1 : static_cast<float>(power(static_cast<double>(x), static_cast<double>(y)));
+}
+
 // sRGB's primaries and D65 in whole numbers (IEC 61966-2-1:1999).
 constexpr float kXyz[3][3] = {{0.412386563f, 0.357591491f, 0.180450491f},
                               {0.212636822f, 0.715182982f, 0.072180196f},
@@ -55,7 +60,7 @@ glm::vec3 from_opponent(glm::vec3 c) {
 // CIE 15:2004.
 float lab_root(float t) {
   constexpr float kDelta = 6 / 29.0f;
-  return t > kDelta * kDelta * kDelta ? power(t, 1 / 3.0f) : t / (3 * kDelta * kDelta) + 4 / 29.0f;
+  return t > kDelta * kDelta * kDelta ? power_of(t, 1 / 3.0f) : t / (3 * kDelta * kDelta) + 4 / 29.0f;
 }
 
 // L*a*b* with colours as faint as dim light makes them: the Hunt effect.
@@ -74,8 +79,8 @@ float distance(glm::vec3 a, glm::vec3 b) {
 
 // The colour difference in [0,1]: most of the range for the differences that most pictures have.
 float color_error(glm::vec3 a, glm::vec3 b) {
-  static const float most = power(distance(to_hunt_lab({0, 1, 0}), to_hunt_lab({0, 0, 1})), kColorExponent);
-  const float error = power(distance(to_hunt_lab(a), to_hunt_lab(b)), kColorExponent), near = kNear * most;
+  static const float most = power_of(distance(to_hunt_lab({0, 1, 0}), to_hunt_lab({0, 0, 1})), kColorExponent);
+  const float error = power_of(distance(to_hunt_lab(a), to_hunt_lab(b)), kColorExponent), near = kNear * most;
   if (error < near) return kNearShare / near * error;
   return kNearShare + (error - near) / (most - near) * (1 - kNearShare);
 }
@@ -218,8 +223,8 @@ Flip flip(RgbView a, RgbView b, float pixels_per_degree) {
     const float color = color_error(color_at(first, i), color_at(second, i));
     const float features =
         std::max(std::abs(first.edges[i] - second.edges[i]), std::abs(first.points[i] - second.points[i]));
-    const float feature = std::min(power(0.707106781f * features, kFeatureExponent), 1.0f);
-    const float error = std::clamp(power(color, 1 - feature), 0.0f, 1.0f);
+    const float feature = std::min(power_of(0.707106781f * features, kFeatureExponent), 1.0f);
+    const float error = std::clamp(power_of(color, 1 - feature), 0.0f, 1.0f);
     result.map.push_back(error);
     result.mean += static_cast<double>(error);
   }

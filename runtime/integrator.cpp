@@ -91,6 +91,7 @@ void Integrator::start(std::span<const PathKey> keys) {
     path.absorption = glm::vec3(0);
     path.bounces = 0;
     path.result = {};
+    path.result.number = keys[i].sample;
     marcher_->add(id, {path.origin, path.direction});
   }
   stats_.primary_rays += keys.size();

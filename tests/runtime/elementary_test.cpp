@@ -39,36 +39,6 @@ TEST_CASE("elementary: exp2 is exact for whole exponents", "[runtime]") {
   CHECK(static_cast<double>(exp2(0.5f)) == Approx(std::sqrt(2.0)).epsilon(3e-7));
 }
 
-TEST_CASE("elementary: log2 is within 4e-7 of libm's and exact for powers of two", "[runtime]") {
-  double worst = 0;
-  for (float x = 0x1p-149f; x < 1e38f; x = std::nextafter(x * 1.0001f, INFINITY)) {
-    const double truth = std::log2(static_cast<double>(x));
-    if (truth != 0) worst = std::max(worst, std::abs(static_cast<double>(log2(x)) / truth - 1));
-  }
-  CHECK(worst <= 4e-7);
-  for (int n = -149; n <= 127; ++n) CHECK(log2(std::ldexp(1.0f, n)) == static_cast<float>(n));
-  CHECK(log2(0) == -INFINITY);
-  CHECK(log2(INFINITY) == INFINITY);
-  CHECK(std::isnan(log2(-1)));
-  CHECK(std::isnan(log2(NAN)));
-}
-
-TEST_CASE("elementary: power is within 1e-7 for each bit of its exponent", "[runtime]") {
-  double worst = 0;
-  for (float x = 1e-6f; x < 1e4f; x *= 1.003f) {
-    for (const float y : {0.3f, 1 / 3.0f, 0.7f, 1.0f, 2.4f, 5.0f}) {
-      const double truth = std::pow(static_cast<double>(x), static_cast<double>(y));
-      const double scale = 4 + std::abs(std::log2(truth));
-      worst = std::max(worst, std::abs(static_cast<double>(power(x, y)) / truth - 1) / scale);
-    }
-  }
-  CHECK(worst <= 1e-7);
-  CHECK(power(0, 0.7f) == 0);
-  CHECK(power(1, 0.3f) == 1);
-  CHECK(power(1e30f, 3) == INFINITY);
-  CHECK(power(1e-30f, 3) == 0);
-}
-
 TEST_CASE("elementary: the tangent is within 1e-14 of libm's", "[runtime]") {
   double worst = 0;
   for (double x = 1e-3; x < 1.57; x += 1e-3) worst = std::max(worst, std::abs(tangent(x) / std::tan(x) - 1));
