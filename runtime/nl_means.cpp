@@ -24,8 +24,8 @@ constexpr float kColor = 1 / (0.5f * 0.5f);
 constexpr std::size_t kCandidates = 3;
 constexpr std::array<Candidate, kCandidates> kCandidate = {{{kColor, 1}, {0, 1}, {kColor, 0}}};
 
-constexpr float kFeature = 1 / (0.15f * 0.15f);  // over the square of a difference
-constexpr float kDepthSlack = 0.01f;             // of the depth itself
+constexpr float kAlike = 0.15f;       // difference of a feature that halves a weight, about
+constexpr float kDepthSlack = 0.01f;  // of the depth itself
 constexpr int kVarianceRadius = 1, kErrorRadius = 4, kChoiceRadius = 2;
 
 // Stands for e^-x: the same to a tenth where it matters, 0 beyond 8, and no more than multiplications.
@@ -77,6 +77,7 @@ struct Framing {
   int width, height;
   std::array<std::array<Framed, 3>, 2> copies;
   std::array<Framed, 6> features;
+  std::array<Framed, 2> sharpness;  // what squared differences of the first and last three features count
   Framed depth, slope_x, slope_y, valid;
   Framed noise;     // variance of a copy as it looks, all channels together
   Framed variance;  // the same, smoothed
@@ -88,15 +89,15 @@ struct Filtered {
   std::array<Plane, kCandidates> errors;
 };
 
-// The lesser change of depth to the neighbours on both sides along an axis: that of the surface, at its edge, too.
-Plane slope(const Plane& depth, int width, int height, bool across) {
+// The lesser change to the neighbours on both sides along an axis: that of the surface itself, at its edge, too.
+Plane slope(const Plane& plane, int width, int height, bool across) {
   const auto at = [&](int x, int y) {
-    return depth[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+    return plane[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
                  static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
   };
   const int dx = across ? 1 : 0, dy = across ? 0 : 1;
   Plane result;
-  result.reserve(depth.size());
+  result.reserve(plane.size());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const float ahead = std::abs(at(x + dx, y + dy) - at(x, y)), behind = std::abs(at(x - dx, y - dy) - at(x, y));
@@ -105,6 +106,21 @@ Plane slope(const Plane& depth, int width, int height, bool across) {
     }
   }
   return result;
+}
+
+// Pixels that show the edge between two surfaces in part are like none: their slopes are steep on both sides, and by
+// so much their neighbours may differ (RMZ 2013, equation 5; there the gradient, which is steep beside the edge,
+// too).
+Plane sharpness_of(const NlMeansInput& input, std::size_t first) {
+  Plane squares(input.valid.size(), kAlike * kAlike);
+  for (std::size_t i = first; i < first + 3; ++i) {
+    for (const bool across : {true, false}) {
+      const Plane change = slope(input.features[i], input.width, input.height, across);
+      for (std::size_t at = 0; at < squares.size(); ++at) squares[at] += change[at] * change[at];
+    }
+  }
+  for (float& value : squares) value = 1 / value;
+  return squares;
 }
 
 // The two copies differ by their noise: half the square of the difference is the variance of one, in the mean.
@@ -120,12 +136,13 @@ Plane noise_of(const NlMeansInput& input) {
 }
 
 Framing frame(const NlMeansInput& input) {
-  Framing framing{input.width, input.height, {}, {}, {}, {}, {}, {}, {}, {}};
+  Framing framing{input.width, input.height, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   const auto framed = [&](const Plane& plane) { return Framed(plane, input.width, input.height); };
   for (std::size_t half = 0; half < 2; ++half) {
     for (std::size_t c = 0; c < 3; ++c) framing.copies[half][c] = framed(input.copies[half][c]);
   }
   for (std::size_t i = 0; i < input.features.size(); ++i) framing.features[i] = framed(input.features[i]);
+  for (std::size_t i = 0; i < 2; ++i) framing.sharpness[i] = framed(sharpness_of(input, 3 * i));
   framing.depth = framed(input.depth);
   framing.slope_x = framed(slope(input.depth, input.width, input.height, true));
   framing.slope_y = framed(slope(input.depth, input.width, input.height, false));
@@ -217,9 +234,10 @@ class TileFilter {
     const int width = tile_.x1 - tile_.x0;
     unlikeness_ = {};
     float* __restrict out = unlikeness_.data();
-    for (const Framed& feature : in_.features) {
-      const float *p = feature.row(y) + tile_.x0, *q = feature.row(y + dy) + tile_.x0 + dx;
-      for (int x = 0; x < width; ++x) out[x] += (p[x] - q[x]) * (p[x] - q[x]) * kFeature;
+    for (std::size_t i = 0; i < in_.features.size(); ++i) {
+      const float *p = in_.features[i].row(y) + tile_.x0, *q = in_.features[i].row(y + dy) + tile_.x0 + dx;
+      const float* sharpness = in_.sharpness[i / 3].row(y) + tile_.x0;
+      for (int x = 0; x < width; ++x) out[x] += (p[x] - q[x]) * (p[x] - q[x]) * sharpness[x];
     }
     const float *p = in_.depth.row(y) + tile_.x0, *q = in_.depth.row(y + dy) + tile_.x0 + dx;
     const float *sx = in_.slope_x.row(y) + tile_.x0, *sy = in_.slope_y.row(y) + tile_.x0;
