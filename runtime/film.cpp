@@ -72,6 +72,7 @@ Film::Film(PixelRect area, FilmLayers layers) : area_(area), layers_(layers) {
   if (layers.ids) ids_.resize(count);
   if (layers.variance) squares_.resize(count);
   if (layers.cost) costs_.resize(count);
+  if (layers.halves) odd_halves_.resize(count);
 }
 
 bool Film::add(int x, int y, const PathSample& sample) {
@@ -83,6 +84,10 @@ bool Film::add(int x, int y, const PathSample& sample) {
   if (layers_.cost) {
     costs_[at].evaluations += sample.evaluations;
     costs_[at].instructions += sample.instructions;
+  }
+  if (layers_.halves && sample.number % 2 == 1) {
+    ++odd_halves_[at].samples;
+    room &= accumulate(odd_halves_[at].radiance, sample.radiance);
   }
   if (!sample.hit) return room;
   ++pixel.hits;
@@ -126,6 +131,7 @@ PixelMeans Film::means(int x, int y) const {
       means.variance[i] = variance_of_mean(pixel.radiance[i], squares_[at].sums[i], pixel.samples);
     }
   }
+  if (layers_.halves) read_halves(at, means);
   if (layers_.cost) {
     means.evaluations = static_cast<double>(costs_[at].evaluations) / pixel.samples;
     means.instructions = static_cast<double>(costs_[at].instructions) / pixel.samples;
@@ -146,6 +152,23 @@ void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
     means.surface_id = ids_[at].surface + 1;
     means.material_id = ids_[at].material + 1;
   }
+}
+
+void Film::read_halves(std::size_t at, PixelMeans& means) const {
+  const Pixel& pixel = pixels_[at];
+  const OddHalf& odd = odd_halves_[at];
+  const std::uint32_t even = pixel.samples - odd.samples;
+  for (int i = 0; i < 3; ++i) {
+    // In double, for full sums may be further apart than 64 bits reach.
+    const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
+    if (even > 0) means.halves[0][i] = rest * kUnit / even;
+  }
+  if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
+}
+
+void Film::set_radiance(int x, int y, glm::dvec3 mean) {
+  Pixel& pixel = pixels_[index(x, y)];
+  for (int i = 0; i < 3; ++i) pixel.radiance[i] = to_fixed(mean[i] * pixel.samples);
 }
 
 std::uint64_t Film::hash() const {
@@ -172,6 +195,10 @@ std::uint64_t Film::hash() const {
       absorb(static_cast<std::uint64_t>(sum));
       absorb(static_cast<std::uint64_t>(sum >> 64));
     }
+  }
+  for (const OddHalf& half : odd_halves_) {
+    absorb_sums(half.radiance);
+    absorb(half.samples);
   }
   return hash;
 }

@@ -40,8 +40,6 @@ class RecordReader {
   // The place among the table's choices of the word given, or 0 when it is absent or unfit.
   std::size_t choice(std::string_view name) const;
 
-  // Which of the table's choices is given; the first when absent or unfit.
-  int choice(std::string_view name) const;
 
  private:
   struct Fit {

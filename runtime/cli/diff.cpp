@@ -1,0 +1,187 @@
+// fathom diff: how far a picture is from another, in numbers and as a map.
+//
+//     $ fathom diff out.png reference.png
+//     mse      0.0012
+//     relmse   0.0085
+//     max      0.31
+//     mean    -0.0002
+//     flip     0.041
+//
+// Tested by: tests/runtime/cli_diff_test.cpp
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "runtime/chart/colormap.h"
+#include "runtime/cli/arguments.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/flip.h"
+#include "runtime/image_io.h"
+#include "runtime/image_read.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom diff out.png reference.png\n"
+    "fathom diff out.exr reference.exr --metric relmse --tol 0.01   # exit status 1 when it is more\n"
+    "fathom diff out.png reference.png -o where.png                 # FLIP pixel by pixel, as colours\n"
+    "\n"
+    "mse, relmse, max, mean: of linear light; mean is the first picture less the second, relmse is over the square of\n"
+    "the second. flip: what an eye sees of the difference, 0 to 1, with each picture as a screen shows it.";
+
+// Every number that is printed, and whether --tol can be about it.
+struct Measured {
+  runtime::Differences differences;
+  runtime::Flip flip;
+};
+struct Metric {
+  std::string_view name;
+  double (*value)(const Measured& measured);
+  bool bounded;
+};
+constexpr Metric kMetrics[] = {
+    {"mse", [](const Measured& m) { return m.differences.mse; }, true},
+    {"relmse", [](const Measured& m) { return m.differences.relmse; }, true},
+    {"max", [](const Measured& m) { return m.differences.max; }, true},
+    {"flip", [](const Measured& m) { return m.flip.mean; }, true},
+    {"mean", [](const Measured& m) { return m.differences.mean; }, false},
+};
+
+struct DiffRequest {
+  std::string first, second;
+  std::optional<std::string> map;
+  std::optional<double> tolerance;
+  int metric = -1;  // an index into kMetrics; -1: not given
+  bool json = false;
+};
+
+Verdict read_tolerance(std::string_view text, double& tolerance) {
+  const std::optional<double> number = to_number(text);
+  if (!number || *number < 0) return Complaint{fmt::format("`{}` is not a number from 0", text), ""};
+  tolerance = *number;
+  return std::nullopt;
+}
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DiffRequest& request) {
+  std::vector<std::string_view> names;
+  for (const Metric& metric : kMetrics) {
+    if (metric.bounded) names.push_back(metric.name);
+  }
+  Arguments arguments("diff", "Compares a picture with a reference.", kExamples);
+  arguments.positional("picture", "The picture", request.first);
+  arguments.positional("reference", "What it should be", request.second);
+  arguments.option("--tol", "X", "End with 1 when the metric is more than this", into(read_tolerance, request.tolerance));
+  arguments.option("--metric", "NAME", "What --tol is about: mse (default), relmse, max or flip",
+                   one_of(names, request.metric));
+  arguments.option("-o,--output", "FILE", "Write a map of FLIP: dark violet is alike, yellow is different",
+                   into(read_shown_output, request.map));
+  arguments.flag("--json", "Print the numbers as JSON", request.json);
+  if (const auto code = arguments.parse(args, streams)) return code;
+  if (request.metric >= 0 && !request.tolerance) {
+    return fail(streams, kUsage, "--metric says what --tol is about; there is no --tol");
+  }
+  return std::nullopt;
+}
+
+// Colours of a file: red, green and blue or one channel for all.
+struct Colors {
+  int width = 0, height = 0;
+  std::vector<float> rgb;
+  runtime::RgbView view() const { return {width, height, rgb}; }
+};
+
+std::variant<Colors, ExitCode> read_colors(const std::string& path, const Streams& streams) {
+  const auto read = runtime::read_image(path);
+  if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
+    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
+  }
+  const auto& image = std::get<runtime::FloatImage>(read);
+  Colors colors{image.area.width(), image.area.height(), {}};
+  const std::vector<float>* channels[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    constexpr std::string_view kNames[] = {"R", "G", "B"};
+    channels[c] = image.channel(kNames[c]);
+    if (channels[c] == nullptr) {
+      return fail(streams, kBadScene, fmt::format("`{}` has no channel `{}`", path, kNames[c]));
+    }
+  }
+  for (std::size_t i = 0; i < channels[0]->size(); ++i) {
+    for (const std::vector<float>* channel : channels) colors.rgb.push_back((*channel)[i]);
+  }
+  return colors;
+}
+
+std::string table(const Measured& measured) {
+  std::string text;
+  for (const Metric& metric : kMetrics) text += fmt::format("{:8}{:.6g}\n", metric.name, metric.value(measured));
+  if (measured.differences.invalid > 0) text += fmt::format("{:8}{}\n", "invalid", measured.differences.invalid);
+  return text;
+}
+
+std::string json(const Measured& measured) {
+  nlohmann::ordered_json object;
+  for (const Metric& metric : kMetrics) object[std::string(metric.name)] = metric.value(measured);
+  object["invalid"] = measured.differences.invalid;
+  return object.dump(2) + '\n';
+}
+
+runtime::Picture map_picture(const runtime::Flip& flip, int width, int height) {
+  runtime::Picture picture{width, height, {}};
+  for (const float error : flip.map) {
+    const runtime::Rgb color = runtime::viridis(static_cast<double>(error));
+    picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
+  }
+  return picture;
+}
+
+// kFoundProblems when the pictures are further apart than was asked for.
+ExitCode judge(const DiffRequest& request, const Measured& measured, const Streams& streams) {
+  if (!request.tolerance) return kDone;
+  if (measured.differences.invalid > 0) {
+    return fail(streams, kFoundProblems,
+                fmt::format("{} have values that are not finite", count_of(measured.differences.invalid, "pixel")));
+  }
+  const Metric& metric = kMetrics[std::max(0, request.metric)];
+  const double value = metric.value(measured);
+  if (value <= *request.tolerance) return kDone;
+  return fail(streams, kFoundProblems,
+              fmt::format("{} is {:.6g}, more than {:.6g}", metric.name, value, *request.tolerance));
+}
+
+}  // namespace
+
+int run_diff(std::span<const std::string> args, const Streams& streams) {
+  DiffRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  if (request.map) {
+    if (const auto code = check_collisions(request.first, {request.second, *request.map}, streams)) return *code;
+    if (const auto problem = runtime::check_image_path(*request.map)) return fail(streams, kIo, *problem);
+  }
+  const auto first = read_colors(request.first, streams), second = read_colors(request.second, streams);
+  if (const auto* code = std::get_if<ExitCode>(&first)) return *code;
+  if (const auto* code = std::get_if<ExitCode>(&second)) return *code;
+  const Colors &picture = std::get<Colors>(first), &reference = std::get<Colors>(second);
+  if (picture.width != reference.width || picture.height != reference.height) {
+    return fail(streams, kBadScene,
+                fmt::format("`{}` is {}x{} and `{}` is {}x{}", request.first, picture.width, picture.height,
+                            request.second, reference.width, reference.height),
+                {"only pictures of one size can be compared"});
+  }
+  const Measured measured{runtime::compare(picture.view(), reference.view()),
+                          runtime::flip(picture.view(), reference.view())};
+  streams.out << (request.json ? json(measured) : table(measured));
+  if (request.map) {
+    const runtime::Picture map = map_picture(measured.flip, picture.width, picture.height);
+    if (const auto problem = runtime::write_image(map, *request.map)) return fail(streams, kIo, *problem);
+    streams.err << fmt::format("wrote {} ({}x{})\n", *request.map, map.width, map.height);
+  }
+  return judge(request, measured, streams);
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,238 @@
+#include "runtime/denoise.h"
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "runtime/image_diff.h"
+#include "runtime/sampler.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Pixels = std::vector<float>;
+
+// A picture with its truth: two copies with noise, and what is seen in each pixel.
+struct Scene {
+  int width, height;
+  Pixels truth, first, second, albedo, normal, depth;
+
+  DenoiseInput input() const { return {width, height, first, second, albedo, normal, depth}; }
+  RgbView view(const Pixels& rgb) const { return {width, height, rgb}; }
+  Pixels noisy() const {
+    Pixels mean;
+    for (std::size_t i = 0; i < first.size(); ++i) mean.push_back((first[i] + second[i]) / 2);
+    return mean;
+  }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+};
+
+struct Surface {
+  std::array<float, 3> albedo, normal;
+  float depth, light;
+};
+using Seen = std::function<Surface(int x, int y)>;
+// A factor of mean 1.
+using Noise = std::function<float(Sampler& sampler)>;
+
+Scene draw(int width, int height, const Seen& seen, const Noise& noise) {
+  Scene scene{width, height, {}, {}, {}, {}, {}, {}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Surface surface = seen(x, y);
+      Sampler sampler(7, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0);
+      const float factors[2] = {noise(sampler), noise(sampler)};
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float truth = surface.albedo[c] * surface.light;
+        scene.truth.push_back(truth);
+        scene.first.push_back(truth * factors[0]);
+        scene.second.push_back(truth * factors[1]);
+        scene.albedo.push_back(surface.albedo[c]);
+        scene.normal.push_back(surface.normal[c]);
+      }
+      scene.depth.push_back(surface.depth);
+    }
+  }
+  return scene;
+}
+
+// The light of a lamp at the upper left on a floor and a wall, both chequered; a shadow's edge that no feature shows.
+Surface room(int x, int y) {
+  const bool wall = x < 48;
+  const float dx = static_cast<float>(x - 20) / 60, dy = static_cast<float>(y - 10) / 60;
+  const bool shadow = !wall && x + y > 110;
+  const bool white = (x / 6 + y / 6) % 2 == 0;
+  Surface surface;
+  surface.albedo = white ? std::array{0.8f, 0.7f, 0.6f} : std::array{0.1f, 0.3f, 0.2f};
+  surface.normal = wall ? std::array{1.0f, 0.0f, 0.0f} : std::array{0.0f, 1.0f, 0.0f};
+  surface.depth = wall ? 3 + dx : 3 + dy;
+  surface.light = (wall ? 1.0f : 0.6f) / (1 + dx * dx + dy * dy) * (shadow ? 0.2f : 1);
+  return surface;
+}
+
+// The mean of `count` numbers of the exponential distribution: strong, skewed noise like that of few paths.
+Noise exponential(int count) {
+  return [count](Sampler& sampler) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum -= std::log(1 - static_cast<double>(sampler.next()));
+    return static_cast<float>(sum / count);
+  };
+}
+float no_noise(Sampler&) { return 1; }
+
+double relmse(const Scene& scene, const Pixels& picture) {
+  return compare(scene.view(picture), scene.view(scene.truth)).relmse;
+}
+
+TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noise", "[runtime]") {
+  for (const int samples : {1, 4, 16}) {
+    CAPTURE(samples);
+    const Scene scene = draw(96, 80, room, exponential(samples));
+    const Pixels result = denoise(scene.input(), 2);
+    const double before = relmse(scene, scene.noisy()), after = relmse(scene, result);
+    CAPTURE(before, after);
+    CHECK(after <= before / 5);
+    // No energy is made or lost.
+    CHECK(compare(scene.view(result), scene.view(scene.truth)).mean == Approx(0).margin(0.01));
+  }
+}
+
+TEST_CASE("denoise: a picture without noise stays as it is", "[runtime]") {
+  const Scene flat = draw(
+      40, 30,
+      [](int, int) {
+        return Surface{{0.5f, 0.5f, 0.5f}, {0, 0, 1}, 2, 3};
+      },
+      no_noise);
+  const Differences plain = compare(flat.view(denoise(flat.input(), 1)), flat.view(flat.truth));
+  CHECK(plain.max <= 1e-6);
+  const Scene detailed = draw(96, 80, room, no_noise);
+  CHECK(compare(detailed.view(denoise(detailed.input(), 1)), detailed.view(detailed.truth)).max <= 1e-5);
+}
+
+TEST_CASE("denoise: nothing bleeds over an edge of albedo, normal or depth", "[runtime]") {
+  const auto left = [](int x) { return x < 24; };
+  const Surface base{{0.5f, 0.5f, 0.5f}, {0, 0, 1}, 2, 1};
+  const Seen edges[] = {[&](int x, int) {
+                          Surface s = base;
+                          if (left(x)) s.albedo = {0.9f, 0.05f, 0.05f};
+                          return s;
+                        },
+                        [&](int x, int) {
+                          Surface s = base;
+                          if (left(x)) s.normal = {1, 0, 0}, s.light = 8;
+                          return s;
+                        },
+                        [&](int x, int) {
+                          Surface s = base;
+                          if (left(x)) s.depth = 3, s.light = 8;
+                          return s;
+                        }};
+  for (const Seen& edge : edges) {
+    const Scene scene = draw(48, 32, edge, exponential(4));
+    const Pixels result = denoise(scene.input(), 1);
+    // Columns beside the edge: their mean over the rows against the truth.
+    for (const int x : {22, 23, 24, 25}) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        double mean = 0;
+        for (int y = 0; y < 32; ++y) mean += static_cast<double>(result[3 * scene.at(x, y) + c]) / 32;
+        CAPTURE(x, c);
+        CHECK(mean == Approx(scene.truth[3 * scene.at(x, 0) + c]).epsilon(0.1));
+      }
+    }
+  }
+}
+
+TEST_CASE("denoise: what is not finite does not spread and is filled", "[runtime]") {
+  Scene scene = draw(64, 48, room, exponential(4));
+  const Pixels clean = denoise(scene.input(), 1);
+  scene.first[3 * scene.at(20, 20)] = NAN;
+  scene.second[3 * scene.at(50, 30) + 1] = INFINITY;
+  scene.albedo[3 * scene.at(5, 40) + 2] = NAN;
+  scene.normal[3 * scene.at(30, 10)] = INFINITY;
+  scene.depth[scene.at(40, 40)] = NAN;
+  const Pixels result = denoise(scene.input(), 1);
+  for (const float value : result) REQUIRE(std::isfinite(value));
+  CHECK(relmse(scene, result) <= 1.1 * relmse(scene, clean));
+  const std::size_t lost = 3 * scene.at(20, 20);
+  CHECK(result[lost] == Approx(scene.truth[lost]).epsilon(0.3));
+}
+
+TEST_CASE("denoise: a firefly goes down and its light stays near", "[runtime]") {
+  Scene scene = draw(
+      64, 48,
+      [](int, int) {
+        return Surface{{1, 1, 1}, {0, 0, 1}, 2, 1};
+      },
+      exponential(16));
+  const std::size_t at = 3 * scene.at(32, 24);
+  for (std::size_t c = 0; c < 3; ++c) scene.first[at + c] = 1e4f;
+  const Pixels result = denoise(scene.input(), 1);
+  CHECK(result[at] < 200);
+  CHECK(result[3 * scene.at(10, 10)] == Approx(1).epsilon(0.1));
+  for (const float value : result) REQUIRE((value >= 0 && std::isfinite(value)));
+}
+
+TEST_CASE("denoise: scales with the light", "[runtime]") {
+  const Scene scene = draw(48, 40, room, exponential(2));
+  Scene bright = scene;
+  for (Pixels* pixels : {&bright.first, &bright.second}) {
+    for (float& value : *pixels) value *= 0x1p20f;
+  }
+  const Pixels result = denoise(scene.input(), 1), scaled = denoise(bright.input(), 1);
+  for (std::size_t i = 0; i < result.size(); ++i) REQUIRE(scaled[i] == Approx(result[i] * 0x1p20f).epsilon(1e-3));
+}
+
+TEST_CASE("denoise: any number of threads gives the same bits", "[runtime]") {
+  const Scene scene = draw(150, 70, room, exponential(2));
+  const Pixels one = denoise(scene.input(), 1);
+  CHECK(denoise(scene.input(), 2) == one);
+  CHECK(denoise(scene.input(), 3) == one);
+}
+
+TEST_CASE("denoise: pictures of a pixel, a row and a column", "[runtime]") {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(30, 1), std::pair(1, 30)}) {
+    const Scene scene = draw(width, height, room, exponential(4));
+    for (const float value : denoise(scene.input(), 2)) CHECK(std::isfinite(value));
+  }
+}
+
+TEST_CASE("denoise: a film keeps all but its radiance", "[runtime]") {
+  Film film(24, 16, {.first_hit = true, .cost = false, .halves = true});
+  const Noise noise = exponential(1);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      for (std::uint32_t number = 0; number < 5; ++number) {
+        Sampler sampler(1, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), number);
+        PathSample sample;
+        sample.number = number;
+        sample.radiance = glm::vec3(2 * noise(sampler));
+        if (x < 12) sample.hit = true, sample.albedo = glm::vec3(0.5f), sample.normal = {0, 0, 1}, sample.depth = 3;
+        film.add(x, y, sample);
+      }
+    }
+  }
+  const Film result = denoise(film, 2);
+  double before = 0, after = 0;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const PixelMeans was = film.means(x, y), is = result.means(x, y);
+      CHECK(is.samples == 5);
+      CHECK(is.hits == was.hits);
+      CHECK(is.albedo == was.albedo);
+      CHECK(is.normal == was.normal);
+      CHECK(is.depth == was.depth);
+      CHECK(is.halves[1] == was.halves[1]);
+      before += (was.radiance.x - 2) * (was.radiance.x - 2);
+      after += (is.radiance.x - 2) * (is.radiance.x - 2);
+    }
+  }
+  CHECK(after < before / 5);
+}
+
+}  // namespace
+}  // namespace fathom::runtime
