@@ -37,6 +37,8 @@ class RecordReader {
   std::vector<double> numbers(std::string_view name) const;
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
+  // A Boolean; `fallback` when absent or unfit.
+  bool flag(std::string_view name, bool fallback) const;
 
  private:
   struct Fit {
