@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/fuse.h"
+#include "compiler/lamps.h"
 #include "compiler/lints.h"
 #include "compiler/lower.h"
 #include "compiler/media.h"
@@ -40,7 +42,22 @@ glm::dvec3 move_to_origin(Elaborated& elaborated) {
   elaborated.scene = moved(elaborated.scene, origin);
   elaborated.camera.position -= origin;
   elaborated.camera.target -= origin;
+  for (Light& light : elaborated.lights) light.position -= origin;
   return origin;
+}
+
+// Files named in a scene lie beside it.
+void find_files(Elaborated& elaborated, const Source& source, Diagnostics& diagnostics) {
+  namespace fs = std::filesystem;
+  Background::Image& image = elaborated.background.image;
+  if (elaborated.background.type != Background::Type::Image) return;
+  const fs::path path = fs::path(source.name()).parent_path() / image.file;
+  image.file = path.string();
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return;
+  diagnostics.error("E0311", image.span,
+                    fmt::format("cannot read `{}`: {}", image.file, error ? error.message() : "it is not a file"), "",
+                    {"a path in a scene begins at the scene's own folder"});
 }
 
 Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
@@ -188,6 +205,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (options.on_syntax) options.on_syntax(*read);
   std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions);
   if (!elaborated) return std::nullopt;
+  find_files(*elaborated, source, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
 
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
   const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
@@ -211,11 +230,13 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     lint_places(elaborated->scene, origin, diagnostics);
   }
   const bool mixes = mixes_materials(elaborated->scene, elaborated->surfaces);
+  std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(*whole),
                        std::move(source),
                        origin,
                        std::move(media),
+                       std::move(lamps),
                        mixes,
                        count_nodes(field),
                        ""};

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
@@ -94,9 +96,56 @@ struct RenderSettings {
   std::optional<double> far;  // how far from the camera rays are followed, scene units; default: see render
 };
 
-// Radiance of rays that leave the scene: `bottom` straight down to `top` straight up, linear in the angle's sine.
+// Radiance of rays that leave the scene.
 struct Background {
+  enum class Type { Gradient, Sky, Image };
+  struct Sky {                // clear daylight over a ground (runtime/sky.h)
+    glm::dvec3 sun{0, 1, 0};  // unit, towards it; not below the horizon
+    double turbidity = 3;     // of the air: 2 very clear to 10 hazy
+    glm::dvec3 ground_albedo{0.3};
+    double strength = 1;  // a factor on everything, the sun too
+    bool sun_disc = true;
+  };
+  struct Image {        // latitude and longitude: the middle of the picture looks along -z, +x is to its right
+    std::string file;   // as it can be opened: the scene's folder is put before it
+    double rotate = 0;  // about y, degrees, counter-clockwise seen from above
+    double strength = 1;
+    Span span;  // of the file's name in the scene
+  };
+  Type type = Type::Gradient;
+  // Gradient: straight down and straight up, linear in between in the sine of the elevation.
   glm::dvec3 bottom{0.0}, top{0.0};
+  Sky sky;
+  Image image;
+};
+
+// A light that is no part of the geometry. Rays do not meet it; of a directional one with an angle they see the disc.
+struct Light {
+  enum class Type { Point, Spot, Directional };
+  std::string name;
+  Type type = Type::Point;
+  glm::dvec3 position{0.0};        // point, spot
+  glm::dvec3 direction{0, -1, 0};  // spot, directional: unit, the way the light goes
+  // Point, spot: radiant intensity, W/sr; directional: irradiance of what faces it.
+  glm::dvec3 intensity{1.0};
+  double angle = 0;  // degrees: half of a spot's cone; directional: half of the angle that the disc subtends
+  double blend = 0;  // spot: how much of the angle, from the edge inwards, is a soft edge, in [0,1]
+};
+
+// A shape that glows and that light can be sampled on: of the graph, unaltered but for where it stands and how large
+// it is (compiler/lamps.h). A place q of the shape is rotation * q + translation in the programs' coordinates;
+// `rotation` may mirror.
+struct Lamp {
+  enum class Shape { Sphere, Box, Cylinder, Capsule, Quad };
+  Shape shape = Shape::Sphere;
+  glm::dmat3 rotation{1.0};
+  glm::dvec3 translation{0.0};
+  double radius = 0;                    // sphere, cylinder, capsule; quad: half its thickness, its edges' radius
+  double half_height = 0;               // cylinder: along y; capsule: to the centres of its balls
+  glm::dvec3 half_size{0.0};            // box
+  std::array<glm::dvec2, 4> corners{};  // quad: in its xy plane, counter-clockwise seen from +z
+  std::uint32_t surface = 0;            // index into CompiledScene::surfaces
+  std::uint32_t material = 0;           // index into CompiledScene::materials
 };
 
 // A number of the scene that formulas know by name and the command line can set.
@@ -117,6 +166,7 @@ struct SceneTables {
   Film film;
   RenderSettings settings;
   Background background;
+  std::vector<Light> lights;  // in file order
 };
 
 // A field as programs, and what is proved of it.
@@ -142,6 +192,7 @@ struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
   std::vector<Medium> media;     // of the transparent materials, in their order
+  std::vector<Lamp> lamps;       // in file order; of those that coincide the first alone
   bool mixes_materials = false;  // whether points can have shares of several (vm::evaluate_shares)
   std::size_t node_count = 0;    // distinct nodes after the passes
   // In the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".

@@ -46,6 +46,9 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0306", "a solid where an outline is needed, or the other way round"},
     {"E0307", "an outline placed out of its plane"},
     {"E0308", "numbers beyond those of float"},
+    {"E0309", "a sun below the horizon"},
+    {"E0310", "a light that shines on its own position"},
+    {"E0311", "a file named in the scene that cannot be read"},
     // E04xx: formulas and parameters
     {"E0401", "malformed formula"},
     {"E0402", "unknown name in a formula"},

@@ -7,9 +7,11 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/environment_file.h"
 #include "runtime/film.h"
 #include "runtime/method.h"
 #include "runtime/pixel_rect.h"
@@ -46,6 +48,9 @@ struct RenderOptions {
   std::size_t region_memory = 64u << 20;  // bytes they may take
   FilmLayers layers;
   bool profile = false;  // measure the stages' times (Stats::stages)
+
+  // The picture that the scene's background names, when it names one (Background::Type::Image).
+  std::shared_ptr<const EnvironmentImage> environment;
 
   // Called now and then, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;

@@ -98,6 +98,7 @@ Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnos
   if (const syntax::Value* background = reader.value("background")) {
     out.background = read_background(*background, scope, diagnostics);
   }
+  if (const syntax::Value* lights = reader.value("lights")) out.lights = read_lights(*lights, scope, diagnostics);
   if (const syntax::Value* materials = reader.value("materials"))
     out.materials = read_materials(*materials, scope, diagnostics);
   return out;

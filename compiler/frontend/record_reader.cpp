@@ -35,6 +35,8 @@ std::string_view expected(ValueType type) {
     case ValueType::Text:
     case ValueType::Choice:
       return "a string";
+    case ValueType::Boolean:
+      return "true or false";
     case ValueType::Record:
       return "an object {...}";
     case ValueType::Named:
@@ -47,8 +49,8 @@ std::string_view expected(ValueType type) {
       return "a number or three numbers [x, y, z]";
     case ValueType::Rotation:
       return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
-    case ValueType::Gradient:
-      return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}";
+    case ValueType::Background:
+      return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}, a sky or an image";
     case ValueType::Anything:
       break;
   }
@@ -92,6 +94,8 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Text:
     case ValueType::Choice:
       return std::holds_alternative<std::string>(value.data);
+    case ValueType::Boolean:
+      return std::holds_alternative<bool>(value.data);
     case ValueType::Record:
     case ValueType::Named:
     case ValueType::Node:
@@ -101,7 +105,7 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Scale:
       return number != nullptr || three;
     case ValueType::Rotation:
-    case ValueType::Gradient:
+    case ValueType::Background:
       return record || three;
     case ValueType::Anything:
       break;
@@ -192,7 +196,7 @@ bool misnamed(const PropertySpec& missing, const RecordSpec& spec, const syntax:
 
 // The other row of the same family that has the property: "`ior` is a property of transparent materials".
 std::string owner(const RecordSpec& spec, std::string_view property) {
-  for (const auto* family : {&camera_records(), &material_records()}) {
+  for (const auto* family : {&camera_records(), &material_records(), &light_records(), &background_records()}) {
     const auto same = [&](const RecordSpec& row) { return &row == &spec; };
     if (std::none_of(family->begin(), family->end(), same)) continue;
     for (const RecordSpec& row : *family) {
@@ -325,6 +329,11 @@ std::size_t RecordReader::choice(std::string_view name) const {
   CHECK(row != nullptr && row->type == ValueType::Choice, "a property of the table, one of some words");
   const Value* given = value(name);
   return given == nullptr ? 0 : *choice_of(*given, *row);
+}
+
+bool RecordReader::flag(std::string_view name, bool fallback) const {
+  const Value* given = value(name);
+  return given != nullptr ? std::get<bool>(given->data) : fallback;
 }
 
 glm::dvec3 RecordReader::vec3(std::string_view name) const {

@@ -40,6 +40,8 @@ class RecordReader {
   // The place among the table's choices of the word given, or 0 when it is absent or unfit.
   std::size_t choice(std::string_view name) const;
 
+  // A Boolean; `fallback` when absent or unfit.
+  bool flag(std::string_view name, bool fallback) const;
 
  private:
   struct Fit {

@@ -21,15 +21,16 @@ enum class ValueType {
   Formula,  // a string, or a list of them (formula.h)
   Color,    // three numbers
   Text,
+  Boolean,
   Choice,  // one of PropertySpec::choices
   Record,  // a record with a table of its own
   Named,   // a record whose properties are names of the scene's choosing
   Node,
-  Nodes,     // a list of nodes
-  Scale,     // a number or three
-  Rotation,  // three numbers or a record by rotation_record()
-  Gradient,  // a colour or a record by gradient_record()
-  Version,   // the number kSceneVersion
+  Nodes,       // a list of nodes
+  Scale,       // a number or three
+  Rotation,    // three numbers or a record by rotation_record()
+  Background,  // a colour or a record of background_records()
+  Version,     // the number kSceneVersion
   Anything,
 };
 
@@ -71,12 +72,13 @@ const RecordSpec& scene_record();
 const RecordSpec& parameter_record();  // of `params`
 const RecordSpec& film_record();
 const RecordSpec& render_record();
-const RecordSpec& gradient_record();  // of the background
 const RecordSpec& rotation_record();  // of a node
 
 // One row for each value of `type`; the first is used when `type` is absent and not required.
 const std::vector<RecordSpec>& camera_records();
 const std::vector<RecordSpec>& material_records();
+const std::vector<RecordSpec>& light_records();
+const std::vector<RecordSpec>& background_records();
 
 const RecordSpec& node_record(Kind kind);  // its parameters and what every node may have
 const RecordSpec& use_record();            // {"use": "name"} and what every node may have

@@ -73,6 +73,8 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
       if (property.name == "type") return {{"const", record.type}};
       if (property.type == ValueType::Choice) return {{"enum", property.choices}};
       return string_schema();
+    case ValueType::Boolean:
+      return {{"type", "boolean"}};
     case ValueType::Record:
       return reference(property.name);
     case ValueType::Named:  // "materials" holds what the definition "material" says
@@ -85,8 +87,8 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Scale:
     case ValueType::Rotation:
       return reference(property.name);
-    case ValueType::Gradient:  // one colour for both ends
-      return either(three_schema(gradient_record().properties[0]), record_schema(gradient_record(), false));
+    case ValueType::Background:  // one colour for both ends
+      return either(three_schema(*background_records()[0].find("top")), reference(property.name));
     case ValueType::Version:
       return {{"const", kSceneVersion}};
     case ValueType::Anything:
@@ -180,6 +182,8 @@ std::string scene_schema() {
                      {"render", record_schema(render_record(), false)},
                      {"param", either(number_schema({}), record_schema(parameter_record(), false))},
                      {"material", family_schema(material_records())},
+                     {"light", family_schema(light_records())},
+                     {"background", family_schema(background_records())},
                      {"node", node_schema()},
                      {"scale", scale_schema()},
                      {"rotate", rotate_schema()}};

@@ -1,5 +1,5 @@
-// The parts of a scene that are not nodes: camera, film, render settings, background, materials.
-// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304)
+// The parts of a scene that are not nodes: camera, film, render settings, background, lights, materials.
+// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304, E0309, E0310)
 #pragma once
 
 #include <optional>
@@ -18,6 +18,8 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
 Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+std::vector<Light> read_lights(const syntax::Value& value, const Scope& scope,
+                               Diagnostics& diagnostics);  // in file order
 std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope,
                                      Diagnostics& diagnostics);  // in file order
 

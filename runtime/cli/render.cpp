@@ -68,6 +68,19 @@ std::vector<std::string> output_files(const RenderRequest& request) {
   return files;
 }
 
+// The picture that the scene's background names.
+std::optional<ExitCode> read_background(const compiler::Background& background, runtime::RenderOptions& options,
+                                        const Streams& streams) {
+  if (background.type != compiler::Background::Type::Image) return std::nullopt;
+  auto image = runtime::read_environment(background.image.file);
+  if (const auto* reason = std::get_if<std::string>(&image)) {
+    return fail(streams, kIo, fmt::format("cannot read the background `{}`: {}", background.image.file, *reason));
+  }
+  options.environment =
+      std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
+  return std::nullopt;
+}
+
 // Whether every file could be written, as far as can be known before there is anything to write.
 std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
   for (const std::string& path : request.outputs) {
@@ -169,6 +182,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
+  if (const auto code = read_background(scene.background, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.no_denoise && request.verbosity > 0)
     note(streams, "there is no denoiser; --no-denoise changes nothing");

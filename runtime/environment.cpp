@@ -1,0 +1,205 @@
+#include "runtime/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "runtime/elementary.h"
+#include "runtime/warp.h"
+#include "vm/check.h"
+#include "vm/real.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr double kDegree = std::numbers::pi / 180;
+
+// Counter-clockwise about y, seen from above.
+glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
+  const glm::dvec3 d(w);
+  return {cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x};
+}
+
+// Where the surface cannot see it, a direction is mirrored to its other side.
+bool folds(const LightQuery& query) { return !query.both_sides && query.normal != glm::vec3(0); }
+glm::vec3 mirrored(glm::vec3 w, glm::vec3 normal) { return glm::normalize(w - 2 * glm::dot(w, normal) * normal); }
+
+// The mean over each pixel of the picture as bilinear filtering shows it: weights 1, 6, 1 of 8 along each axis.
+std::vector<float> filtered_luminance(const EnvironmentImage& image) {
+  const int width = image.width, height = image.height;
+  std::vector<float> across(image.pixels.size()), out(image.pixels.size());
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>((x + width) % width);
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto l = [&](int i) { return luminance(image.pixels[at(i, y)]); };
+      across[at(x, y)] = 0.125f * l(x - 1) + 0.75f * l(x) + 0.125f * l(x + 1);
+    }
+  }
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      out[at(x, y)] = 0.125f * across[at(x, y - 1)] + 0.75f * across[at(x, y)] + 0.125f * across[at(x, y + 1)];
+    }
+  }
+  return out;
+}
+
+// Means over cells, by the middles of a quarter of each.
+template <class Radiance>
+std::vector<float> cell_luminance(int width, int height, const Radiance& radiance) {
+  std::vector<float> out;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      float sum = 0;
+      for (int i = 0; i < 4; ++i) {
+        const glm::dvec2 uv((x + 0.25 + 0.5 * (i & 1)) / width, (y + 0.25 + 0.5 * (i >> 1)) / height);
+        sum += luminance(radiance(glm::vec3(from_latlong(uv))));
+      }
+      out.push_back(sum / 4);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
+    : type_(scene.background.type), bottom_(scene.background.bottom), top_(scene.background.top) {
+  const compiler::Background& background = scene.background;
+  if (type_ == Type::Image) {
+    CHECK(image != nullptr && !image->pixels.empty(),
+          "the scene's background is a picture, which must be read first");
+    image_ = std::move(image);
+    turn_sine_ = vm::real::sin(background.image.rotate * kDegree);
+    turn_cosine_ = vm::real::cos(background.image.rotate * kDegree);
+    strength_ = static_cast<float>(background.image.strength);
+    table_ = SphereTable(image_->width, image_->height, filtered_luminance(*image_));
+  }
+  if (type_ == Type::Sky) {
+    constexpr int kRows = 64;
+    sky_.emplace(background.sky);
+    table_ = SphereTable(2 * kRows, kRows,
+                         cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
+    if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
+  }
+  for (const compiler::Light& light : scene.lights) {
+    if (light.type != compiler::Light::Type::Directional || light.angle == 0) continue;
+    add_disc(-light.direction, light.angle, glm::vec3(light.intensity));
+  }
+}
+
+// A disc of radiance L gives L pi sin^2 of its angle to what faces it.
+void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
+  const double sine = vm::real::sin(degrees * kDegree), sin2 = sine * sine;
+  if (!(luminance(irradiance) > 0)) return;
+  discs_.push_back({direction, sin2 / (1 + std::sqrt(1 - sin2)),
+                    irradiance / static_cast<float>(std::numbers::pi * sin2), luminance(irradiance)});
+}
+
+// By the chord, whose square is twice the height: the cosine of a small angle has few digits.
+bool Environment::Disc::holds(glm::vec3 w) const {
+  const glm::dvec3 chord = glm::normalize(glm::dvec3(w)) - direction;
+  return glm::dot(chord, chord) <= 2 * height;
+}
+
+glm::vec3 Environment::pixel(glm::vec3 direction) const {
+  const glm::dvec2 uv = to_latlong(glm::dvec3(turned(direction, -turn_sine_, turn_cosine_)));
+  const int width = image_->width, height = image_->height;
+  const double x = uv.x * width - 0.5, y = uv.y * height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const auto at = [&](int i, int j) {
+    const int row = std::clamp(j, 0, height - 1), column = (i % width + width) % width;
+    return image_
+        ->pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  };
+  const auto a = static_cast<float>(x - x0), b = static_cast<float>(y - y0);
+  return strength_ * ((1 - b) * ((1 - a) * at(x0, y0) + a * at(x0 + 1, y0)) +
+                      b * ((1 - a) * at(x0, y0 + 1) + a * at(x0 + 1, y0 + 1)));
+}
+
+glm::vec3 Environment::backdrop(glm::vec3 direction) const {
+  if (type_ == Type::Sky) return sky_->radiance(direction);
+  if (type_ == Type::Image) return pixel(direction);
+  const double share = std::clamp((static_cast<double>(direction.y) + 1) / 2, 0.0, 1.0);
+  return glm::vec3(bottom_ * (1 - share) + top_ * share);
+}
+
+glm::vec3 Environment::radiance(glm::vec3 direction) const {
+  glm::vec3 sum = backdrop(direction);
+  for (const Disc& disc : discs_) {
+    if (disc.holds(direction)) sum += disc.radiance;
+  }
+  return sum;
+}
+
+float Environment::mean() const {
+  if (type_ != Type::Gradient) return strength_ * static_cast<float>(table_.mean());
+  return 0.5f * (luminance(glm::vec3(bottom_)) + luminance(glm::vec3(top_)));
+}
+
+float Environment::estimate(const Disc& disc, const LightQuery& query) const {
+  const float cosine = glm::dot(query.normal, glm::vec3(disc.direction));
+  // A disc that the horizon cuts counts as far as it may rise above.
+  const auto rise = static_cast<float>(std::sqrt(disc.height * (2 - disc.height)));
+  return disc.irradiance * std::max(0.0f, (query.both_sides ? std::abs(cosine) : cosine) + rise);
+}
+
+float Environment::estimate(const LightQuery& query) const {
+  float sum = kPi * mean();
+  for (const Disc& disc : discs_) sum += estimate(disc, query);
+  return sum;
+}
+
+glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u) const {
+  float rest = choice * estimate(query) - kPi * mean();
+  const Disc* chosen = nullptr;
+  for (const Disc& disc : discs_) {
+    const float own = estimate(disc, query);
+    if (rest < 0 && (chosen != nullptr || mean() > 0)) break;
+    if (own > 0) chosen = &disc;
+    rest -= own;
+  }
+  if (chosen == nullptr) return sample_backdrop(query, u);
+  const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
+  const SinCos turn = sincos_turn(u.y);
+  return to_frame(glm::vec3(chosen->direction),
+                  {sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
+}
+
+float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {
+  const float all = estimate(query);
+  if (!(all > 0)) return 0;
+  float sum = mean() > 0 ? kPi * mean() * backdrop_pdf(query, direction) : 0;
+  for (const Disc& disc : discs_) {
+    if (!disc.holds(direction)) continue;
+    sum += estimate(disc, query) / (2 * kPi * static_cast<float>(disc.height));
+  }
+  return sum / all;
+}
+
+// The gradient's luminance l is linear in the height, and heights are uniform on the sphere.
+glm::vec3 Environment::sample_backdrop(const LightQuery& query, glm::vec2 u) const {
+  if (type_ != Type::Gradient) return turned(table_.sample(u), turn_sine_, turn_cosine_);
+  const float a = luminance(glm::vec3(bottom_)), b = luminance(glm::vec3(top_));
+  // The root of the running integral; with a = 0 and u = 0 both parts are 0.
+  const float root = a + std::sqrt(std::max(0.0f, a * a + u.x * (b * b - a * a)));
+  const float share = root > 0 ? std::min(1.0f, u.x * (a + b) / root) : 0;
+  const float y = 2 * share - 1, sine = std::sqrt(std::max(0.0f, 1 - y * y));
+  const SinCos turn = sincos_turn(u.y);
+  const glm::vec3 w(sine * turn.cos, y, sine * turn.sin);
+  return folds(query) && glm::dot(w, query.normal) < 0 ? mirrored(w, query.normal) : w;
+}
+
+float Environment::backdrop_pdf(const LightQuery& query, glm::vec3 direction) const {
+  if (type_ != Type::Gradient) return table_.pdf(turned(direction, -turn_sine_, turn_cosine_));
+  const auto density = [&](glm::vec3 w) { return luminance(backdrop(w)) / (4 * kPi * mean()); };
+  if (!folds(query)) return density(direction);
+  if (glm::dot(direction, query.normal) < 0) return 0;
+  return density(direction) + density(mirrored(direction, query.normal));
+}
+
+}  // namespace fathom::runtime
