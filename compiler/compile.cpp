@@ -100,6 +100,18 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }
 
+// The programs of textures. nullopt when one is too long.
+std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
+                                                             Diagnostics& diagnostics) {
+  std::vector<vm::VerifiedProgram> programs;
+  for (const Scene& formula : formulas) {
+    std::optional<vm::VerifiedProgram> program = assemble(formula, source, true, diagnostics);
+    if (!program) return std::nullopt;
+    programs.push_back(std::move(*program));
+  }
+  return programs;
+}
+
 std::size_t count_nodes(const Scene& scene) {
   std::size_t count = 0;
   for (bool reached : reachable(scene)) count += reached;
@@ -183,6 +195,9 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     if (!surface) return std::nullopt;
   }
 
+  std::optional<std::vector<vm::VerifiedProgram>> formulas = assemble_all(elaborated->formulas, source, diagnostics);
+  if (!formulas) return std::nullopt;
+
   const std::vector<Knowledge> all_known = analyse(field.graph);
   const Knowledge& known = all_known[field.root];
   warn_of_cancellation(field, all_known, elaborated->camera, diagnostics);
@@ -196,6 +211,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        origin,
                        std::move(*distance),
                        std::move(*surface),
+                       std::move(*formulas),
                        known.box,
                        contents(field.graph, field.root, all_known),
                        known.lipschitz,

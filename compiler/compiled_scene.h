@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/box.h"
+#include "compiler/material.h"
 #include "compiler/source.h"
 #include "vm/verify.h"
 
@@ -17,18 +18,6 @@ namespace fathom::compiler {
 // Largest settings a render takes, from the scene file or the command line.
 inline constexpr int kMaxSide = 65535;  // pixels; what the image formats can say
 inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
-
-// How a surface scatters light. Colours are linear sRGB in [0,1] unless said.
-struct Material {
-  enum class Type { Diffuse, Emissive, Specular, Transparent };
-  std::string name;
-  Type type = Type::Diffuse;
-  glm::dvec3 color{0.8};       // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;
-                               // emissive: albedo of the lamp's own surface
-  glm::dvec3 emission{0.0};    // radiance Le, both sides; emissive only
-  double ior = 1.5;            // transparent: index of refraction inside relative to outside
-  glm::dvec3 absorption{0.0};  // transparent: absorption coefficient inside, per scene unit
-};
 
 // What a `tag` in the surface program numbers: a part of the scene with a name and a material.
 struct Surface {
@@ -79,19 +68,22 @@ struct SceneTables {
   std::vector<Parameter> parameters;  // in file order
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
+  std::vector<Texture> textures;  // of the materials'; in the scene's coordinates, whatever the origin
   Camera camera;
   Film film;
   RenderSettings settings;
   Background background;
 };
 
-// All places in it, the camera's among them, are in the programs' coordinates: the scene's minus `origin`. What takes
-// or prints places of the scene (runtime/cli) adds it; the renderer has no need to know.
+// All places in it but those of textures, the camera's among them, are in the programs' coordinates: the scene's
+// minus `origin`. What takes or prints places of the scene (runtime/cli, runtime/material.h) adds it; the renderer
+// has no need to know.
 struct CompiledScene : SceneTables {
   Source source;
   glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
   vm::VerifiedProgram distance;  // the field
   vm::VerifiedProgram surface;   // the same field with `tag`s; the same program when there is one surface
+  std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates
 
   Box bound;                   // the field is positive outside
   Box contents;                // a box round every bounded part of the scene; empty when it has none
@@ -99,7 +91,8 @@ struct CompiledScene : SceneTables {
   double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
   bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
   std::size_t node_count = 0;  // distinct nodes after the passes
-  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
+  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside,
+                               // Lipschitz <= 1 (proved)"
 };
 
 }  // namespace fathom::compiler

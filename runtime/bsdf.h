@@ -66,6 +66,7 @@ inline BsdfSample sample_bsdf(const Material& m, glm::vec3 wo, glm::vec3 normal,
   switch (m.type) {
     case Material::Type::Diffuse:
     case Material::Type::Emissive:
+    case Material::Type::Principled:
       return sample_diffuse(m.color, normal, sampler);
     case Material::Type::Specular:
       return {reflect_about(wo, normal), m.color, false};

@@ -3,34 +3,12 @@
 #include <utility>
 
 #include "compiler/compiled_scene.h"
+#include "compiler/frontend/property_rows.h"
 
 namespace fathom::compiler {
 namespace {
 
-constexpr Range kUnit{0, 1};
-// A double holds every whole number up to here, and JSON numbers are read as doubles.
-constexpr double kLargestWhole = 9007199254740992;  // 2^53
-
-PropertySpec number(std::string_view name, std::string_view doc, std::vector<double> fallback, Range range = {},
-                    Rule rule = Rule::Any) {
-  return {name, ValueType::Number, doc, std::move(fallback), false, rule, range, {}};
-}
-PropertySpec integer(std::string_view name, std::string_view doc, double fallback, Range range) {
-  return {name, ValueType::Integer, doc, {fallback}, false, Rule::Any, range, {}};
-}
-PropertySpec vec3(std::string_view name, std::string_view doc, std::vector<double> fallback, Rule rule = Rule::Any) {
-  return {name, ValueType::Vec3, doc, std::move(fallback), false, rule, {}, {}};
-}
-PropertySpec color(std::string_view name, std::string_view doc, double fallback, Range range = kUnit,
-                   Rule rule = Rule::Any) {
-  return {name, ValueType::Color, doc, {fallback, fallback, fallback}, false, rule, range, {}};
-}
-PropertySpec other(std::string_view name, ValueType type, std::string_view doc, bool required = false) {
-  return {name, type, doc, {}, required, Rule::Any, {}, {}};
-}
-PropertySpec choice(std::vector<std::string_view> choices, std::string_view doc, bool required) {
-  return {"type", ValueType::Choice, doc, {}, required, Rule::Any, {}, std::move(choices)};
-}
+using namespace rows;
 
 RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
   RecordSpec record{
@@ -48,16 +26,6 @@ PropertySpec vertical_fov() {
   PropertySpec property = number("fov_y", "vertical field of view, degrees", {}, {0, 180, true});
   property.instead_of = "fov";
   return property;
-}
-
-RecordSpec material(std::string type, std::vector<PropertySpec> own) {
-  RecordSpec record{
-      type,
-      "`" + type + "`",
-      type + " material",
-      {choice({"diffuse", "emissive", "specular", "transparent"}, "how the surface scatters light", true)}};
-  for (PropertySpec& property : own) record.properties.push_back(std::move(property));
-  return record;
 }
 
 // What every node may have.
@@ -220,19 +188,6 @@ const std::vector<RecordSpec>& camera_records() {
       camera("perspective",
              {number("fov", "horizontal field of view, degrees", {45}, {0, 180, true}), vertical_fov()}),
       camera("orthographic", {number("width", "of the picture, scene units", {4}, {}, Rule::Positive)})};
-  return records;
-}
-
-const std::vector<RecordSpec>& material_records() {
-  static const std::vector<RecordSpec> records = {
-      material("diffuse", {color("color", "albedo", 0.8)}),
-      material("emissive", {color("emission", "radiance, both sides", 1, {}, Rule::NotNegative),
-                            color("color", "albedo of the lamp itself", 0)}),
-      material("specular", {color("color", "reflectance of the mirror", 1)}),
-      material("transparent",
-               {number("ior", "index of refraction inside relative to outside", {1.5}, {}, Rule::Positive),
-                color("color", "tint at each crossing", 1),
-                color("absorption", "inside, per scene unit", 0, {}, Rule::NotNegative)})};
   return records;
 }
 

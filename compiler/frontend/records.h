@@ -15,12 +15,13 @@ namespace fathom::compiler {
 enum class ValueType {
   Number,
   Integer,
-  Vec2,   // two numbers
-  Vec3,   // three numbers
-  Points,  // a list of [x, y], three or more
+  Vec2,     // two numbers
+  Vec3,     // three numbers
+  Points,   // a list of [x, y], three or more
   Formula,  // a string, or a list of them (formula.h)
-  Color,  // three numbers
+  Color,    // three numbers, or one of a grey
   Text,
+  Boolean,
   Choice,  // one of PropertySpec::choices
   Record,  // a record with a table of its own
   Named,   // a record whose properties are names of the scene's choosing
@@ -56,6 +57,9 @@ struct PropertySpec {
   Range range = {};
   std::vector<std::string_view> choices = {};  // the first is used when the property is absent
   std::string_view instead_of = {};            // the property this one takes the place of: not both may be given
+  std::string_view alias_of =
+      {};               // the property this is another name of: not both may be given, either is read by it
+  bool varies = false;  // may be a formula of the place or a pattern, too (frontend/textures.h)
 };
 
 struct RecordSpec {
@@ -76,7 +80,8 @@ const RecordSpec& rotation_record();  // of a node
 
 // One row for each value of `type`; the first is used when `type` is absent and not required.
 const std::vector<RecordSpec>& camera_records();
-const std::vector<RecordSpec>& material_records();
+const std::vector<RecordSpec>& material_records();  // material_records.cpp
+const std::vector<RecordSpec>& pattern_records();   // told apart by `pattern`
 
 const RecordSpec& node_record(Kind kind);  // its parameters and what every node may have
 const RecordSpec& use_record();            // {"use": "name"} and what every node may have

@@ -52,6 +52,12 @@ Json three_schema(const PropertySpec& property) {
 
 Json record_schema(const RecordSpec& record, bool type_required);
 
+// Whether the property says which of a family its record is.
+bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
+
+// A grey or a colour.
+Json color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
+
 // What the value of a property of `record` must be.
 Json value_schema(const PropertySpec& property, const RecordSpec& record) {
   switch (property.type) {
@@ -62,15 +68,19 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Vec2:
       return list_schema(number_schema(property), 2, 2);
     case ValueType::Vec3:
-    case ValueType::Color:
       return three_schema(property);
+    case ValueType::Color:
+      return color_schema(property);
+    case ValueType::Boolean:
+      return {{"type", "boolean"}};
     case ValueType::Points:
       return list_schema(list_schema(number_schema(property), 2, 2), 3);
     case ValueType::Formula:
       return either(string_schema(), list_schema(string_schema(), 1));
     case ValueType::Text:
     case ValueType::Choice:
-      if (property.name == "type") return {{"const", record.type}};
+      if (tells_apart(property)) return {{"const", record.type}};
+      if (!property.choices.empty()) return {{"enum", property.choices}};
       return string_schema();
     case ValueType::Record:
       return reference(property.name);
@@ -103,9 +113,11 @@ Json default_of(const PropertySpec& property) {
 
 Json property_schema(const PropertySpec& property, const RecordSpec& record) {
   Json schema = value_schema(property, record);
+  if (property.varies) schema["anyOf"].push_back(reference("pattern"));
   schema["description"] = property.doc;
   if (!property.fallback.empty()) schema["default"] = default_of(property);
-  if (property.type == ValueType::Choice && !property.required) schema["default"] = property.choices[0];
+  if (property.type == ValueType::Choice && !property.required && tells_apart(property))
+    schema["default"] = property.choices[0];
   return schema;
 }
 
@@ -116,7 +128,9 @@ Json record_schema(const RecordSpec& record, bool type_required) {
   for (const PropertySpec& property : record.properties) {
     schema["properties"][std::string(property.name)] = property_schema(property, record);
     if (property.required || (type_required && property.name == "type")) schema["required"].push_back(property.name);
-    if (!property.instead_of.empty()) excluded.push_back({{"required", {property.instead_of, property.name}}});
+    for (const std::string_view other : {property.instead_of, property.alias_of}) {
+      if (!other.empty()) excluded.push_back({{"required", {other, property.name}}});
+    }
   }
   if (!excluded.empty()) schema["not"] = {{"anyOf", excluded}};
   schema["additionalProperties"] = false;
@@ -177,6 +191,7 @@ std::string scene_schema() {
                      {"render", record_schema(render_record(), false)},
                      {"param", either(number_schema({}), record_schema(parameter_record(), false))},
                      {"material", family_schema(material_records())},
+                     {"pattern", family_schema(pattern_records())},
                      {"node", node_schema()},
                      {"scale", scale_schema()},
                      {"rotate", rotate_schema()}};

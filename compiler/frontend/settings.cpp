@@ -5,41 +5,13 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "compiler/frontend/record_family.h"
 #include "compiler/frontend/record_reader.h"
-#include "compiler/frontend/suggest.h"
 
 namespace fathom::compiler {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-// The row of the family that the record's `type` names; nullptr after reporting that there is none. `place` is where
-// a missing type is reported.
-const RecordSpec* row_by_type(const std::vector<RecordSpec>& family, std::string_view what,
-                              const syntax::Record& record, Span place, Diagnostics& diagnostics) {
-  const syntax::Property* type = record.find("type");
-  const PropertySpec& row = *family[0].find("type");
-  std::vector<std::string_view> known(row.choices);
-  if (type == nullptr) {
-    if (!row.required) return &family[0];
-    diagnostics.error("E0103", place, fmt::format("the {} has no `type`", what), "",
-                      {fmt::format("known: {}", fmt::join(known, ", "))});
-    return nullptr;
-  }
-  const auto* name = std::get_if<std::string>(&type->value->data);
-  if (name == nullptr) {
-    diagnostics.error("E0101", type->value->span,
-                      fmt::format("`type` must be a string, not {}", describe(*type->value)), "",
-                      {fmt::format("known: {}", fmt::join(known, ", "))});
-    return nullptr;
-  }
-  for (const RecordSpec& member : family) {
-    if (member.type == *name) return &member;
-  }
-  diagnostics.error("E0108", type->value->span, fmt::format("unknown type of {} `{}`", what, *name), "",
-                    {did_you_mean(*name, known)});
-  return nullptr;
-}
 
 // Reports a camera that has no direction of view, or no way to tell what is up in the picture.
 void check_view(const Camera& camera, const RecordReader& reader, Span place, Diagnostics& diagnostics) {
@@ -121,37 +93,6 @@ Background read_background(const syntax::Value& value, const Scope& scope, Diagn
   }
   const glm::dvec3 color = three_numbers(value).value_or(glm::dvec3(0));
   return {color, color};
-}
-
-std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
-  std::vector<Material> materials;
-  for (const syntax::Property& property : std::get<syntax::Record>(value.data).properties) {
-    Material& material = materials.emplace_back();
-    material.name = property.name;
-    const auto* record = std::get_if<syntax::Record>(&property.value->data);
-    if (record == nullptr) {
-      diagnostics.error(
-          "E0101", property.value->span,
-          fmt::format("material `{}` must be an object {{...}}, not {}", property.name, describe(*property.value)),
-          "", {"such as {\"type\": \"diffuse\", \"color\": [0.8, 0.8, 0.8]}"});
-      continue;
-    }
-    const RecordSpec* row = row_by_type(material_records(), "material", *record, property.name_span, diagnostics);
-    if (row == nullptr) continue;
-    const RecordReader reader(*row, *record, property.name_span, scope, diagnostics);
-    material.color = reader.vec3("color");
-    if (row->type == "emissive") {
-      material.type = Material::Type::Emissive;
-      material.emission = reader.vec3("emission");
-    } else if (row->type == "specular") {
-      material.type = Material::Type::Specular;
-    } else if (row->type == "transparent") {
-      material.type = Material::Type::Transparent;
-      material.ior = reader.number("ior");
-      material.absorption = reader.vec3("absorption");
-    }
-  }
-  return materials;
 }
 
 }  // namespace fathom::compiler

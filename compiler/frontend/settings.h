@@ -1,4 +1,4 @@
-// The parts of a scene that are not nodes: camera, film, render settings, background, materials.
+// The parts of a scene that are not nodes: camera, film, render settings, background. Materials: materials.h.
 // Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304)
 #pragma once
 
@@ -18,7 +18,5 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
 Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
-std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope,
-                                     Diagnostics& diagnostics);  // in file order
 
 }  // namespace fathom::compiler
