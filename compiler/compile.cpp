@@ -135,6 +135,18 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       known.lipschitz,      known.magnitude,     known.certified};
 }
 
+// The programs of textures. nullopt when one is too long.
+std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
+                                                             Diagnostics& diagnostics) {
+  std::vector<vm::VerifiedProgram> programs;
+  for (const Scene& formula : formulas) {
+    std::optional<vm::VerifiedProgram> program = assemble(formula, source, true, diagnostics);
+    if (!program) return std::nullopt;
+    programs.push_back(std::move(*program));
+  }
+  return programs;
+}
+
 std::size_t count_nodes(const Scene& scene) {
   std::size_t count = 0;
   for (bool reached : reachable(scene)) count += reached;
@@ -238,6 +250,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(media),
                        std::move(lamps),
                        mixes,
+                       std::move(*formulas),
                        count_nodes(field),
                        ""};
   result.summary = summarise(result.node_count, known[field.root], origin);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/box.h"
+#include "compiler/material.h"
 #include "compiler/source.h"
 #include "vm/verify.h"
 
@@ -23,22 +24,6 @@ inline constexpr int kMaxSide = 65535;  // pixels; what the image formats can sa
 inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
 inline constexpr int kMaxBlades = 32;
 inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
-
-// How a surface scatters light. Colours are linear sRGB in [0,1] unless said.
-struct Material {
-  enum class Type { Diffuse, Emissive, Specular, Transparent, Principled };
-  std::string name;
-  Type type = Type::Diffuse;
-  glm::dvec3 color{0.8};       // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;
-                               // emissive: albedo of the lamp's own surface
-  glm::dvec3 emission{0.0};    // radiance Le, both sides; emissive only
-  double ior = 1.5;            // transparent: index of refraction inside relative to outside
-  glm::dvec3 absorption{0.0};  // transparent: absorption coefficient inside, per scene unit
-  int priority = 0;            // transparent: where two overlap the higher one fills the space (compiler/media.h)
-};
-
-// Whether light passes into what is of this material.
-inline bool transmits(const Material& material) { return material.type == Material::Type::Transparent; }
 
 // What a `tag` in the surface program numbers: a part of the scene with a name and a material.
 struct Surface {
@@ -162,6 +147,7 @@ struct SceneTables {
   std::vector<Parameter> parameters;  // in file order
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
+  std::vector<Texture> textures;  // of the materials'; in the scene's coordinates, whatever the origin
   Camera camera;
   Film film;
   RenderSettings settings;
@@ -186,15 +172,17 @@ struct Medium : CompiledField {
   std::uint32_t material;  // index into CompiledScene::materials
 };
 
-// All places in it, the camera's among them, are in the programs' coordinates: the scene's minus `origin`. What takes
-// or prints places of the scene (runtime/cli) adds it; the renderer has no need to know.
+// All places in it but those of textures, the camera's among them, are in the programs' coordinates: the scene's
+// minus `origin`. What takes or prints places of the scene (runtime/cli, runtime/material.h) adds it; the renderer
+// has no need to know.
 struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
   std::vector<Medium> media;     // of the transparent materials, in their order
   std::vector<Lamp> lamps;       // in file order; of those that coincide the first alone
   bool mixes_materials = false;  // whether points can have shares of several (vm::evaluate_shares)
-  std::size_t node_count = 0;    // distinct nodes after the passes
+  std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates
+  std::size_t node_count = 0;                 // distinct nodes after the passes
   // In the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
   std::string summary;
 };

@@ -32,6 +32,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0106", "properties that exclude each other"},
     {"E0107", "an empty list"},
     {"E0108", "not one of the choices"},
+    {"E0109", "patterns nested too deep"},
     // E02xx: names
     {"E0201", "unknown type of node"},
     {"E0202", "unknown material"},

@@ -164,8 +164,7 @@ class Linter {
   bool emits(NodeId paint) const {
     const auto number = static_cast<std::size_t>(graph_.params(paint)[0]);
     if (number >= tables_.surfaces.size()) return false;
-    const Material& material = tables_.materials[tables_.surfaces[number].material];
-    return material.type == Material::Type::Emissive && material.emission != glm::dvec3(0);
+    return compiler::emits(tables_.materials[tables_.surfaces[number].material]);
   }
   // Whether all of it is lamps, by the outermost paint.
   bool lamp_in(NodeId id) const {

@@ -90,6 +90,29 @@ inline float exp2(float x) {
   return exp((x - n) * 0.693147180559945309f) * std::bit_cast<float>((static_cast<int>(n) + 127) << 23);
 }
 
+// ln x; relative error <= 3e-7. Minus infinity at 0, NaN below.
+// x = 2^n m with m in [sqrt(1/2), sqrt(2)), and ln m = 2 artanh(s) with s = (m - 1) / (m + 1), |s| <= 0.172, by its
+// series, whose terms fall below 2^-24 of the sum after s^9.
+inline float log(float x) {
+  if (!(x > 0)) return x == 0 ? -INFINITY : NAN;
+  if (x == INFINITY) return x;
+  int n = 0;
+  if (x < 0x1p-126f) {
+    x *= 0x1p24f;
+    n = -24;
+  }
+  // The bits of sqrt(1/2) as zero of the exponent's steps.
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - 0x3f3504f3u;
+  n += static_cast<std::int32_t>(bits) >> 23;
+  const float m = std::bit_cast<float>((bits & 0x007fffffu) + 0x3f3504f3u);
+  const float s = (m - 1) / (m + 1), z = s * s;
+  const float series = ((((2.0f / 9) * z + 2.0f / 7) * z + 2.0f / 5) * z + 2.0f / 3) * z * s + 2 * s;
+  const float steps = static_cast<float>(n);
+  return steps * 0.693359375f + (steps * -2.12194440e-4f + series);
+}
+
+inline glm::vec3 log(glm::vec3 v) { return {log(v.x), log(v.y), log(v.z)}; }
+
 // tan x for x in [0, pi/2), relative error <= 1e-14: Taylor series of sine and cosine, whose terms fall below 2^-53
 // of the sum after x^26/26! on this interval.
 inline double tangent(double x) {

@@ -1,11 +1,17 @@
-// Materials as shading wants them: single precision, ready to use.
-// Tested by: tests/runtime/render_test.cpp
+// Materials as shading wants them: single precision, ready to use, every texture evaluated.
+//
+//     const Materials materials(scene);
+//     const MaterialPoint m = materials.at(point.material, hit.position, workspace);
+//
+// Tested by: tests/runtime/material_test.cpp, render_test.cpp
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "compiler/compiled_scene.h"
+#include "vm/evaluate.h"
 
 namespace fathom::runtime {
 
@@ -50,6 +56,48 @@ struct MaterialPoint {
   float opacity = 1;        // geometry_opacity
   glm::vec3 emission{0};    // radiance
   glm::vec3 absorption{0};  // inside, per scene unit
+
+  // Whether a path may get through the surface, and whether it then is in a medium of this index.
+  bool transmits() const { return passes_light() || opacity < 1; }
+  bool fills() const { return passes_light() && !thin_walled; }
+
+ private:
+  bool passes_light() const { return type == Material::Type::Transparent || transmission > 0; }
+};
+
+// All parameters mixed linearly, t in [0,1]; at 0 and below it is a, at 1 and above b. Two of one type stay of it; of
+// two types both become principled. NaN counts as 0.
+MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t);
+
+// The principled material that looks the same, or nearly: a perfect mirror's constant reflectance becomes that of a
+// smooth metal whose tint at 82 degrees makes it equal there.
+MaterialPoint to_principled(const MaterialPoint& m);
+
+// The materials of a scene. Of one that varies over space the parameters are clamped to their ranges; where a texture
+// is not a number its stand-in counts (compiler/material.h). Every method may be called from many threads; the scene
+// must outlive it.
+class Materials {
+ public:
+  explicit Materials(const compiler::CompiledScene& scene);
+
+  std::size_t size() const { return points_.size(); }
+
+  // `position` is in the programs' coordinates, as a hit's; `workspace` is the thread's.
+  MaterialPoint at(std::uint32_t material, glm::dvec3 position, vm::Workspace& workspace) const;
+
+  // The same everywhere, or with stand-ins for what varies.
+  const MaterialPoint& typical(std::uint32_t material) const { return points_[material]; }
+  bool varies(std::uint32_t material) const { return !scene_->materials[material].textured.empty(); }
+  // Whether light may come from it at some place.
+  bool emits(std::uint32_t material) const { return compiler::emits(scene_->materials[material]); }
+  // Of solids at the same place, the medium is that of the highest.
+  int priority(std::uint32_t material) const { return scene_->materials[material].priority; }
+
+ private:
+  glm::dvec3 value(std::uint32_t texture, glm::dvec3 position, vm::Workspace& workspace) const;
+
+  const compiler::CompiledScene* scene_;
+  std::vector<MaterialPoint> points_;  // [material]
 };
 
 // What the albedo picture shows: the colour, and for lamps the light's, clamped to white.
@@ -58,5 +106,6 @@ inline glm::vec3 albedo_of(const Material& m) {
   const glm::vec3 sum = m.color + m.emission;
   return {sum.x < 1 ? sum.x : 1, sum.y < 1 ? sum.y : 1, sum.z < 1 ? sum.z : 1};
 }
+glm::vec3 albedo_of(const MaterialPoint& m);
 
 }  // namespace fathom::runtime

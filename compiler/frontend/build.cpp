@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 
-#include "compiler/fits_float.h"
 #include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
 #include "vm/check.h"
@@ -19,18 +17,6 @@ constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
 bool gives_material(const CheckedNode& node) {
   return node.material || std::any_of(node.children.begin(), node.children.end(), gives_material);
-}
-
-bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
-  bool all = true;
-  for (const Formula::Node& node : formula.nodes) {
-    if (node.function != "const" || fits_float(node.value)) continue;
-    all = false;
-    const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
-    diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",
-                      {"numbers are evaluated in float, which ends at 3.4e38: scale the formula down"});
-  }
-  return all;
 }
 
 }  // namespace

@@ -204,21 +204,7 @@ void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
   if (const syntax::Value* material = reader.value("material")) {
     node.material = materials_.resolve(*text(material), "material", "E0202", material->span, diagnostics_);
   }
-  const syntax::Value* scale = reader.value("scale");
-  const syntax::Value* rotate = reader.value("rotate");
-  const syntax::Value* translate = reader.value("translate");
-  glm::dmat3 rotation(1);
-  if (rotate) {
-    if (const auto* record = std::get_if<syntax::Record>(&rotate->data)) {
-      const RecordReader turn(rotation_record(), *record, opening(rotate->span), scope_, diagnostics_, "E0301");
-      if (turn.good()) rotation = rotation_about(turn.vec3("axis"), turn.number("angle"));
-    } else {
-      rotation = rotation_xyz(*three_numbers(*rotate));
-    }
-  }
-  if (!scale && !rotate && !translate) return;
-  const glm::dvec3 factors = scale ? *three_numbers(*scale) : glm::dvec3(1);
-  node.transform = transform_params(factors, rotation, reader.vec3("translate"));
+  node.transform = read_placement(reader, scope_, diagnostics_);
 }
 
 void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax::Property& type,

@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "compiler/frontend/build.h"
 #include "compiler/frontend/check_node.h"
 #include "compiler/frontend/check_sorts.h"
+#include "compiler/frontend/lights.h"
+#include "compiler/frontend/materials.h"
 #include "compiler/frontend/name_order.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/settings.h"
@@ -99,8 +103,12 @@ Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnos
     out.background = read_background(*background, scope, diagnostics);
   }
   if (const syntax::Value* lights = reader.value("lights")) out.lights = read_lights(*lights, scope, diagnostics);
-  if (const syntax::Value* materials = reader.value("materials"))
-    out.materials = read_materials(*materials, scope, diagnostics);
+  if (const syntax::Value* materials = reader.value("materials")) {
+    MaterialTables tables = read_materials(*materials, scope, diagnostics);
+    out.materials = std::move(tables.materials);
+    out.textures = std::move(tables.textures);
+    out.formulas = std::move(tables.formulas);
+  }
   return out;
 }
 

@@ -1,8 +1,12 @@
 #include "compiler/frontend/formula_nodes.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "compiler/fits_float.h"
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -32,6 +36,18 @@ std::span<const FunctionSpec> machine_functions() {
     return made;
   }();
   return functions;
+}
+
+bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
+  bool all = true;
+  for (const Formula::Node& node : formula.nodes) {
+    if (node.function != "const" || fits_float(node.value)) continue;
+    all = false;
+    const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
+    diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",
+                      {"numbers are evaluated in float, which ends at 3.4e38: scale the formula down"});
+  }
+  return all;
 }
 
 NodeId make_formula(NodeMaker& maker, const Formula& formula, const std::string& name) {

@@ -50,4 +50,22 @@ std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double sha
   return transform_params(glm::dvec3(1), rotation, to - share * (to - from));
 }
 
+std::optional<std::array<double, 13>> read_placement(const RecordReader& reader, const Scope& scope,
+                                                     Diagnostics& diagnostics) {
+  const syntax::Value* scale = reader.value("scale");
+  const syntax::Value* rotate = reader.value("rotate");
+  glm::dmat3 rotation(1);
+  if (rotate) {
+    if (const auto* record = std::get_if<syntax::Record>(&rotate->data)) {
+      const RecordReader turn(rotation_record(), *record, opening(rotate->span), scope, diagnostics, "E0301");
+      if (turn.good()) rotation = rotation_about(turn.vec3("axis"), turn.number("angle"));
+    } else {
+      rotation = rotation_xyz(*three_numbers(*rotate));
+    }
+  }
+  if (!scale && !rotate && !reader.value("translate")) return std::nullopt;
+  const glm::dvec3 factors = scale ? *three_numbers(*scale) : glm::dvec3(1);
+  return transform_params(factors, rotation, reader.vec3("translate"));
+}
+
 }  // namespace fathom::compiler

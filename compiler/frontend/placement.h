@@ -1,10 +1,13 @@
-// A node's scale, rotate and translate as the parameters of a Transform node (compiler/graph.h).
+// The scale, rotate and translate of a node or a pattern as the parameters of a Transform node (compiler/graph.h).
 // Tested by: tests/compiler/elaborate_test.cpp
 #pragma once
 
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+
+#include "compiler/frontend/record_reader.h"
 
 namespace fathom::compiler {
 
@@ -21,5 +24,9 @@ std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rota
 // The same for a node whose y axis is to point from `from` to `to`, with its origin `share` of the way short of `to`.
 // The points differ.
 std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share);
+
+// transform_params() of the properties scale, rotate and translate of a record; nullopt when none is given.
+std::optional<std::array<double, 13>> read_placement(const RecordReader& reader, const Scope& scope,
+                                                     Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler

@@ -31,7 +31,9 @@ std::string_view expected(ValueType type) {
     case ValueType::Formula:
       return "a formula \"...\" or a list of them";
     case ValueType::Color:
-      return "three numbers [red, green, blue]";
+      return "a number or three numbers [red, green, blue]";
+    case ValueType::Boolean:
+      return "true or false";
     case ValueType::Text:
     case ValueType::Choice:
       return "a string";
@@ -85,8 +87,11 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Vec2:
       return is_pair(value);
     case ValueType::Vec3:
-    case ValueType::Color:
       return three;
+    case ValueType::Color:
+      return number != nullptr || three;
+    case ValueType::Boolean:
+      return std::holds_alternative<bool>(value.data);
     case ValueType::Points:
       return is_points(value);
     case ValueType::Formula:
@@ -179,6 +184,9 @@ std::vector<std::string> retype(const Value& value, const Value& written, const 
   return about(spec);
 }
 
+// The name that values are looked up by.
+std::string_view own_name(const PropertySpec& row) { return row.alias_of.empty() ? row.name : row.alias_of; }
+
 std::vector<std::string_view> known_properties(const RecordSpec& spec) {
   std::vector<std::string_view> known;
   for (const PropertySpec& row : spec.properties) {
@@ -264,6 +272,7 @@ RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record,
     diagnostics.error("E0103", place, fmt::format("{} has no `{}`", spec.title, row.name),
                       fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
   }
+  check_aliases(record);
   good_ = good_ && diagnostics.errors() == before;
 }
 
@@ -276,6 +285,8 @@ void RecordReader::check(const syntax::Property& property) {
     diagnostics_.error("E0102", property.name_span,
                        fmt::format("unknown property `{}` in {}", property.name, spec_.title),
                        fmt::format("not a {} property", spec_.noun), std::move(help));
+  } else if (row->varies && varies(*property.value)) {
+    fit_.push_back({own_name(*row), property.value.get()});
   } else if (!has_formulas(*property.value, row->type)) {
     check_value(*property.value, *property.value, *row);
   } else if (auto numbers = evaluated(*property.value, scope_, diagnostics_)) {
@@ -301,7 +312,18 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
     diagnostics_.error("E0108", value.span, fmt::format("unknown {} of {} `{}`", row.name, spec_.title, word), "",
                        {did_you_mean(word, row.choices), about(row)[0]});
   } else {
-    fit_.push_back({row.name, &value});
+    fit_.push_back({own_name(row), &value});
+  }
+}
+
+void RecordReader::check_aliases(const syntax::Record& record) {
+  for (const PropertySpec& alias : spec_.properties) {
+    const syntax::Property* given = alias.alias_of.empty() ? nullptr : record.find(alias.name);
+    if (given == nullptr || !record.find(alias.alias_of)) continue;
+    diagnostics_.error("E0106", given->name_span,
+                       fmt::format("both `{}` and `{}` are given", alias.alias_of, alias.name),
+                       "two names of one property", {fmt::format("keep one of them; {}", about(alias)[0])});
+    good_ = false;
   }
 }
 
@@ -317,7 +339,8 @@ std::vector<double> RecordReader::numbers(std::string_view name) const {
   CHECK(row != nullptr && is_numeric(row->type), "a property of the table, with numbers");
   const Value* given = value(name);
   const bool single = row->type == ValueType::Number || row->type == ValueType::Integer;
-  if (given == nullptr) return !row->fallback.empty() ? row->fallback : std::vector<double>(single ? 1 : 3, 0.0);
+  if (given == nullptr || (row->varies && varies(*given)))
+    return !row->fallback.empty() ? row->fallback : std::vector<double>(single ? 1 : 3, 0.0);
   std::vector<double> all;
   append_numbers(*given, all);
   if (row->type == ValueType::Color && all.size() == 1) all.assign(3, all[0]);

@@ -29,11 +29,13 @@ class RecordReader {
   // Whether every value can be used; what is wrong with the others has been reported.
   bool good() const { return good_; }
 
-  // The value as given, but with numbers for formulas, when it is given and fit; else nullptr. Lives as long as the
-  // reader.
+  // The value as given under this name or an alias of it, but with numbers for formulas, when it is given and fit;
+  // else nullptr. What varies over space (frontend/textures.h) is as it was written. Lives as long as the reader and
+  // the record.
   const syntax::Value* value(std::string_view name) const;
 
-  // The number(s) given, or the table's default when absent or unfit; a required one that is absent reads as zeros.
+  // The number(s) given, or the table's default when absent, unfit or not constant; a required one that is absent
+  // reads as zeros.
   std::vector<double> numbers(std::string_view name) const;
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
@@ -50,6 +52,7 @@ class RecordReader {
   };
 
   void check(const syntax::Property& property);
+  void check_aliases(const syntax::Record& record);
   void check_value(const syntax::Value& value, const syntax::Value& written, const PropertySpec& row);
 
   const RecordSpec& spec_;

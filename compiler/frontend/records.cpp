@@ -1,45 +1,14 @@
 #include "compiler/frontend/records.h"
 
-#include <array>
 #include <utility>
 
 #include "compiler/compiled_scene.h"
+#include "compiler/frontend/property_rows.h"
 
 namespace fathom::compiler {
 namespace {
 
-constexpr Range kUnit{0, 1};
-// A double holds every whole number up to here, and JSON numbers are read as doubles.
-constexpr double kLargestWhole = 9007199254740992;  // 2^53
-
-PropertySpec number(std::string_view name, std::string_view doc, std::vector<double> fallback, Range range = {},
-                    Rule rule = Rule::Any) {
-  return {name, ValueType::Number, doc, std::move(fallback), false, rule, range, {}};
-}
-PropertySpec integer(std::string_view name, std::string_view doc, double fallback, Range range) {
-  return {name, ValueType::Integer, doc, {fallback}, false, Rule::Any, range, {}};
-}
-PropertySpec vec3(std::string_view name, std::string_view doc, std::vector<double> fallback, Rule rule = Rule::Any) {
-  return {name, ValueType::Vec3, doc, std::move(fallback), false, rule, {}, {}};
-}
-PropertySpec color(std::string_view name, std::string_view doc, double fallback, Range range = kUnit,
-                   Rule rule = Rule::Any) {
-  return {name, ValueType::Color, doc, {fallback, fallback, fallback}, false, rule, range, {}};
-}
-PropertySpec other(std::string_view name, ValueType type, std::string_view doc, bool required = false) {
-  return {name, type, doc, {}, required, Rule::Any, {}, {}};
-}
-PropertySpec choice(std::vector<std::string_view> choices, std::string_view doc, bool required) {
-  return {"type", ValueType::Choice, doc, {}, required, Rule::Any, {}, std::move(choices)};
-}
-template <std::size_t N>
-PropertySpec choice(std::string_view name, std::string_view doc, const std::array<std::string_view, N>& names) {
-  return {name, ValueType::Choice, doc, {}, false, Rule::Any, {}, {names.begin(), names.end()}};
-}
-PropertySpec instead_of(std::vector<std::string_view> others, PropertySpec property) {
-  property.instead_of = std::move(others);
-  return property;
-}
+using namespace rows;
 
 RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
   RecordSpec record{
@@ -66,39 +35,6 @@ std::vector<PropertySpec> perspective() {
           instead_of({"focus_distance"}, other("focus", ValueType::Vec3, "a point that is sharp")),
           integer("blades", "sides of the aperture; below 3 it is round", 0, {0, kMaxBlades}),
           number("blade_rotation", "degrees, counter-clockwise in the picture; at 0 a corner is up", {0})};
-}
-
-RecordSpec light(std::string type, std::vector<PropertySpec> own) {
-  RecordSpec record{type,
-                    "`" + type + "`",
-                    type + " light",
-                    {choice({"point", "spot", "directional"}, "where its light comes from", true)}};
-  for (PropertySpec& property : own) record.properties.push_back(std::move(property));
-  return record;
-}
-
-RecordSpec background(std::string type, std::vector<PropertySpec> own) {
-  RecordSpec record{std::move(type),
-                    "`background`",
-                    "background",
-                    {choice({"gradient", "sky", "image"}, "what surrounds the scene", false)}};
-  for (PropertySpec& property : own) record.properties.push_back(std::move(property));
-  return record;
-}
-
-PropertySpec intensity() {
-  return color("intensity", "radiant intensity, W/sr: irradiance at a distance of 1", 1, {}, Rule::NotNegative);
-}
-PropertySpec strength() { return number("strength", "a factor on its radiance", {1}, {}, Rule::NotNegative); }
-
-RecordSpec material(std::string type, std::vector<PropertySpec> own) {
-  RecordSpec record{
-      type,
-      "`" + type + "`",
-      type + " material",
-      {choice({"diffuse", "emissive", "specular", "transparent"}, "how the surface scatters light", true)}};
-  for (PropertySpec& property : own) record.properties.push_back(std::move(property));
-  return record;
 }
 
 // What every node may have.
@@ -257,51 +193,6 @@ const std::vector<RecordSpec>& camera_records() {
       camera("perspective", perspective()),
       camera("orthographic", {number("width", "of the picture, scene units", {4}, {}, Rule::Positive)}),
       camera("panorama", {})};
-  return records;
-}
-
-const std::vector<RecordSpec>& material_records() {
-  static const std::vector<RecordSpec> records = {
-      material("diffuse", {color("color", "albedo", 0.8)}),
-      material("emissive", {color("emission", "radiance, both sides", 1, {}, Rule::NotNegative),
-                            color("color", "albedo of the lamp itself", 0)}),
-      material("specular", {color("color", "reflectance of the mirror", 1)}),
-      material("transparent",
-               {number("ior", "index of refraction inside relative to outside", {1.5}, {}, Rule::Positive),
-                color("color", "tint at each crossing", 1),
-                color("absorption", "inside, per scene unit", 0, {}, Rule::NotNegative)})};
-  return records;
-}
-
-const std::vector<RecordSpec>& light_records() {
-  static const std::vector<RecordSpec> records = {
-      light("point", {vec3("position", "where it is", {0, 0, 0}), intensity()}),
-      light("spot", {vec3("position", "where it is", {0, 0, 0}), intensity(),
-                     vec3("direction", "where it points, any length", {0, -1, 0}, Rule::NotZero),
-                     instead_of({"direction"}, other("target", ValueType::Vec3, "a place it points at")),
-                     number("angle", "from the axis to the edge of the cone, degrees", {30}, {1e-3, 90}),
-                     number("blend", "how much of the angle is a soft edge", {0}, kUnit)}),
-      light("directional",
-            {vec3("direction", "the way its light goes, any length", {0, -1, 0}, Rule::NotZero),
-             instead_of({"direction"}, vec3("toward", "the way to the light, any length", {}, Rule::NotZero)),
-             color("irradiance", "of what faces it", 1, {}, Rule::NotNegative),
-             number("angle", "half of what its disc subtends, degrees; above 0 shadows are soft", {0}, {0, 89})})};
-  return records;
-}
-
-const std::vector<RecordSpec>& background_records() {
-  static const std::vector<RecordSpec> records = {
-      background("gradient", {color("bottom", "radiance from straight down", 0, {}, Rule::NotNegative),
-                              color("top", "radiance from straight up", 0, {}, Rule::NotNegative)}),
-      background("sky",
-                 {vec3("sun", "the way to the sun, any length", {0, 1, 0}, Rule::NotZero),
-                  instead_of({"sun"}, number("elevation", "of the sun above the horizon, degrees", {45}, {0, 90})),
-                  instead_of({"sun"}, number("azimuth", "of the sun, degrees from +x towards -z", {0}, {-360, 360})),
-                  number("turbidity", "of the air: 2 very clear to 10 hazy", {3}, {2, 10}),
-                  color("ground_albedo", "of what lies below the horizon", 0.3), strength(),
-                  other("sun_disc", ValueType::Boolean, "whether the sun itself shines; true unless given")}),
-      background("image", {other("file", ValueType::Text, "a .hdr or .exr picture, beside the scene file", true),
-                           number("rotate", "about y, degrees", {0}), strength()})};
   return records;
 }
 

@@ -19,7 +19,7 @@ enum class ValueType {
   Vec3,     // three numbers
   Points,   // a list of [x, y], three or more
   Formula,  // a string, or a list of them (formula.h)
-  Color,    // three numbers
+  Color,    // three numbers, or one of a grey
   Text,
   Boolean,
   Choice,  // one of PropertySpec::choices
@@ -57,6 +57,8 @@ struct PropertySpec {
   Range range = {};
   std::vector<std::string_view> choices = {};     // the first is used when the property is absent
   std::vector<std::string_view> instead_of = {};  // the properties this one takes the place of: no two may be given
+  std::string_view alias_of = {};  // the property this is another name of: not both may be given
+  bool varies = false;  // may be a formula of the place or a pattern, too (frontend/textures.h)
 };
 
 struct RecordSpec {
@@ -76,9 +78,10 @@ const RecordSpec& rotation_record();  // of a node
 
 // One row for each value of `type`; the first is used when `type` is absent and not required.
 const std::vector<RecordSpec>& camera_records();
-const std::vector<RecordSpec>& material_records();
-const std::vector<RecordSpec>& light_records();
+const std::vector<RecordSpec>& light_records();       // light_records.cpp
 const std::vector<RecordSpec>& background_records();
+const std::vector<RecordSpec>& material_records();  // material_records.cpp
+const std::vector<RecordSpec>& pattern_records();   // told apart by `pattern`
 
 const RecordSpec& node_record(Kind kind);  // its parameters and what every node may have
 const RecordSpec& use_record();            // {"use": "name"} and what every node may have

@@ -52,6 +52,12 @@ Json three_schema(const PropertySpec& property) {
 
 Json record_schema(const RecordSpec& record, bool type_required);
 
+// Whether the property says which of a family its record is.
+bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
+
+// A grey or a colour.
+Json color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
+
 // What the value of a property of `record` must be.
 Json value_schema(const PropertySpec& property, const RecordSpec& record) {
   switch (property.type) {
@@ -62,16 +68,19 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Vec2:
       return list_schema(number_schema(property), 2, 2);
     case ValueType::Vec3:
-    case ValueType::Color:
       return three_schema(property);
+    case ValueType::Color:
+      return color_schema(property);
+    case ValueType::Boolean:
+      return {{"type", "boolean"}};
     case ValueType::Points:
       return list_schema(list_schema(number_schema(property), 2, 2), 3);
     case ValueType::Formula:
       return either(string_schema(), list_schema(string_schema(), 1));
     case ValueType::Text:
     case ValueType::Choice:
-      if (property.name == "type") return {{"const", record.type}};
-      if (property.type == ValueType::Choice) return {{"enum", property.choices}};
+      if (tells_apart(property)) return {{"const", record.type}};
+      if (!property.choices.empty()) return {{"enum", property.choices}};
       return string_schema();
     case ValueType::Boolean:
       return {{"type", "boolean"}};
@@ -106,9 +115,11 @@ Json default_of(const PropertySpec& property) {
 
 Json property_schema(const PropertySpec& property, const RecordSpec& record) {
   Json schema = value_schema(property, record);
+  if (property.varies) schema["anyOf"].push_back(reference("pattern"));
   schema["description"] = property.doc;
   if (!property.fallback.empty()) schema["default"] = default_of(property);
-  if (property.type == ValueType::Choice && !property.required) schema["default"] = property.choices[0];
+  if (property.type == ValueType::Choice && !property.required && tells_apart(property))
+    schema["default"] = property.choices[0];
   return schema;
 }
 
@@ -121,6 +132,9 @@ Json record_schema(const RecordSpec& record, bool type_required) {
     if (property.required || (type_required && property.name == "type")) schema["required"].push_back(property.name);
     for (const std::string_view other : property.instead_of) {
       excluded.push_back({{"required", {other, property.name}}});
+    }
+    if (!property.alias_of.empty()) {
+      excluded.push_back({{"required", {property.alias_of, property.name}}});
     }
   }
   if (!excluded.empty()) schema["not"] = {{"anyOf", excluded}};
@@ -184,6 +198,7 @@ std::string scene_schema() {
                      {"material", family_schema(material_records())},
                      {"light", family_schema(light_records())},
                      {"background", family_schema(background_records())},
+                     {"pattern", family_schema(pattern_records())},
                      {"node", node_schema()},
                      {"scale", scale_schema()},
                      {"rotate", rotate_schema()}};

@@ -1,9 +1,6 @@
-// The parts of a scene that are not nodes: camera, film, render settings, background, lights, materials.
-// Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304, E0309, E0310)
+// The parts of a scene that are not nodes: camera, film, render settings. Lights and background: lights.h; materials:
+// materials.h. Tested by: tests/compiler/elaborate_test.cpp, tests/golden/diagnostics (E01xx, E0303, E0304)
 #pragma once
-
-#include <optional>
-#include <vector>
 
 #include "compiler/compiled_scene.h"
 #include "compiler/diagnostics.h"
@@ -17,10 +14,5 @@ namespace fathom::compiler {
 Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
-Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
-std::vector<Light> read_lights(const syntax::Value& value, const Scope& scope,
-                               Diagnostics& diagnostics);  // in file order
-std::vector<Material> read_materials(const syntax::Value& value, const Scope& scope,
-                                     Diagnostics& diagnostics);  // in file order
 
 }  // namespace fathom::compiler

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/frontend/formula.h"
+#include "compiler/frontend/formula_lexer.h"
 #include "compiler/frontend/record_reader.h"
 
 namespace fathom::compiler {
@@ -66,6 +67,18 @@ std::optional<Value> evaluated(const Value& value, const Scope& scope, Diagnosti
   }
   if (numbers.size() != list->size()) return std::nullopt;
   return Value{value.span, std::move(numbers)};
+}
+
+bool varies(const Value& value) {
+  if (const auto* list = std::get_if<syntax::List>(&value.data))
+    return std::any_of(list->begin(), list->end(), varies);
+  const auto* text = std::get_if<std::string>(&value.data);
+  if (text == nullptr) return std::holds_alternative<syntax::Record>(value.data);
+  FormulaLexer lexer(*text);
+  for (Token token = lexer.next(); token.kind != Token::Kind::End; token = lexer.next()) {
+    if (token.kind == Token::Kind::Name && (token.text == "x" || token.text == "y" || token.text == "z")) return true;
+  }
+  return false;
 }
 
 std::string explain(const Value& written, const Value& part) {

@@ -15,6 +15,9 @@ namespace fathom::compiler {
 // Whether formulas stand where the type has numbers, and nothing but numbers beside them.
 bool has_formulas(const syntax::Value& value, ValueType type);
 
+// Whether the value is a pattern, or has formulas of x, y or z: of a property that may vary over space, that it does.
+bool varies(const syntax::Value& value);
+
 // The value, for which has_formulas(), with numbers only; nullopt after a report. Every formula is looked at.
 std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 

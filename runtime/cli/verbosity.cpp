@@ -46,7 +46,7 @@ std::string describe_tables(const compiler::CompiledScene& scene) {
   const compiler::Camera& camera = scene.camera;
   std::string text = fmt::format("camera at {} towards {}, up {}\n", triple(camera.position + scene.origin),
                                  triple(camera.target + scene.origin), triple(camera.up));
-  const char* types[] = {"diffuse", "emissive", "specular", "transparent"};
+  const char* types[] = {"diffuse", "emissive", "specular", "transparent", "principled"};
   for (const compiler::Material& material : scene.materials) {
     text += fmt::format("material `{}`: {}, colour {}\n", material.name,
                         types[static_cast<std::size_t>(material.type)], triple(material.color));

@@ -319,6 +319,7 @@ TEST_CASE("records name every property once", "[elaborate]") {
                                             &parameter_record()};
   for (const RecordSpec& r : camera_records()) records.push_back(&r);
   for (const RecordSpec& r : material_records()) records.push_back(&r);
+  for (const RecordSpec& r : pattern_records()) records.push_back(&r);
   for (const NodeSpec& node : node_table()) records.push_back(&node_record(node.kind));
   for (const RecordSpec* r : records) {
     for (const PropertySpec& p : r->properties) {

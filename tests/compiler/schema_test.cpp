@@ -28,6 +28,7 @@ const std::set<std::string> kStructural = {"E0101", "E0102", "E0103", "E0104", "
 // The others, by the first letters of the code, and why a schema cannot say what they say.
 const std::map<std::string, std::string> kBeyond = {
     {"E00", "the text is not JSON at all, or names a property twice"},
+    {"E0109", "how deep patterns nest"},
     {"E0202", "a name must occur elsewhere in the file"},
     {"E0203", "a name must occur elsewhere in the file"},
     {"E0204", "a walk along names"},

@@ -56,6 +56,22 @@ TEST_CASE("elementary: exp2 is exact for whole exponents", "[runtime]") {
   CHECK(static_cast<double>(exp2(0.5f)) == Approx(std::sqrt(2.0)).epsilon(3e-7));
 }
 
+TEST_CASE("elementary: log is within 3e-7 of libm's, from the smallest float to the largest", "[runtime]") {
+  double worst = 0;
+  const auto check = [&](float x) {
+    const double truth = std::log(static_cast<double>(x));
+    if (truth != 0) worst = std::max(worst, std::abs(static_cast<double>(log(x)) / truth - 1));
+  };
+  for (std::uint32_t bits = 1; bits < 0x7f800000; bits += 3001) check(std::bit_cast<float>(bits));
+  for (int i = -100000; i <= 100000; ++i) check(1 + static_cast<float>(i) * 0x1p-23f);
+  CHECK(worst <= 3e-7);
+  CHECK(log(1.0f) == 0);
+  CHECK(log(0.0f) == -INFINITY);
+  CHECK(log(INFINITY) == INFINITY);
+  CHECK(std::isnan(log(-1.0f)));
+  CHECK(std::isnan(log(NAN)));
+}
+
 TEST_CASE("elementary: the tangent is within 1e-14 of libm's", "[runtime]") {
   double worst = 0;
   for (double x = 1e-3; x < 1.57; x += 1e-3) worst = std::max(worst, std::abs(tangent(x) / std::tan(x) - 1));

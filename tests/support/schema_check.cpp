@@ -1,5 +1,6 @@
 #include "tests/support/schema_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -14,6 +15,7 @@ bool has_type(const Json& value, const std::string& type) {
   if (type == "object") return value.is_object();
   if (type == "array") return value.is_array();
   if (type == "string") return value.is_string();
+  if (type == "boolean") return value.is_boolean();
   if (type == "number") return value.is_number();
   if (type == "boolean") return value.is_boolean();
   if (type == "integer") return value.is_number() && std::floor(value.get<double>()) == value.get<double>();
@@ -99,6 +101,8 @@ const std::map<std::string, Keyword>& keywords() {
       {"$ref", resolve},
       {"type", [](const Context& at, const Json& rule) { return has_type(at.value, rule.get<std::string>()); }},
       {"const", [](const Context& at, const Json& rule) { return at.value == rule; }},
+      {"enum", [](const Context& at,
+                  const Json& rule) { return std::find(rule.begin(), rule.end(), at.value) != rule.end(); }},
       {"properties", check_properties},
       {"additionalProperties", check_additional},
       {"required", check_required},

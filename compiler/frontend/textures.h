@@ -1,0 +1,49 @@
+// Values of material parameters that vary over space: formulas of x, y and z, and patterns that mix two values.
+// Tested by: tests/compiler/materials_test.cpp, tests/golden/diagnostics (E0109, E0108_pattern, E0402_material)
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/record_reader.h"
+#include "compiler/frontend/scope.h"
+#include "compiler/frontend/syntax.h"
+#include "compiler/graph.h"
+
+namespace fathom::compiler {
+
+// A value as read: a texture, or a constant.
+struct ReadTexture {
+  glm::dvec3 typical;                       // the constant; what stands in for the texture (material.h)
+  std::optional<std::uint32_t> index = {};  // of the texture; none of a constant
+};
+
+class TextureReader {
+ public:
+  TextureReader(const Scope& scope, Diagnostics& diagnostics) : scope_(scope), diagnostics_(diagnostics) {}
+
+  // `value` is of a property with the row `parameter`, and varies() (frontend/written_numbers.h). nullopt after a
+  // report. A pattern of twice the same constant is that constant.
+  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter) {
+    return read(value, parameter, 1);
+  }
+
+  std::vector<Texture> textures;
+  std::vector<Scene> formulas;  // numbers; TextureFormula::programs are indices
+
+ private:
+  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, int depth);
+  std::optional<ReadTexture> read_pattern(const syntax::Value& value, const PropertySpec& parameter, int depth);
+  std::optional<ReadTexture> read_end(const RecordReader& reader, const RecordSpec& row, const char* name, int depth);
+  std::optional<ReadTexture> read_formulas(const syntax::Value& value, const PropertySpec& parameter);
+  std::optional<std::uint32_t> add_formula(const syntax::Value& value);
+  std::uint32_t add(Texture texture);
+  std::uint32_t index_of(const ReadTexture& end);
+
+  const Scope& scope_;
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace fathom::compiler
