@@ -234,6 +234,9 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     media.push_back({std::move(*compiled), medium.material});
   }
 
+  std::optional<std::vector<vm::VerifiedProgram>> formulas = assemble_all(elaborated->formulas, source, diagnostics);
+  if (!formulas) return std::nullopt;
+
   const std::vector<Knowledge> known = analyse(field.graph);
   warn_of_cancellation(field, known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);

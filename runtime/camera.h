@@ -49,8 +49,8 @@ class Camera {
   glm::dvec3 right() const { return right_; }
   glm::dvec3 up() const { return up_; }
   glm::dvec3 forward() const { return forward_; }
-  glm::dvec2 half_size() const { return half_; }
-  bool orthographic() const { return orthographic_; }
+  glm::dvec2 half_extent() const { return half_; }
+  compiler::Camera::Projection projection() const { return projection_; }
 
  private:
   void set_axes(const compiler::Camera& camera);

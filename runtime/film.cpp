@@ -167,7 +167,7 @@ void Film::read_halves(std::size_t at, PixelMeans& means) const {
 }
 
 void Film::set_radiance(int x, int y, glm::dvec3 mean) {
-  Pixel& pixel = pixels_[index(x, y)];
+  Pixel& pixel = pixels_[area_.index(x, y)];
   for (int i = 0; i < 3; ++i) pixel.radiance[i] = to_fixed(mean[i] * pixel.samples);
 }
 

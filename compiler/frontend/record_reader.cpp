@@ -37,8 +37,6 @@ std::string_view expected(ValueType type) {
     case ValueType::Text:
     case ValueType::Choice:
       return "a string";
-    case ValueType::Boolean:
-      return "true or false";
     case ValueType::Record:
       return "an object {...}";
     case ValueType::Named:
@@ -99,8 +97,6 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Text:
     case ValueType::Choice:
       return std::holds_alternative<std::string>(value.data);
-    case ValueType::Boolean:
-      return std::holds_alternative<bool>(value.data);
     case ValueType::Record:
     case ValueType::Named:
     case ValueType::Node:

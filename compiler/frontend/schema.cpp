@@ -82,8 +82,6 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
       if (tells_apart(property)) return {{"const", record.type}};
       if (!property.choices.empty()) return {{"enum", property.choices}};
       return string_schema();
-    case ValueType::Boolean:
-      return {{"type", "boolean"}};
     case ValueType::Record:
       return reference(property.name);
     case ValueType::Named:  // "materials" holds what the definition "material" says

@@ -53,14 +53,15 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
   const runtime::Camera camera(scene.camera, settings.width, settings.height);
   const glm::dvec3 eye = camera.position() + scene.origin;
   const Column x = along(camera.right(), eye), y = along(camera.up(), eye), z = along(camera.forward(), eye);
-  const Column one{0, 0, 0, 1}, w = camera.orthographic() ? one : z;
-  const glm::dvec2 half = camera.half_size();
+  using Projection = compiler::Camera::Projection;
+  const bool orthographic = camera.projection() == Projection::Orthographic;
+  const Column one{0, 0, 0, 1}, w = orthographic ? one : z;
+  const glm::dvec2 half = camera.half_extent();
   // 0 to 1 from the left and from the bottom; 1 - 1/depth in perspective, which no finite depth brings to 1.
-  const Column depth = camera.orthographic() ? z : z - one;
+  const Column depth = orthographic ? z : z - one;
   runtime::Attributes attributes = {
       {"samplesPerPixel", settings.spp},
       {"worldToCamera", matrix_of({x, y, z, one})},
-      {"worldToNDC", matrix_of({0.5 * (x / half.x + w), 0.5 * (y / half.y + w), depth, w})},
       {"fathom.version", std::string(kVersion)},
       {"fathom.sceneHash", Hash().absorb(scene.source.text()).text()},
       {"fathom.programHash", program_hash(scene)},
@@ -69,6 +70,10 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
       {"fathom.exposure", static_cast<float>(scene.film.exposure)},
       {"fathom.tone", std::string(compiler::kToneCurves[static_cast<std::size_t>(scene.film.tone)])},
   };
+  // A panorama is no linear map.
+  if (camera.projection() != Projection::Panorama) {
+    attributes["worldToNDC"] = matrix_of({0.5 * (x / half.x + w), 0.5 * (y / half.y + w), depth, w});
+  }
   std::vector<std::string> objects, materials;
   for (const compiler::Surface& surface : scene.surfaces) objects.push_back(surface.name);
   for (const compiler::Material& material : scene.materials) materials.push_back(material.name);
