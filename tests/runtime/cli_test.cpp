@@ -307,6 +307,26 @@ TEST_CASE("cli: flags override the scene") {
   CHECK(picture("-f 1.2") != plain);
   CHECK(picture("-t 3 --threads 1") == plain);
   CHECK(picture("--seed 7") != plain);
+  CHECK(picture("--sampler blue --filter box") == plain);
+  for (const char* other : {"--sampler sobol", "--sampler independent", "--filter gaussian", "--filter-width 2"}) {
+    CAPTURE(std::string(other));
+    CHECK(picture(other) != plain);
+  }
+}
+
+TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none") {
+  const Folder folder;
+  const std::string rest = R"("film": {"width": 8, "height": 8}, "objects": [{"type": "sphere", "radius": 1}]})";
+  folder.write("lens.json", R"({"version": 1, "camera": {"focal_length": 50}, )" + rest);
+  folder.write("plain.json", R"({"version": 1, )" + rest);
+  REQUIRE(folder.run("render lens.json -o a.png -n -f 45deg").code == 0);
+  REQUIRE(folder.run("render plain.json -o b.png -n").code == 0);
+  CHECK(folder.read("a-normal.png") == folder.read("b-normal.png"));
+  folder.write("round.json", R"({"version": 1, "camera": {"type": "panorama"}, )" + rest);
+  const Result result = folder.run("render round.json -f 45deg");
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("panorama"));
+  CHECK(folder.run("render round.json").code == 0);
 }
 
 TEST_CASE("cli: an orthographic camera has no field of view to override") {
