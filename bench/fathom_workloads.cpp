@@ -136,7 +136,7 @@ Picture fathom_paths(const compiler::CompiledScene& scene, const Frame& frame) {
   options.width = frame.width;
   options.height = frame.height;
   options.spp = frame.spp;
-  options.layers = {false, false};
+  options.layers = {.first_hit = false};
   options.cut_after = kMostBounces;
   const RenderResult result = render(scene, options);
   Picture picture{result.stats.march.rays, result.stats.primary_hits, {}};

@@ -29,7 +29,7 @@ void render(const compiler::CompiledScene& scene, int threads, int spp) {
   runtime::RenderOptions options;
   options.threads = threads;
   options.spp = spp;
-  options.layers = {false, false};
+  options.layers = {.first_hit = false};
   runtime::render(scene, options);
 }
 

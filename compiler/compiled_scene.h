@@ -1,11 +1,13 @@
 // What the compiler hands over to the renderer: programs and plain tables. No graph, no syntax.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/box.h"
@@ -47,9 +49,14 @@ struct Camera {
   double width = 4;                    // orthographic: width of the picture, scene units
 };
 
+// How light becomes a display's (runtime/tone.h), and its names in scene files and on the command line, in order.
+enum class ToneCurve { None, Filmic, Aces, Agx, Neutral };
+inline constexpr std::array<std::string_view, 5> kToneCurves = {"none", "filmic", "aces", "agx", "neutral"};
+
 struct Film {
   int width = 640, height = 360;  // pixels
   double exposure = 0;            // stops: the picture is multiplied by 2^exposure
+  ToneCurve tone = ToneCurve::None;
 };
 
 struct RenderSettings {
@@ -99,7 +106,8 @@ struct CompiledScene : SceneTables {
   double magnitude = 0;        // of the numbers that cancel in the field, scene units (compiler/bounds.h)
   bool certified = true;       // whether `lipschitz` is proved, or an estimate (a Mandelbulb is in the scene)
   std::size_t node_count = 0;  // distinct nodes after the passes
-  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)"
+  std::string summary;         // in the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside,
+                               // Lipschitz <= 1 (proved)"
 };
 
 }  // namespace fathom::compiler

@@ -44,6 +44,15 @@ class Camera {
     return {position_, glm::normalize(aside + forward_)};
   }
 
+  // The camera's axes in the scene, unit length, and half the picture's width and height, at unit distance when in
+  // perspective.
+  glm::dvec3 position() const { return position_; }
+  glm::dvec3 right() const { return right_; }
+  glm::dvec3 up() const { return up_; }
+  glm::dvec3 forward() const { return forward_; }
+  glm::dvec2 half_size() const { return half_; }
+  bool orthographic() const { return orthographic_; }
+
  private:
   // Half the picture's width and height, at unit distance when in perspective.
   static glm::dvec2 half_size(const compiler::Camera& camera, double aspect) {

@@ -1,6 +1,10 @@
 #include "runtime/film.h"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
@@ -27,7 +31,8 @@ bool accumulate(std::int64_t& sum, double value) {
   return false;
 }
 
-bool accumulate(std::int64_t (&sums)[3], glm::vec3 values) {
+template <typename Vector>
+bool accumulate(std::int64_t (&sums)[3], Vector values) {
   bool room = true;
   for (int i = 0; i < 3; ++i) room &= accumulate(sums[i], static_cast<double>(values[i]));
   return room;
@@ -39,21 +44,46 @@ glm::dvec3 mean(const std::int64_t (&sums)[3], std::uint32_t count) {
   return {mean(sums[0], count), mean(sums[1], count), mean(sums[2], count)};
 }
 
+WideSum square(std::int64_t value) {
+  const WideSum magnitude = static_cast<std::uint64_t>(value < 0 ? -value : value);
+  return magnitude * magnitude;
+}
+
+// Variance of the mean of n values, s^2/n with s^2 = (n * sum of squares - (sum)^2) / (n (n - 1)): in whole numbers,
+// so that what cancels leaves no error, unless a square is beyond them.
+double variance_of_mean(std::int64_t sum, WideSum squares, std::uint32_t count) {
+  if (count < 2) return 0;
+  const double n = count;
+  const WideSum squared_sum = square(sum);
+  WideSum scaled;
+  double spread;
+  if (__builtin_mul_overflow(squares, static_cast<WideSum>(count), &scaled)) {
+    spread = static_cast<double>(squares) * n - static_cast<double>(squared_sum);
+  } else {
+    spread = scaled > squared_sum ? static_cast<double>(scaled - squared_sum) : 0;  // a full sum may be less
+  }
+  return std::max(0.0, spread) * kUnit * kUnit / (n * n * (n - 1));
+}
+
 }  // namespace
 
-Film::Film(int width, int height, FilmLayers layers) : width_(width), height_(height), layers_(layers) {
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+Film::Film(PixelRect area, FilmLayers layers) : area_(area), layers_(layers) {
+  const std::size_t count = area.pixels();
   pixels_.resize(count);
   if (layers.first_hit) first_hits_.resize(count);
+  if (layers.position) positions_.resize(count);
+  if (layers.ids) ids_.resize(count);
+  if (layers.variance) squares_.resize(count);
   if (layers.cost) costs_.resize(count);
   if (layers.halves) odd_halves_.resize(count);
 }
 
 bool Film::add(int x, int y, const PathSample& sample) {
-  const std::size_t at = index(x, y);
+  const std::size_t at = area_.index(x, y);
   Pixel& pixel = pixels_[at];
   ++pixel.samples;
   bool room = accumulate(pixel.radiance, sample.radiance);
+  if (layers_.variance) room &= add_squares(at, sample.radiance);
   if (layers_.cost) {
     costs_[at].evaluations += sample.evaluations;
     costs_[at].instructions += sample.instructions;
@@ -64,32 +94,53 @@ bool Film::add(int x, int y, const PathSample& sample) {
   }
   if (!sample.hit) return room;
   ++pixel.hits;
-  if (!layers_.first_hit) return room;
-  FirstHit& first = first_hits_[at];
-  room &= accumulate(first.albedo, sample.albedo);
-  room &= accumulate(first.normal, sample.normal);
-  return accumulate(first.depth, sample.depth) && room;
+  return add_first_hit(at, sample) && room;
+}
+
+bool Film::add_squares(std::size_t at, glm::vec3 radiance) {
+  bool room = true;
+  for (int i = 0; i < 3; ++i) {
+    WideSum& sum = squares_[at].sums[i];
+    if (!__builtin_add_overflow(sum, square(to_fixed(static_cast<double>(radiance[i]))), &sum)) continue;
+    sum = ~WideSum{0};
+    room = false;
+  }
+  return room;
+}
+
+bool Film::add_first_hit(std::size_t at, const PathSample& sample) {
+  bool room = true;
+  if (layers_.first_hit) {
+    FirstHit& first = first_hits_[at];
+    room &= accumulate(first.albedo, sample.albedo);
+    room &= accumulate(first.normal, sample.normal);
+    room &= accumulate(first.depth, sample.depth);
+  }
+  if (layers_.position) room &= accumulate(positions_[at].sums, sample.position);
+  if (layers_.ids) ids_[at] = std::min(ids_[at], Ids{sample.number, sample.surface, sample.material});
+  return room;
 }
 
 PixelMeans Film::means(int x, int y) const {
-  const std::size_t at = index(x, y);
+  const std::size_t at = area_.index(x, y);
   const Pixel& pixel = pixels_[at];
   PixelMeans means;
   means.hits = pixel.hits;
   means.samples = pixel.samples;
   if (pixel.samples == 0) return means;
-  means.radiance = mean(pixel.radiance, pixel.samples);
-  if (layers_.first_hit) {
-    const FirstHit& first = first_hits_[at];
-    means.albedo = mean(first.albedo, pixel.samples);
-    means.normal = mean(first.normal, pixel.samples);
-    if (pixel.hits > 0) means.depth = mean(first.depth, pixel.hits);
+  means.radiance = means.noisy = mean(pixel.radiance, pixel.samples);
+  if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
+  if (layers_.variance) {
+    for (int i = 0; i < 3; ++i) {
+      means.variance[i] = variance_of_mean(pixel.radiance[i], squares_[at].sums[i], pixel.samples);
+    }
   }
   if (layers_.halves) read_halves(at, means);
   if (layers_.cost) {
     means.evaluations = static_cast<double>(costs_[at].evaluations) / pixel.samples;
     means.instructions = static_cast<double>(costs_[at].instructions) / pixel.samples;
   }
+  if (pixel.hits > 0) read_first_hit(at, means);
   return means;
 }
 
@@ -105,9 +156,23 @@ void Film::read_halves(std::size_t at, PixelMeans& means) const {
   if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
 }
 
-void Film::set_radiance(int x, int y, glm::dvec3 mean) {
-  Pixel& pixel = pixels_[index(x, y)];
-  for (int i = 0; i < 3; ++i) pixel.radiance[i] = to_fixed(mean[i] * pixel.samples);
+void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
+  if (layers_.first_hit) {
+    const FirstHit& first = first_hits_[at];
+    means.albedo = mean(first.albedo, means.samples);
+    means.normal = mean(first.normal, means.samples);
+    means.depth = mean(first.depth, means.hits);
+  }
+  if (layers_.position) means.position = mean(positions_[at].sums, means.hits);
+  if (layers_.ids) {
+    means.surface_id = ids_[at].surface + 1;
+    means.material_id = ids_[at].material + 1;
+  }
+}
+
+void Film::set_denoised(std::vector<float> radiance) {
+  CHECK(radiance.size() == 3 * pixels_.size(), "a denoised picture of another size than its film");
+  denoised_ = std::move(radiance);
 }
 
 std::uint64_t Film::hash() const {
@@ -128,6 +193,16 @@ std::uint64_t Film::hash() const {
   for (const OddHalf& half : odd_halves_) {
     absorb_sums(half.radiance);
     absorb(half.samples);
+  }
+  for (const Position& position : positions_) absorb_sums(position.sums);
+  for (const Ids& ids : ids_) {
+    for (const std::uint32_t id : {ids.number, ids.surface, ids.material}) absorb(id);
+  }
+  for (const Squares& squares : squares_) {
+    for (const WideSum sum : squares.sums) {
+      absorb(static_cast<std::uint64_t>(sum));
+      absorb(static_cast<std::uint64_t>(sum >> 64));
+    }
   }
   return hash;
 }

@@ -1,13 +1,17 @@
 // The film: what the paths brought home, summed for each pixel.
 //
-// Sums are whole multiples of 2^-32 in 64 bits. Integer addition does not depend on its order, so any partition of
-// the work gives the same bits. A sum may reach 2^31; beyond that it stays there and is counted. Tested by:
-// tests/runtime/film_test.cpp
+// Sums are whole multiples of 2^-32 in 64 bits, those of squares of 2^-64 in 128 bits: the exact squares of the
+// terms. Integer addition does not depend on its order, and a pixel's ids are those of its sample with the least
+// number, so any partition of the work gives the same bits. A sum may reach 2^31 (of squares 2^63); beyond that it
+// stays there and is counted. Tested by: tests/runtime/film_test.cpp
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
+
+#include "runtime/pixel_rect.h"
 
 namespace fathom::runtime {
 
@@ -18,47 +22,68 @@ struct PathSample {
   // Of the first surface met; unused when there was none.
   bool hit = false;
   glm::vec3 albedo{0};
-  glm::vec3 normal{0};  // unit length, towards the camera
-  double depth = 0;     // along the ray, scene units
+  glm::vec3 normal{0};                      // unit length, towards the camera
+  double depth = 0;                         // along the ray, scene units
+  glm::dvec3 position{0};                   // scene units
+  std::uint32_t surface = 0, material = 0;  // indices into the scene's tables
   // Of the field, for all the path's rays.
   std::uint64_t evaluations = 0;
   std::uint64_t instructions = 0;  // over those evaluations
 };
 
-// What a film keeps beside radiance, 56, 16 and 32 bytes a pixel.
+// What a film keeps beside radiance (32 bytes a pixel).
 struct FilmLayers {
-  bool first_hit = true;  // albedo, normal, depth
-  bool cost = false;      // evaluations, instructions
-  bool halves = false;    // radiance of the samples with even numbers apart from the others: what the denoiser needs
+  bool first_hit = true;  // albedo, normal, depth: 56 bytes a pixel
+  bool cost = false;      // evaluations, instructions: 16
+  bool position = false;  // of the first surface: 24
+  bool ids = false;       // of the first surface: 12
+  bool variance = false;  // of radiance: 48
+  bool halves = false;    // radiance of the samples with odd numbers, what the denoiser needs: 32
+
+  bool operator==(const FilmLayers&) const = default;
 };
+inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 
 // Means over a pixel's samples; 0 for what the film does not keep.
 struct PixelMeans {
   glm::dvec3 radiance{0};
-  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // radiance of the samples with even and odd numbers
-  glm::dvec3 albedo{0};                                   // 0 where nothing was hit
-  glm::dvec3 normal{0};                                   // not normalised; 0 where nothing was hit
-  double depth = 0;                                       // over the samples that hit; 0 when none did
+  glm::dvec3 noisy{0};                                    // radiance before it was denoised; otherwise the same
+  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // of the samples with even and with odd numbers
+  glm::dvec3 variance{0};  // of `noisy`, the mean: that of the samples by their number; 0 for fewer than two
+  glm::dvec3 albedo{0};    // 0 where nothing was hit
+  glm::dvec3 normal{0};    // not normalised; 0 where nothing was hit
+  double depth = 0;        // over the samples that hit; 0 when none did
+  glm::dvec3 position{0};  // likewise
+  // Of the sample with the least number among those that hit: its surface and material counted from 1; 0 when none
+  // did.
+  std::uint32_t surface_id = 0, material_id = 0;
   double evaluations = 0;
   double instructions = 0;
   std::uint32_t hits = 0, samples = 0;
 };
 
+__extension__ typedef unsigned __int128 WideSum;  // C++ has no name of its own for it
+
 class Film {
  public:
   Film() = default;
-  Film(int width, int height, FilmLayers layers = {});
+  // A whole picture of that size, or a part of one.
+  Film(int width, int height, FilmLayers layers = {}) : Film(PixelRect{0, 0, width, height}, layers) {}
+  explicit Film(PixelRect area, FilmLayers layers = {});
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  PixelRect area() const { return area_; }
+  int width() const { return area_.width(); }
+  int height() const { return area_.height(); }
   FilmLayers layers() const { return layers_; }
 
-  // Not to be called for one pixel by two threads at once. False when some sum is full.
+  // (x, y) is a pixel of the whole picture, within area(). Not to be called for one pixel by two threads at once.
+  // False when some sum is full.
   bool add(int x, int y, const PathSample& sample);
   PixelMeans means(int x, int y) const;
 
-  // Puts another mean in the place of the pixel's radiance, its halves stay; does nothing where there are no samples.
-  void set_radiance(int x, int y, glm::dvec3 mean);
+  // From now on means().radiance is this, [y][x][rgb] over area(); no sum changes.
+  void set_denoised(std::vector<float> radiance);
+  bool denoised() const { return !denoised_.empty(); }
 
   // A hash of every sum but the cost's: equal for equal pictures. FNV-1a (Fowler, Noll, Vo, 1991) over 64-bit words.
   std::uint64_t hash() const;
@@ -78,24 +103,39 @@ class Film {
     std::int64_t radiance[3] = {};
     std::uint32_t samples = 0;
   };
+  struct Position {
+    std::int64_t sums[3] = {};
+  };
+  // Of the sample `number`; all bits set when none hit.
+  struct Ids {
+    std::uint32_t number = ~0u, surface = ~0u, material = ~0u;
+    auto operator<=>(const Ids&) const = default;
+  };
+  // In 2^-64.
+  struct Squares {
+    WideSum sums[3] = {};
+  };
   // Plain sums: 64 bits of instructions take a pixel a lifetime.
   struct Cost {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
   void read_halves(std::size_t at, PixelMeans& means) const;
+  bool add_squares(std::size_t at, glm::vec3 radiance);
+  bool add_first_hit(std::size_t at, const PathSample& sample);
+  void read_first_hit(std::size_t at, PixelMeans& means) const;
 
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
-
-  int width_ = 0, height_ = 0;
+  PixelRect area_;
   FilmLayers layers_;
   // [y][x]; a layer that is not kept has none.
   std::vector<Pixel> pixels_;
   std::vector<FirstHit> first_hits_;
+  std::vector<Position> positions_;
+  std::vector<Ids> ids_;
+  std::vector<Squares> squares_;
   std::vector<Cost> costs_;
   std::vector<OddHalf> odd_halves_;
+  std::vector<float> denoised_;  // [y][x][rgb]; empty until there is one
 };
 
 }  // namespace fathom::runtime

@@ -1,18 +1,20 @@
 #include "runtime/image.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
+#include <utility>
 
 #include "runtime/elementary.h"
+#include "runtime/film_channels.h"
 
 namespace fathom::runtime {
 namespace {
 
-// [0,1] to 0..255, nearest; outside values to the ends, NaN to 0.
-std::uint8_t to_byte(double value) {
+// [0,1] to 0..Most, nearest; outside values to the ends, NaN to 0.
+template <typename Word>
+Word to_whole(double value) {
   if (!(value > 0)) return 0;
-  return static_cast<std::uint8_t>(std::min(value, 1.0) * 255 + 0.5);
+  return static_cast<Word>(std::min(value, 1.0) * std::numeric_limits<Word>::max() + 0.5);
 }
 
 // Linear light to the nearest byte of its sRGB signal, by the least light that each byte stands for: comparing is
@@ -33,65 +35,104 @@ class SrgbBytes {
     while (true) {
       const double middle = (below + enough) / 2;
       if (middle <= below || middle >= enough) return enough;
-      (to_byte(srgb_encode(middle)) >= byte ? enough : below) = middle;
+      (to_whole<std::uint8_t>(srgb_encode(middle)) >= byte ? enough : below) = middle;
     }
   }
 
   std::array<double, 255> least_;  // [byte - 1]
 };
 
-// Shade: PixelMeans -> colour; Encode: a component of it -> byte.
-template <typename Shade, typename Encode>
-Picture make_picture(const Film& film, const Shade& shade, const Encode& encode) {
-  Picture picture{film.width(), film.height(), {}};
-  picture.rgb.reserve(static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()) * 3);
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) {
-      const glm::dvec3 color = shade(film.means(x, y));
-      for (int i = 0; i < 3; ++i) picture.rgb.push_back(encode(color[i]));
+// Of the hits; 0 where nothing was hit. Infinite when nothing was anywhere.
+double nearest_of(const LayerValues& depth) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int y = depth.area.y0; y < depth.area.y1; ++y) {
+    for (int x = depth.area.x0; x < depth.area.x1; ++x) {
+      const double here = static_cast<double>(depth.at(x, y).x);
+      if (here > 0) nearest = std::min(nearest, here);
     }
   }
-  return picture;
+  return nearest;
 }
 
 }  // namespace
 
-Picture beauty_picture(const Film& film, double exposure) {
-  const double factor = static_cast<double>(exp2(static_cast<float>(std::clamp(exposure, -100.0, 100.0))));
-  return make_picture(
-      film, [&](const PixelMeans& pixel) { return pixel.radiance * factor; }, SrgbBytes());
-}
-
-Picture albedo_picture(const Film& film) {
-  return make_picture(
-      film, [](const PixelMeans& pixel) { return pixel.albedo; }, SrgbBytes());
-}
-
-Picture normal_picture(const Film& film) {
-  return make_picture(
-      film,
-      [](const PixelMeans& pixel) {
-        if (pixel.hits == 0) return glm::dvec3(0);
-        const double all_to_hits = static_cast<double>(pixel.samples) / pixel.hits;
-        return pixel.normal * all_to_hits * 0.5 + 0.5;
-      },
-      to_byte);
-}
-
-Picture depth_picture(const Film& film) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) {
-      const PixelMeans pixel = film.means(x, y);
-      if (pixel.hits > 0) nearest = std::min(nearest, pixel.depth);
-    }
+LayerValues layer_of(const Film& film, Layer layer) {
+  switch (layer) {
+    case Layer::Beauty:
+      return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).radiance); }};
+    case Layer::Albedo:
+      return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).albedo); }};
+    case Layer::Depth:
+      return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).depth); }};
+    case Layer::Noisy:
+      return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).noisy); }};
+    case Layer::Normal:
+      break;
   }
-  return make_picture(
-      film,
-      [&](const PixelMeans& pixel) {
-        return glm::dvec3(pixel.hits > 0 && pixel.depth > 0 ? nearest / pixel.depth : 0);
-      },
-      to_byte);
+  return {layer, film.area(), [&film](int x, int y) { return glm::vec3(normal_of_hits(film.means(x, y))); }};
+}
+
+std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer) {
+  std::array<const std::vector<float>*, 3> channels;
+  for (std::size_t i = 0; i < 3; ++i) {
+    channels[i] = image.channel(info(layer).channels[i]);
+    if (channels[i] == nullptr) return std::nullopt;
+  }
+  return LayerValues{layer, image.area, [channels, area = image.area](int x, int y) {
+                       const std::size_t at = area.index(x, y);
+                       return glm::vec3((*channels[0])[at], (*channels[1])[at], (*channels[2])[at]);
+                     }};
+}
+
+Shown::Shown(LayerValues values, ToneMapping tone)
+    : values_(std::move(values)),
+      encoded_(is_light(values_.layer) || values_.layer == Layer::Albedo),
+      curve_(tone.curve),
+      factor_(exposure_factor(tone.exposure)) {
+  if (values_.layer == Layer::Depth) nearest_ = nearest_of(values_);
+}
+
+glm::dvec3 Shown::color(int x, int y) const {
+  const glm::dvec3 value(values_.at(x, y));
+  switch (values_.layer) {
+    case Layer::Beauty:
+    case Layer::Noisy:
+      return apply_curve(curve_, value * factor_);
+    case Layer::Albedo:
+      break;
+    case Layer::Depth:
+      return glm::dvec3(value.x > 0 ? nearest_ / value.x : 0);
+    case Layer::Normal:
+      return value == glm::dvec3(0) ? value : value * 0.5 + 0.5;
+  }
+  return value;
+}
+
+void Shown::row(int y, std::span<std::uint8_t> rgb) const {
+  static const SrgbBytes to_srgb;
+  auto out = rgb.begin();
+  for (int x = values_.area.x0; x < values_.area.x1; ++x) {
+    const glm::dvec3 shown = color(x, y + values_.area.y0);
+    for (int i = 0; i < 3; ++i) *out++ = encoded_ ? to_srgb(shown[i]) : to_whole<std::uint8_t>(shown[i]);
+  }
+}
+
+void Shown::row(int y, std::span<std::uint16_t> rgb) const {
+  auto out = rgb.begin();
+  for (int x = values_.area.x0; x < values_.area.x1; ++x) {
+    const glm::dvec3 shown = color(x, y + values_.area.y0);
+    for (int i = 0; i < 3; ++i) *out++ = to_whole<std::uint16_t>(encoded_ ? srgb_encode(shown[i]) : shown[i]);
+  }
+}
+
+Picture to_picture(const Shown& shown) {
+  const std::size_t row = static_cast<std::size_t>(shown.width()) * 3;
+  Picture picture{shown.width(), shown.height(), {}};
+  picture.rgb.resize(row * static_cast<std::size_t>(shown.height()));
+  for (int y = 0; y < shown.height(); ++y) {
+    shown.row(y, std::span(picture.rgb).subspan(static_cast<std::size_t>(y) * row, row));
+  }
+  return picture;
 }
 
 }  // namespace fathom::runtime

@@ -1,37 +1,19 @@
 #include "runtime/image_io.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <stb_image_write.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <string_view>
+#include <functional>
 
+#include "runtime/image_png.h"
 #include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
 
 constexpr int kJpegQuality = 95;  // of 100
-
-struct Ending {
-  std::string_view ending;
-  ImageFormat format;
-};
-constexpr Ending kEndings[] = {
-    {"png", ImageFormat::Png}, {"jpg", ImageFormat::Jpeg}, {"jpeg", ImageFormat::Jpeg}, {"bmp", ImageFormat::Bmp}};
-
-std::string reason() { return std::strerror(errno); }
-
-std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
 
 // What follows the name's last dot, in small letters; empty when there is no dot.
 std::string ending_of(const std::string& path) {
@@ -50,61 +32,140 @@ void append_bytes(void* context, void* data, int size) {
   bytes.insert(bytes.end(), first, first + size);
 }
 
-bool write_all(int file, const std::vector<std::uint8_t>& bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    done += static_cast<std::size_t>(count);
-  }
-  return true;
+std::vector<std::uint8_t> encode_shown(const Shown& shown, int bits, bool srgb) {
+  std::vector<std::uint16_t> words(static_cast<std::size_t>(shown.width()) * 3);
+  return encode_png(shown.width(), shown.height(), bits, srgb, [&](int y, std::span<std::uint8_t> bytes) {
+    if (bits == 8) {
+      shown.row(y, bytes);
+      return;
+    }
+    shown.row(y, words);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      bytes[2 * i] = static_cast<std::uint8_t>(words[i] >> 8);
+      bytes[2 * i + 1] = static_cast<std::uint8_t>(words[i]);
+    }
+  });
 }
 
-// A new file gets the permissions any other program would give it, not mkstemp's.
-void grant_usual_access(int file) {
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  (void)!::fchmod(file, 0666 & ~mask);
+// Puts `components` numbers a pixel of row `y`, from the top.
+using FloatRow = std::function<void(int y, std::span<float> values)>;
+
+std::optional<std::string> write_pfm(int width, int height, int components, const FloatRow& fill,
+                                     const std::string& path) {
+  AtomicFile file(path);
+  const std::string header =
+      fmt::format("{}\n{} {}\n-1.0\n", components == 1 ? "Pf" : "PF", width, height);  // below zero: little endian
+  file.write({reinterpret_cast<const std::uint8_t*>(header.data()), header.size()});
+  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(components));
+  std::vector<std::uint8_t> bytes(values.size() * 4);
+  for (int y = height; y-- > 0;) {
+    fill(y, values);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      bytes[i] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(values[i / 4]) >> (8 * (i % 4)));
+    }
+    file.write(bytes);
+  }
+  return file.commit();
+}
+
+std::optional<std::string> write_float_map(const LayerValues& layer, const std::string& path) {
+  const PixelRect area = layer.area;
+  const std::size_t components = layer.layer == Layer::Depth ? 1 : 3;
+  const FloatRow fill = [&](int y, std::span<float> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const int x = area.x0 + static_cast<int>(i / components);
+      values[i] = layer.at(x, area.y0 + y)[static_cast<int>(i % components)];
+    }
+  };
+  return write_pfm(area.width(), area.height(), static_cast<int>(components), fill, path);
+}
+
+// Source: Ward, "Real Pixels", Graphics Gems II, 1991: 8 bits a colour and a common exponent.
+std::vector<std::uint8_t> encode_hdr(const LayerValues& layer) {
+  std::vector<float> values;
+  values.reserve(layer.area.pixels() * 3);
+  for (int y = layer.area.y0; y < layer.area.y1; ++y) {
+    for (int x = layer.area.x0; x < layer.area.x1; ++x) {
+      glm::vec3 value = layer.at(x, y);
+      if (layer.layer == Layer::Normal && value != glm::vec3(0)) value = value * 0.5f + 0.5f;
+      for (int i = 0; i < 3; ++i) values.push_back(value[i]);
+    }
+  }
+  std::vector<std::uint8_t> bytes;
+  const int done =
+      stbi_write_hdr_to_func(append_bytes, &bytes, layer.area.width(), layer.area.height(), 3, values.data());
+  if (done == 0) bytes.clear();
+  return bytes;
+}
+
+std::optional<std::string> write_encoded(const std::vector<std::uint8_t>& bytes, const std::string& path) {
+  if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", path);
+  return write_file(bytes, path);
 }
 
 }  // namespace
 
-std::optional<ImageFormat> image_format_of(const std::string& path) {
+const ImageFormatInfo* image_format_of(const std::string& path) {
   const std::string ending = ending_of(path);
-  for (const Ending& known : kEndings) {
-    if (ending == known.ending) return known.format;
+  for (const ImageFormatInfo& known : kImageFormats) {
+    if (ending == known.ending) return &known;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::string image_endings(bool shown_only) {
+  std::string endings;
+  for (const ImageFormatInfo& format : kImageFormats) {
+    if (shown_only && !format.shown) continue;
+    endings += fmt::format("{}.{}", endings.empty() ? "" : ", ", format.ending);
+  }
+  return endings;
 }
 
 bool is_float_map(const std::string& path) { return ending_of(path) == "pfm"; }
 
 std::optional<std::string> check_image_path(const std::string& path) {
   if (!image_format_of(path)) {
-    return fmt::format("cannot tell the format of `{}`: its name must end in .png, .jpg, .jpeg or .bmp", path);
+    return fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings());
   }
   return check_file_path(path);
 }
 
-std::optional<std::string> check_file_path(const std::string& path) {
-  struct stat status;
-  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return fmt::format("`{}` is a folder", path);
-  const std::string folder = folder_of(path);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    return fmt::format("cannot write to the folder `{}`: {}", folder, reason());
+std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
+                                       const std::string& path) {
+  if (std::optional<std::string> problem = check_image_path(path)) return problem;
+  const ImageFormat format = image_format_of(path)->format;
+  switch (format) {
+    case ImageFormat::Png: {
+      const bool srgb = is_light(layer.layer) || layer.layer == Layer::Albedo;
+      return write_encoded(encode_shown(Shown(layer, options.tone), options.bits, srgb), path);
+    }
+    case ImageFormat::Jpeg:
+    case ImageFormat::Bmp:
+      return write_encoded(encode_image(to_picture(Shown(layer, options.tone)), format), path);
+    case ImageFormat::Pfm:
+      return write_float_map(layer, path);
+    case ImageFormat::Hdr:
+      return write_encoded(encode_hdr(layer), path);
+    case ImageFormat::Exr:
+      break;
   }
+  CHECK(false, "an OpenEXR file holds more than a layer");
   return std::nullopt;
 }
 
 std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat format) {
   std::vector<std::uint8_t> bytes;
   const int w = picture.width, h = picture.height;
+  const std::size_t row = static_cast<std::size_t>(w) * 3;
   const void* data = picture.rgb.data();
-  int done = 0;
+  int done = 1;
   switch (format) {
     case ImageFormat::Png:
-      done = stbi_write_png_to_func(append_bytes, &bytes, w, h, 3, data, 3 * w);
+      bytes = encode_png(w, h, 8, false, [&](int y, std::span<std::uint8_t> out) {
+        std::copy_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row), row,
+                    out.begin());
+      });
       break;
     case ImageFormat::Jpeg:
       done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality);
@@ -112,6 +173,8 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
     case ImageFormat::Bmp:
       done = stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
       break;
+    default:
+      CHECK(false, "bytes are not what this format holds");
   }
   if (done == 0) bytes.clear();
   return bytes;
@@ -119,49 +182,18 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
 
 std::optional<std::string> write_image(const Picture& picture, const std::string& path) {
   if (std::optional<std::string> problem = check_image_path(path)) return problem;
-  const std::vector<std::uint8_t> bytes = encode_image(picture, *image_format_of(path));
-  if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", path);
-  return write_file(bytes, path);
+  return write_encoded(encode_image(picture, image_format_of(path)->format), path);
 }
 
 std::optional<std::string> write_float_map(std::span<const float> values, int width, int height,
                                            const std::string& path) {
   const std::size_t row = static_cast<std::size_t>(width);
   CHECK(values.size() == row * static_cast<std::size_t>(height), "a map of another size than its values");
-  const std::string header = fmt::format("Pf\n{} {}\n-1.0\n", width, height);  // below zero: little endian
-  std::vector<std::uint8_t> bytes(header.begin(), header.end());
-  for (std::size_t y = static_cast<std::size_t>(height); y-- > 0;) {
-    for (const float value : values.subspan(y * row, row)) {
-      const auto bits = std::bit_cast<std::uint32_t>(value);
-      for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
-    }
-  }
-  return write_file(bytes, path);
-}
-
-std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path) {
-  // Renaming over a device or a folder would destroy it.
-  struct stat existing {};
-  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
-    return fmt::format("cannot write `{}`: it is not a regular file", path);
-  }
-  std::string beside = path + ".XXXXXX";
-  const int file = ::mkstemp(beside.data());
-  if (file < 0) return fmt::format("cannot write `{}`: {}", path, reason());
-  grant_usual_access(file);
-  bool done = write_all(file, bytes) && ::fsync(file) == 0;
-  std::string why = done ? "" : reason();
-  if (::close(file) != 0 && done) {
-    done = false;
-    why = reason();
-  }
-  if (done && ::rename(beside.c_str(), path.c_str()) != 0) {
-    done = false;
-    why = reason();
-  }
-  if (done) return std::nullopt;
-  ::unlink(beside.c_str());
-  return fmt::format("cannot write `{}`: {}", path, why);
+  const FloatRow fill = [&](int y, std::span<float> out) {
+    const auto from = values.subspan(static_cast<std::size_t>(y) * row, row);
+    std::copy(from.begin(), from.end(), out.begin());
+  };
+  return write_pfm(width, height, 1, fill, path);
 }
 
 }  // namespace fathom::runtime

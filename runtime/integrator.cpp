@@ -169,6 +169,9 @@ void Integrator::record_first_hit(Path& path, const Arrival& arrival, const Surf
   path.result.albedo = albedo_of(material);
   path.result.normal = point.normal;
   path.result.depth = arrival.t;
+  path.result.position = path.origin + arrival.t * path.direction;
+  path.result.surface = point.surface;
+  path.result.material = point.material;
   // The camera stands in a solid: its medium is that of the surface the ray comes out of.
   if (arrival.side < 0 && material.type == Material::Type::Transparent) path.absorption = material.absorption;
 }

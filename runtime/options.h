@@ -12,6 +12,7 @@
 #include "compiler/compiled_scene.h"
 #include "runtime/film.h"
 #include "runtime/method.h"
+#include "runtime/pixel_rect.h"
 
 namespace fathom::runtime {
 
@@ -24,6 +25,7 @@ struct Progress {
 struct RenderOptions {
   int threads = 0;                   // 0: one per processor
   std::optional<int> width, height;  // pixels
+  std::optional<PixelRect> crop;     // the part of the picture to render, not empty; the whole when not given
   std::optional<int> spp, bounces, tile;
   std::optional<std::uint64_t> seed;
   std::optional<double> far;  // scene units
@@ -43,7 +45,8 @@ struct RenderOptions {
 
 // What a render uses: the scene's values under the options'.
 struct Settings {
-  int width, height;  // pixels
+  int width, height;  // of the whole picture, pixels
+  PixelRect crop;     // what of it is rendered
   int spp, bounces;
   int tile;  // pixels a side
   int threads;

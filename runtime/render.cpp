@@ -22,9 +22,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 class ProgressReport {
  public:
   ProgressReport(const RenderOptions& options, const Settings& settings)
-      : options_(options),
-        paths_(static_cast<double>(settings.width) * settings.height * settings.spp),
-        start_(Clock::now()) {}
+      : options_(options), paths_(static_cast<double>(settings.crop.pixels()) * settings.spp), start_(Clock::now()) {}
 
   void add(std::uint64_t paths, std::uint64_t rays) {
     if (!options_.on_progress) return;
@@ -83,10 +81,8 @@ class Worker {
   }
 
   void report_tile() {
-    const std::uint64_t pixels =
-        static_cast<std::uint64_t>(tile_->x1 - tile_->x0) * static_cast<std::uint64_t>(tile_->y1 - tile_->y0);
     const std::uint64_t rays = integrator_.stats().march.rays;
-    report_.add(pixels * static_cast<std::uint64_t>(world_.settings.spp), rays - reported_rays_);
+    report_.add(tile_->pixels() * static_cast<std::uint64_t>(world_.settings.spp), rays - reported_rays_);
     reported_rays_ = rays;
   }
 
@@ -95,7 +91,7 @@ class Worker {
   ProgressReport& report_;
   const std::atomic<bool>* cancel_;
   Integrator integrator_;
-  std::optional<Tile> tile_;
+  std::optional<PixelRect> tile_;
   int x_ = 0, y_ = 0;
   std::uint32_t sample_ = 0;
   std::uint64_t reported_rays_ = 0;
@@ -112,8 +108,8 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings)
 
 Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
   const Settings& settings = world.settings;
-  Tiles tiles(settings.width, settings.height,
-              tile_side(settings.width, settings.height, settings.tile, settings.threads));
+  const PixelRect crop = settings.crop;
+  Tiles tiles(crop, tile_side(crop.width(), crop.height(), settings.tile, settings.threads));
   ProgressReport report(options, world.settings);
   std::vector<Stats> stats(static_cast<std::size_t>(settings.threads));
   // Each thread makes its worker itself, so that what it writes to lies in memory of its own.
@@ -138,6 +134,7 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   Settings settings{};
   settings.width = options.width.value_or(scene.film.width);
   settings.height = options.height.value_or(scene.film.height);
+  settings.crop = options.crop.value_or(PixelRect{0, 0, settings.width, settings.height});
   settings.spp = options.spp.value_or(scene.settings.spp);
   settings.bounces = options.bounces.value_or(scene.settings.bounces);
   settings.tile = options.tile.value_or(scene.settings.tile);
@@ -156,9 +153,11 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options) {
   const Clock::time_point start = Clock::now();
   const Settings settings = resolve(scene, options);
-  CHECK(settings.width > 0 && settings.height > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
+  const PixelRect crop = settings.crop;
+  CHECK(crop.width() > 0 && crop.height() > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
+  CHECK(crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= settings.width && crop.y1 <= settings.height, "a crop within");
   const World world = make_world(scene, settings);
-  RenderResult result{Film(settings.width, settings.height, settings.layers), settings, {}};
+  RenderResult result{Film(crop, settings.layers), settings, {}};
   result.stats = render_tiles(world, result.film, options);
   if (world.field.regions) {
     result.stats.region_bytes = world.field.regions->facts().bytes;

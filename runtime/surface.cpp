@@ -79,6 +79,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
     const Facing found = facing(gradient, hits[i]);
     points[i].normal = found.normal;
+    points[i].surface = surface[i];
     points[i].material = scene.surfaces[surface[i]].material;
     points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
     points[i].clear = found.exact && hits[i].side > 0 ? clear_of(convex[i], size, points[i].offset, field) : 0;

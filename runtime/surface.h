@@ -26,6 +26,7 @@ struct Hit {
 
 struct SurfacePoint {
   glm::vec3 normal;        // unit length, into the space the ray came through; dot(normal, wo) > 0
+  std::uint32_t surface;   // index into CompiledScene::surfaces
   std::uint32_t material;  // index into CompiledScene::materials
   float offset;            // how far along the normal a new ray has to start, scene units
   // A ray that leaves into the space the ray came through meets nothing before this, scene units from where it

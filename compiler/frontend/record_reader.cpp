@@ -151,6 +151,13 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
   return std::nullopt;
 }
 
+// The place of the word among the row's choices; nullopt when it is none of them.
+std::optional<std::size_t> choice_of(const Value& value, const PropertySpec& row) {
+  const auto found = std::find(row.choices.begin(), row.choices.end(), std::get<std::string>(value.data));
+  if (found == row.choices.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - row.choices.begin());
+}
+
 std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("`{}`: {}", spec.name, spec.doc)}; }
 
 // Help for a value of the wrong type.
@@ -285,6 +292,10 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
                        about(row));
+  } else if (row.type == ValueType::Choice && !choice_of(value, row)) {
+    const std::string& word = std::get<std::string>(value.data);
+    diagnostics_.error("E0108", value.span, fmt::format("unknown {} of {} `{}`", row.name, spec_.title, word), "",
+                       {did_you_mean(word, row.choices), about(row)[0]});
   } else {
     fit_.push_back({row.name, &value});
   }
@@ -307,6 +318,13 @@ std::vector<double> RecordReader::numbers(std::string_view name) const {
   append_numbers(*given, all);
   if (row->type == ValueType::Color && all.size() == 1) all.assign(3, all[0]);
   return all;
+}
+
+std::size_t RecordReader::choice(std::string_view name) const {
+  const PropertySpec* row = spec_.find(name);
+  CHECK(row != nullptr && row->type == ValueType::Choice, "a property of the table, one of some words");
+  const Value* given = value(name);
+  return given == nullptr ? 0 : *choice_of(*given, *row);
 }
 
 glm::dvec3 RecordReader::vec3(std::string_view name) const {

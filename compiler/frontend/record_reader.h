@@ -37,6 +37,8 @@ class RecordReader {
   std::vector<double> numbers(std::string_view name) const;
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
+  // The place among the table's choices of the word given, or 0 when it is absent or unfit.
+  std::size_t choice(std::string_view name) const;
 
  private:
   struct Fit {

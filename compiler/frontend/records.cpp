@@ -171,8 +171,17 @@ const RecordSpec& film_record() {
       "",
       "`film`",
       "film",
-      {integer("width", "pixels", 640, {1, kMaxSide}), integer("height", "pixels", 360, {1, kMaxSide}),
-       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100})}};
+      {integer("width", "pixels", 640, {1, kMaxSide}),
+       integer("height", "pixels", 360, {1, kMaxSide}),
+       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100}),
+       {"tone",
+        ValueType::Choice,
+        "how light becomes a display's, after exposure",
+        {},
+        false,
+        Rule::Any,
+        {},
+        {kToneCurves.begin(), kToneCurves.end()}}}};
   return record;
 }
 

@@ -71,6 +71,7 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Text:
     case ValueType::Choice:
       if (property.name == "type") return {{"const", record.type}};
+      if (property.type == ValueType::Choice) return {{"enum", property.choices}};
       return string_schema();
     case ValueType::Record:
       return reference(property.name);

@@ -99,7 +99,7 @@ Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diag
   const RecordReader reader(film_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
                             diagnostics);
   return {static_cast<int>(reader.number("width")), static_cast<int>(reader.number("height")),
-          reader.number("exposure")};
+          reader.number("exposure"), static_cast<ToneCurve>(reader.choice("tone"))};
 }
 
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {

@@ -22,9 +22,10 @@ constexpr Map kMaps[] = {
 
 std::vector<float> values_of(const runtime::Film& film, const Map& map) {
   std::vector<float> values;
-  values.reserve(static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height()));
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) values.push_back(static_cast<float>(film.means(x, y).*map.value));
+  const runtime::PixelRect area = film.area();
+  values.reserve(area.pixels());
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*map.value));
   }
   return values;
 }
@@ -41,9 +42,10 @@ std::string describe_values(const std::vector<float>& values, const Map& map) {
 
 Verdict read_map_name(std::string_view text, std::string& path) {
   path = text;
-  if (runtime::image_format_of(path) || runtime::is_float_map(path)) return std::nullopt;
+  const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
+  if ((format && format->shown) || runtime::is_float_map(path)) return std::nullopt;
   return Complaint{fmt::format("`{}` does not end in the name of a format for maps", text),
-                   "valid endings: .png, .jpg, .jpeg, .bmp for colours, .pfm for numbers"};
+                   fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
 }
 
 std::vector<std::string> cost_map_files(const std::string& path) {

@@ -12,7 +12,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes some 100 bytes
+constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes 32 to 188 bytes
 
 // One name for a file however it is written, whether it exists or not.
 std::filesystem::path canonical_name(const std::string& path) {
@@ -26,7 +26,16 @@ Verdict read_output(std::string_view text, std::string& path) {
   path = text;
   if (runtime::image_format_of(path)) return std::nullopt;
   return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
-                   "valid endings: .png, .jpg, .jpeg, .bmp"};
+                   "valid endings: " + runtime::image_endings()};
+}
+
+Verdict read_shown_output(std::string_view text, std::string& path) {
+  path = text;
+  const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
+  if (format && format->shown) return std::nullopt;
+  const char* problem = format ? "`{}`: this format holds numbers, not a picture to be shown"
+                               : "`{}` does not end in a picture format's name";
+  return Complaint{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
 }
 
 std::string default_output(const std::string& scene) {

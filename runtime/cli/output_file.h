@@ -13,8 +13,9 @@
 
 namespace fathom::cli {
 
-// A file name with the ending of a picture format.
+// A file name with the ending of a picture format; of one that holds what a display shows.
 Verdict read_output(std::string_view text, std::string& path);
+Verdict read_shown_output(std::string_view text, std::string& path);
 
 // "scenes/ball.json" -> "ball.png", in the current folder; "out.png" for standard input.
 std::string default_output(const std::string& scene);

@@ -4,33 +4,46 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <system_error>
+#include <thread>
 
 #include "runtime/cli/cost_map.h"
+#include "runtime/cli/file_watch.h"
 #include "runtime/cli/output_file.h"
+#include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/verbosity.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/denoise.h"
+#include "runtime/film_channels.h"
+#include "runtime/image_exr.h"
 #include "runtime/image_io.h"
 
 namespace fathom::cli {
 namespace {
 
-// The pictures beside the main one: the suffix of the name, whether asked for, how they are made.
-struct Layer {
-  const char* suffix;
-  bool RenderRequest::*wanted;
-  runtime::Picture (*picture)(const runtime::Film& film);
+// The layers that an output is of, and the file of each.
+struct LayerFile {
+  runtime::Layer layer;
+  std::string path;
 };
-constexpr Layer kLayers[] = {
-    {"albedo", &RenderRequest::albedo, runtime::albedo_picture},
-    {"depth", &RenderRequest::depth, runtime::depth_picture},
-    {"normal", &RenderRequest::normal, runtime::normal_picture},
-};
+std::vector<LayerFile> layer_files(const RenderRequest& request, const std::string& output) {
+  std::vector<LayerFile> files = {{runtime::Layer::Beauty, output}};
+  if (holds_layers(output)) return files;
+  const auto add = [&](bool wanted, runtime::Layer layer) {
+    if (wanted) files.push_back({layer, beside(output, std::string(runtime::info(layer).name))});
+  };
+  add(request.albedo, runtime::Layer::Albedo);
+  add(request.depth, runtime::Layer::Depth);
+  add(request.normal, runtime::Layer::Normal);
+  add(request.denoise, runtime::Layer::Noisy);
+  return files;
+}
 
 // Devices and pipes are written to as they are; only files appear whole or not at all.
 bool is_special(const std::string& path) {
@@ -49,10 +62,7 @@ std::optional<std::string> check_stats_path(const std::string& path) {
 std::vector<std::string> output_files(const RenderRequest& request) {
   std::vector<std::string> files;
   for (const std::string& path : request.outputs) {
-    files.push_back(path);
-    for (const Layer& layer : kLayers) {
-      if (request.*layer.wanted) files.push_back(beside(path, layer.suffix));
-    }
+    for (const LayerFile& file : layer_files(request, path)) files.push_back(file.path);
   }
   if (request.cost_map) {
     for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
@@ -66,11 +76,8 @@ std::vector<std::string> output_files(const RenderRequest& request) {
 // Whether every file could be written, as far as can be known before there is anything to write.
 std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
   for (const std::string& path : request.outputs) {
-    if (const auto problem = runtime::check_image_path(path)) return fail(streams, kIo, *problem);
-    for (const Layer& layer : kLayers) {
-      if (!(request.*layer.wanted)) continue;
-      if (const auto problem = runtime::check_image_path(beside(path, layer.suffix)))
-        return fail(streams, kIo, *problem);
+    for (const LayerFile& file : layer_files(request, path)) {
+      if (const auto problem = runtime::check_image_path(file.path)) return fail(streams, kIo, *problem);
     }
   }
   if (request.cost_map) {
@@ -84,11 +91,22 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
   return std::nullopt;
 }
 
+// For --watch: the scene's file, and whether the render under way is no longer of it.
+struct Watching {
+  FileWatch files;
+  std::atomic<bool> changed = false;
+};
+
+// `watching`, when given, ends the render as soon as there is a new file.
 runtime::RenderResult render_with_progress(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                           const Streams& streams) {
+                                           const Streams& streams, Watching* watching) {
   runtime::RenderOptions options = request.options;
+  if (watching) options.cancel = &watching->changed;
   ProgressLine line(streams);
-  if (!request.quiet) options.on_progress = [&](const runtime::Progress& progress) { line.update(progress); };
+  options.on_progress = [&](const runtime::Progress& progress) {
+    if (!request.quiet) line.update(progress);
+    if (watching && watching->files.changed()) watching->changed = true;
+  };
   return runtime::render(scene, options);
 }
 
@@ -96,16 +114,25 @@ std::string written(const std::string& path, const runtime::Film& film) {
   return fmt::format("wrote {} ({}x{})", path, film.width(), film.height());
 }
 
-// The pictures for one -o. `lines` collects what was written.
-std::optional<std::string> write_pictures(const RenderRequest& request, const std::string& path, double exposure,
-                                          const runtime::Film& film, std::vector<std::string>& lines) {
-  if (auto problem = runtime::write_image(runtime::beauty_picture(film, exposure), path)) return problem;
-  lines.push_back(written(path, film));
-  for (const Layer& layer : kLayers) {
-    if (!(request.*layer.wanted)) continue;
-    const std::string name = beside(path, layer.suffix);
-    if (auto problem = runtime::write_image(layer.picture(film), name)) return problem;
-    lines.push_back(written(name, film));
+// One -o, in all its files. `lines` collects what was written.
+std::optional<std::string> write_output(const RenderRequest& request, const std::string& path,
+                                        const compiler::CompiledScene& scene, const runtime::RenderResult& result,
+                                        std::vector<std::string>& lines) {
+  const runtime::Film& film = result.film;
+  const runtime::Settings& settings = result.settings;
+  if (holds_layers(path)) {
+    std::optional<double> seconds;
+    if (request.options.profile) seconds = result.stats.seconds;
+    const auto rows = runtime::rows_of(film, settings.width, settings.height, scene.origin,
+                                       picture_attributes(scene, settings, seconds));
+    if (auto problem = runtime::write_exr(rows, path)) return problem;
+    lines.push_back(written(path, film) + fmt::format(": {} channels", rows.channels.size()));
+    return std::nullopt;
+  }
+  const runtime::PictureOptions options{{scene.film.exposure, scene.film.tone}, request.bits == 0 ? 8 : 16};
+  for (const LayerFile& file : layer_files(request, path)) {
+    if (auto problem = runtime::write_layer(runtime::layer_of(film, file.layer), options, file.path)) return problem;
+    lines.push_back(written(file.path, film));
   }
   return std::nullopt;
 }
@@ -128,7 +155,7 @@ std::optional<ExitCode> write_all(const RenderRequest& request, const compiler::
   std::vector<std::string> lines;
   std::optional<std::string> problem;
   for (const std::string& path : request.outputs) {
-    if (!problem) problem = write_pictures(request, path, scene.film.exposure, result.film, lines);
+    if (!problem) problem = write_output(request, path, scene, result, lines);
   }
   if (request.cost_map && !problem) problem = write_cost_maps(*request.cost_map, result.film, lines);
   result.stats.peak_memory = runtime::peak_memory();
@@ -141,17 +168,11 @@ std::optional<ExitCode> write_all(const RenderRequest& request, const compiler::
   return std::nullopt;
 }
 
-}  // namespace
-
-int run_render(std::span<const std::string> args, const Streams& streams) {
-  auto parsed = parse_render(args, streams);
-  if (const int* code = std::get_if<int>(&parsed)) return *code;
-  RenderRequest& request = std::get<RenderRequest>(parsed);
-  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
-  if (const auto code = check_outputs(request, streams)) return *code;
+// One picture of the file as it is now.
+ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching) {
+  RenderRequest request = asked;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-
   Verbosity verbosity(request.verbosity, streams);
   auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams,
                                 verbosity.watch_compiler());
@@ -159,15 +180,41 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
-  if (request.no_denoise && request.verbosity > 0)
-    note(streams, "there is no denoiser; --no-denoise changes nothing");
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
   }
 
-  runtime::RenderResult result = render_with_progress(request, scene, streams);
+  runtime::RenderResult result = render_with_progress(request, scene, streams, watching);
+  if (result.stats.cancelled) return kDone;
+  if (request.denoise) runtime::denoise(result.film, result.settings.threads);
   if (const auto code = write_all(request, scene, result, streams)) return *code;
   return kDone;
+}
+
+// Until a signal ends the program: files are written whole or not at all, so any moment will do.
+[[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
+  Watching watching{FileWatch({request.scene.path})};
+  while (true) {
+    watching.changed = false;
+    render_once(request, streams, &watching);
+    if (watching.changed) continue;
+    if (!request.quiet) note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
+    streams.err.flush();
+    streams.out.flush();
+    while (!watching.files.changed()) std::this_thread::sleep_for(kWatchInterval);
+  }
+}
+
+}  // namespace
+
+int run_render(std::span<const std::string> args, const Streams& streams) {
+  auto parsed = parse_render(args, streams);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const RenderRequest& request = std::get<RenderRequest>(parsed);
+  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
+  if (const auto code = check_outputs(request, streams)) return *code;
+  if (request.watch) render_on_change(request, streams);
+  return render_once(request, streams, nullptr);
 }
 
 }  // namespace fathom::cli

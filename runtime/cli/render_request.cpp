@@ -7,6 +7,7 @@
 
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/output_file.h"
+#include "runtime/image_io.h"
 
 namespace fathom::cli {
 namespace {
@@ -15,18 +16,35 @@ constexpr const char* kExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
     "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
+    "fathom render scene.json -o out.exr -o out.png --tone agx --crop 25%,25%,75%,75%\n"
+    "fathom render scene.json -o out.png -s 64 --denoise         # and out-noisy.png\n"
+    "fathom render scene.json -o out.png --preview --watch       # draws again whenever the file is saved\n"
     "fathom render scene.json -o out.png --profile --cost-map cost.png";
+
+// Of --preview.
+constexpr int kPreviewShrink = 4;  // each side
+constexpr int kPreviewSpp = 4;
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
   arguments.option("-o,--output", "FILE",
-                   "Picture to write: png, jpg, jpeg or bmp; may be repeated (default: the scene's name with .png)",
+                   "Picture to write: png, jpg, jpeg or bmp; numbers: exr (all layers), pfm or hdr; may be repeated "
+                   "(default: the scene's name with .png)",
                    append_to(read_output, request.outputs));
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));
   arguments.option("--aspect", "W:H", "Width to height, as 16:9 or 4x3; the width stays",
                    into(read_aspect, request.aspect));
   arguments.option("--size", "WxH", "Width and height in pixels, as 1920x1080", into(read_size, request.size));
+  arguments.option("--crop", "X0,Y0,X1,Y1",
+                   "The part of the picture to render, in pixels or percent, X1 and Y1 not in it: 25%,25%,75%,75%",
+                   into(read_crop, request.crop));
+  arguments.option("--exposure", "STOPS", "Brightness of pictures: 1 is twice as bright (the scene's)",
+                   into(read_exposure, request.exposure));
+  arguments.option("--tone", "CURVE",
+                   "How light becomes a display's: none, filmic, aces, agx or neutral (the scene's)",
+                   one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
+  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
   arguments.flag("-a,--albedo", "Write FILE-albedo beside each picture: the surfaces' own colours", request.albedo);
   arguments.flag("-d,--depth", "Write FILE-depth beside each picture: near is white, far is dark", request.depth);
   arguments.flag("-n,--normal", "Write FILE-normal beside each picture: the surfaces' directions", request.normal);
@@ -41,7 +59,7 @@ void add_output_options(Arguments& arguments, RenderRequest& request) {
                  request.options.profile);
 }
 
-void add_renderer_options(Arguments& arguments, RenderRequest& request) {
+void add_renderer_options(Arguments& arguments, RenderRequest& request, bool& no_denoise) {
   runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (what is not given comes from the scene file)");
   arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
@@ -57,7 +75,14 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    into(read_positive, options.far));
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
-  arguments.flag("--no-denoise", "Accepted for compatibility; there is no denoiser", request.no_denoise);
+  arguments.flag("--denoise",
+                 "Take the noise out of the picture; FILE-noisy beside it, or in exr noisy.*, is without",
+                 request.denoise);
+  arguments.flag("--no-denoise", "Leave it in (the default, but for --preview)", no_denoise);
+  arguments.flag("--preview", "Quickly: a quarter of the width and height, 4 samples unless --spp says, denoised",
+                 request.preview);
+  arguments.flag("--watch", "Render again whenever the scene's file changes, until Ctrl-C (130) ends it",
+                 request.watch);
 }
 
 std::vector<std::string_view> method_names() {
@@ -124,7 +149,45 @@ std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& reque
   return marching;
 }
 
+// Of the formats that are shown only some have 16 bits.
+std::optional<ExitCode> check_bits(const RenderRequest& request, const Streams& streams) {
+  if (request.bits == 0) return std::nullopt;
+  for (const std::string& path : request.outputs) {
+    const runtime::ImageFormatInfo& format = *runtime::image_format_of(path);
+    if (!format.shown || format.deep) continue;
+    return fail(streams, kUsage, fmt::format("--bits 16: `{}` can have 8 bits a sample only", path),
+                {"16 bits go into .png; .exr, .pfm and .hdr hold the numbers themselves"});
+  }
+  return std::nullopt;
+}
+
+int pixel_of(const CropSides::Side& side, int length) {
+  return static_cast<int>(std::min(side.percent ? std::round(side.value * length / 100) : side.value, 1e9));
+}
+
+// The crop's pixels, or the exit code after a message.
+std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int width, int height,
+                                                   const Streams& streams) {
+  const runtime::PixelRect area{pixel_of(crop.x0, width), pixel_of(crop.y0, height), pixel_of(crop.x1, width),
+                                pixel_of(crop.y1, height)};
+  const std::string pixels = fmt::format("{},{},{},{}", area.x0, area.y0, area.x1, area.y1);
+  if (area.width() < 1 || area.height() < 1) {
+    return fail(streams, kUsage, fmt::format("--crop: there are no pixels in {}", pixels),
+                {"give the corner with the smaller coordinates first; the second is not part of it"});
+  }
+  if (area.x1 > width || area.y1 > height) {
+    return fail(streams, kUsage, fmt::format("--crop: {} reaches beyond the picture", pixels),
+                {fmt::format("the whole picture is 0,0,{},{}", width, height)});
+  }
+  return area;
+}
+
 }  // namespace
+
+bool holds_layers(const std::string& output) {
+  const runtime::ImageFormatInfo* format = runtime::image_format_of(output);
+  return format != nullptr && format->format == runtime::ImageFormat::Exr;
+}
 
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
   RenderRequest request;
@@ -133,7 +196,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
   arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
   add_output_options(arguments, request);
-  add_renderer_options(arguments, request);
+  bool no_denoise = false;
+  add_renderer_options(arguments, request, no_denoise);
   add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
 
@@ -145,11 +209,25 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     return fail(streams, kUsage, "--quiet leaves out the numbers that --profile adds to",
                 {"leave out --quiet, or ask for --stats-json FILE"});
   }
-  request.options.layers = {request.albedo || request.depth || request.normal, request.cost_map.has_value()};
   if (request.outputs.empty()) {
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;
   }
+  if (const auto code = check_bits(request, streams)) return *code;
+  if (request.watch && request.scene.path == "-") {
+    return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
+  }
+  if (request.denoise && no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
+  if (request.preview) {
+    request.denoise = !no_denoise;
+    if (!request.options.spp) request.options.spp = kPreviewSpp;
+  }
+  request.options.layers = {.first_hit = request.albedo || request.depth || request.normal,
+                            .cost = request.cost_map.has_value()};
+  if (std::any_of(request.outputs.begin(), request.outputs.end(), holds_layers)) {
+    request.options.layers = runtime::kAllLayers;
+  }
+  if (request.denoise) request.options.layers.first_hit = request.options.layers.halves = true;
   request.options.threads = request.threads.value_or(0);
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
@@ -178,9 +256,23 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     width = request.size->width;
     height = request.size->height;
   }
+  if (request.preview) {
+    width = std::max(1.0, std::round(width / kPreviewShrink));
+    height = std::max(1.0, std::round(height / kPreviewShrink));
+  }
+  if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
+    return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
+                {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
+  }
   if (const auto code = check_picture_size(width, height, streams)) return code;
   scene.film.width = static_cast<int>(width);
   scene.film.height = static_cast<int>(height);
+  scene.film.exposure = request.exposure.value_or(scene.film.exposure);
+  if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
+  if (!request.crop) return std::nullopt;
+  const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
+  if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;
+  request.options.crop = std::get<runtime::PixelRect>(crop);
   return std::nullopt;
 }
 

@@ -20,8 +20,12 @@ struct RenderRequest {
   std::optional<double> aspect, fov;  // width over height; radians
   std::optional<int> resolution;      // width, pixels
   std::optional<PixelSize> size;
+  std::optional<CropSides> crop;
+  std::optional<double> exposure;  // stops
+  int tone = -1;                   // a compiler::ToneCurve; -1: not given
+  int bits = 0;                    // an index into 8, 16
   std::optional<int> threads;
-  runtime::RenderOptions options;  // width and height are not set
+  runtime::RenderOptions options;  // width and height are not set; crop is by override_scene()
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
@@ -31,13 +35,19 @@ struct RenderRequest {
   bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
-  bool quiet = false, no_denoise = false;
+  bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
+  bool preview = false, watch = false;
+  bool quiet = false;
 };
 
 // The request, or the exit code after help or a message.
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
 
-// Puts the request's camera and size over the scene's. An ExitCode, after a message, when they do not fit together.
+// Whether the output holds all layers in one file, so that none is written beside it.
+bool holds_layers(const std::string& output);
+
+// Puts the request's camera, size, tone and crop over the scene's. An ExitCode, after a message, when they do not fit
+// together.
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
 

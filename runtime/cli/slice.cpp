@@ -46,7 +46,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   std::optional<std::string> output;
   Arguments arguments("slice", "Draws the field on a plane across one of the axes.", kExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp", into(read_output, output));
+  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp", into(read_shown_output, output));
   arguments.option("--axis", "AXIS", "The axis the plane lies across: x, y or z (z)",
                    one_of({"x", "y", "z"}, request.axis));
   arguments.option("--at", "OFFSET", "Where on that axis the plane is, scene units (0)",

@@ -131,6 +131,35 @@ Verdict read_rectangle(std::string_view text, Rectangle& rectangle) {
   return std::nullopt;
 }
 
+Verdict read_crop(std::string_view text, CropSides& crop) {
+  const auto wrong = [&] {
+    return complain(fmt::format("`{}` is not a part of a picture", text),
+                    "write its two corners in pixels or percent: 0,0,640,360 or 25%,25%,75%,75%");
+  };
+  CropSides read;
+  CropSides::Side* sides[] = {&read.x0, &read.y0, &read.x1, &read.y1};
+  std::size_t at = 0;
+  for (CropSides::Side* side : sides) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    if (at > text.size() || (end == text.size()) != (side == sides[3])) return wrong();
+    std::string_view digits = text.substr(at, end - at);
+    side->percent = cut_suffix(digits, "%");
+    const auto number = to_number(digits);
+    if (!number || *number < 0 || (side->percent ? *number > 100 : *number != std::floor(*number))) return wrong();
+    side->value = *number;
+    at = end + 1;
+  }
+  crop = read;
+  return std::nullopt;
+}
+
+Verdict read_exposure(std::string_view text, double& stops) {
+  const auto value = to_number(text);
+  if (!value || std::abs(*value) > 100) return complain(fmt::format("`{}` is not a number from -100 to 100", text));
+  stops = *value;
+  return std::nullopt;
+}
+
 Verdict read_finite(std::string_view text, double& number) {
   const auto value = to_number(text);
   if (!value) return complain(fmt::format("`{}` is not a number", text));

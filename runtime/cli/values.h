@@ -34,6 +34,15 @@ struct Rectangle {
   glm::dvec2 lo, hi;
 };
 
+// A rectangle of a picture, half open; each side in pixels or in hundredths of the picture's width or height.
+struct CropSides {
+  struct Side {
+    double value = 0;
+    bool percent = false;
+  };
+  Side x0, y0, x1, y1;
+};
+
 // The whole text as a finite number, in decimal or scientific notation.
 std::optional<double> to_number(std::string_view text);
 
@@ -58,6 +67,12 @@ Verdict read_box(std::string_view text, PointBox& box);
 
 // "x0,y0,x1,y1", two opposite corners with the smaller coordinates first, the corners apart in both.
 Verdict read_rectangle(std::string_view text, Rectangle& rectangle);
+
+// "0,0,640,360", "25%,25%,75%,75%": whole pixels or percent, two opposite corners.
+Verdict read_crop(std::string_view text, CropSides& crop);
+
+// Stops within -100 and 100.
+Verdict read_exposure(std::string_view text, double& stops);
 
 Verdict read_finite(std::string_view text, double& number);
 Verdict read_positive(std::string_view text, double& number);

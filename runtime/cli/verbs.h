@@ -17,6 +17,8 @@ int run_check(std::span<const std::string> args, const Streams& streams);
 int run_dump(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
 int run_slice(std::span<const std::string> args, const Streams& streams);
+int run_tonemap(std::span<const std::string> args, const Streams& streams);
+int run_diff(std::span<const std::string> args, const Streams& streams);
 int run_chart(std::span<const std::string> args, const Streams& streams);
 int run_emit(std::span<const std::string> args, const Streams& streams);
 int run_import(std::span<const std::string> args, const Streams& streams);
@@ -34,6 +36,8 @@ inline constexpr std::array kVerbs = {
     Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
+    Verb{"tonemap", "in.exr -o out.png", "makes a picture of a render's numbers", run_tonemap},
+    Verb{"diff", "out.png reference.png", "compares two pictures", run_diff},
     Verb{"chart", "[scene.json] -o folder", "charts speed against accuracy", run_chart},
     Verb{"emit", "cpp scene.json -o scene.h", "writes the field as C++ or GLSL", run_emit},
     Verb{"import", "model.vm -o scene.json", "writes a model of another format as a scene file", run_import},

@@ -46,6 +46,42 @@ TEST_CASE("elementary: the tangent is within 1e-14 of libm's", "[runtime]") {
   CHECK(tangent(M_PI / 4) == Approx(1).epsilon(1e-15));
 }
 
+TEST_CASE("elementary: log2, exp2 and powers in double are within their bounds of libm's", "[runtime]") {
+  double worst_log = 0, worst_exp = 0, worst_power = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double x = std::exp2(-300 + 600 * (i + 0.5) / 200000), truth = std::log2(x);
+    worst_log = std::max(worst_log, std::abs(log2(x) - truth) / (1 + std::abs(truth)));
+    const double y = -1000 + 2000 * (i + 0.5) / 200000;
+    worst_exp = std::max(worst_exp, std::abs(exp2(y) / std::exp2(y) - 1));
+    for (const double power_of : {0.2, 2.2, 2.4, -1.5}) {
+      const double expected = std::pow(x, power_of);
+      const double scale = 1 + std::abs(power_of * truth);
+      worst_power = std::max(worst_power, std::abs(power(x, power_of) / expected - 1) / scale);
+    }
+  }
+  for (double x = 0.5; x < 2; x += 1e-5) worst_log = std::max(worst_log, std::abs(log2(x) - std::log2(x)));
+  CHECK(worst_log <= 4e-16);
+  CHECK(worst_exp <= 1e-15);
+  CHECK(worst_power <= 1e-15);
+  for (int n = -1000; n <= 1000; ++n) {
+    CHECK(exp2(static_cast<double>(n)) == std::ldexp(1.0, n));
+    CHECK(log2(std::ldexp(1.0, n)) == n);
+  }
+  CHECK(log2(0x1p-1074) == -1074);
+  CHECK(power(0, 2.2) == 0);
+}
+
+TEST_CASE("elementary: sRGB decoded and encoded is the same signal", "[runtime]") {
+  double worst = 0;
+  for (double signal = 0; signal <= 1; signal += 1e-4) {
+    worst = std::max(worst, std::abs(srgb_encode(srgb_decode(signal)) - signal));
+  }
+  CHECK(worst <= 1e-7);  // the standard's two pieces meet with a step of 3e-8 in light
+  CHECK(srgb_decode(0) == 0);
+  CHECK(srgb_decode(1) == 1);
+  CHECK(srgb_decode(0.5) == Approx(0.21404114));
+}
+
 TEST_CASE("elementary: sRGB follows the standard", "[runtime]") {
   CHECK(srgb_encode(-1) == 0);
   CHECK(srgb_encode(NAN) == 0);

@@ -1,6 +1,7 @@
 #include "runtime/film.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace fathom::runtime {
 namespace {
@@ -59,6 +60,90 @@ TEST_CASE("film: the order of samples leaves no trace", "[runtime]") {
   }
   CHECK(forwards.hash() == backwards.hash());
   CHECK(forwards.hash() != Film(1, 1).hash());
+}
+
+PathSample numbered(std::uint32_t number) {
+  PathSample sample = sample_of(0.1f * static_cast<float>(number * 7 % 11), number % 3);
+  sample.number = number;
+  sample.position = glm::dvec3(number, -0.5 * number, 1e6);
+  sample.surface = number * 5 % 7;
+  sample.material = number * 3 % 4;
+  sample.evaluations = number;
+  return sample;
+}
+
+TEST_CASE("film: every layer is the same in any order", "[runtime]") {
+  constexpr std::uint32_t kSamples = 200;
+  Film forwards(1, 1, kAllLayers), backwards(1, 1, kAllLayers), mixed(1, 1, kAllLayers);
+  for (std::uint32_t i = 0; i < kSamples; ++i) {
+    forwards.add(0, 0, numbered(i));
+    backwards.add(0, 0, numbered(kSamples - 1 - i));
+    mixed.add(0, 0, numbered(i * 77 % kSamples));
+  }
+  CHECK(forwards.hash() == backwards.hash());
+  CHECK(forwards.hash() == mixed.hash());
+  const PixelMeans means = mixed.means(0, 0);
+  // Sample 0 hit nothing (0 % 3 is its depth), sample 1 did.
+  CHECK(means.surface_id == 5 + 1);
+  CHECK(means.material_id == 3 + 1);
+  CHECK(means.position.z == 1e6);
+  CHECK(means.evaluations == (kSamples - 1) / 2.0);
+}
+
+TEST_CASE("film: ids and positions are those of samples that hit, 0 without any", "[runtime]") {
+  Film film(1, 1, kAllLayers);
+  film.add(0, 0, sample_of(1, 0));
+  CHECK(film.means(0, 0).surface_id == 0);
+  CHECK(film.means(0, 0).material_id == 0);
+  CHECK(film.means(0, 0).position == glm::dvec3(0));
+  PathSample hit = sample_of(1, 2);
+  hit.position = {1, 2, 3};
+  film.add(0, 0, hit);
+  CHECK(film.means(0, 0).surface_id == 1);
+  CHECK(film.means(0, 0).position == glm::dvec3(1, 2, 3));
+  CHECK(Film(1, 1).means(0, 0).surface_id == 0);
+}
+
+TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
+  for (const double scale : {1e-5, 1.0, 1e5}) {
+    Film film(1, 1, {.variance = true});
+    // s^2 of 1, 2, ..., n is n (n + 1) / 12.
+    constexpr int kSamples = 100;
+    PathSample sample;
+    for (int i = 1; i <= kSamples; ++i) {
+      sample.radiance = glm::vec3(static_cast<float>(scale * i));
+      film.add(0, 0, sample);
+    }
+    const double expected = scale * scale * (kSamples + 1) / 12.0;
+    CHECK(film.means(0, 0).variance.x == Approx(expected).epsilon(1e-4));  // the terms are rounded to 2^-32
+  }
+  Film even(1, 1, {.variance = true});
+  PathSample sample;
+  sample.radiance = glm::vec3(0.1f, 1e-4f, 1000.1f);
+  for (int i = 0; i < 1000; ++i) even.add(0, 0, sample);
+  CHECK(even.means(0, 0).variance == glm::dvec3(0));  // exactly
+  Film one(1, 1, {.variance = true});
+  one.add(0, 0, sample);
+  CHECK(one.means(0, 0).variance == glm::dvec3(0));
+}
+
+TEST_CASE("film: squares beyond whole numbers are full, and variance stays finite", "[runtime]") {
+  Film film(1, 1, {.variance = true});
+  PathSample sample;
+  sample.radiance = glm::vec3(3e9f, 1e9f, 0);
+  for (int i = 0; i < 8; ++i) CHECK_FALSE(film.add(0, 0, sample));
+  CHECK(std::isfinite(film.means(0, 0).variance.x));
+  CHECK(film.means(0, 0).variance.y >= 0);
+  CHECK(film.means(0, 0).variance.z == 0);
+}
+
+TEST_CASE("film: a part of a picture takes the picture's pixels", "[runtime]") {
+  Film film(PixelRect{3, 2, 5, 4});
+  CHECK(film.width() == 2);
+  CHECK(film.height() == 2);
+  film.add(4, 3, sample_of(1, 4));
+  CHECK(film.means(4, 3).hits == 1);
+  CHECK(film.means(3, 2).samples == 0);
 }
 
 TEST_CASE("film: a full sum stays full and says so", "[runtime]") {

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "runtime/film_channels.h"
 #include "runtime/tiles.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
@@ -175,7 +176,7 @@ TEST_CASE("render: tiles take every pixel once, and a small picture has enough o
   for (const auto& [width, height, threads] : {std::array{70, 45, 2}, {5, 300, 3}, {1, 1, 8}, {33, 17, 16}}) {
     const int side = tile_side(width, height, 16, threads);
     INFO(width << " x " << height << ", " << threads << " threads: tiles of " << side);
-    Tiles tiles(width, height, side);
+    Tiles tiles({0, 0, width, height}, side);
     std::vector<int> taken(static_cast<std::size_t>(width * height));
     int count = 0;
     for (auto tile = tiles.take(); tile; tile = tiles.take(), ++count) {
@@ -186,6 +187,53 @@ TEST_CASE("render: tiles take every pixel once, and a small picture has enough o
     CHECK(taken == std::vector<int>(taken.size(), 1));
     CHECK(count >= std::min(width * height, kTilesPerThread * threads));
   }
+}
+
+TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[render]") {
+  const auto scene = scene_of(kVaried);
+  RenderOptions options = options_of(48, 27, 3);
+  options.layers = kAllLayers;
+  const RenderResult whole = render(scene, options);
+  for (const PixelRect crop : {PixelRect{5, 3, 30, 20}, {47, 26, 48, 27}, {0, 0, 48, 1}}) {
+    options.crop = crop;
+    options.threads = crop.x0 == 5 ? 3 : 1;
+    const RenderResult part = render(scene, options);
+    CHECK(part.film.area() == crop);
+    CHECK(part.stats.primary_rays == crop.pixels() * 3);
+    int different = 0;
+    for (int y = crop.y0; y < crop.y1; ++y) {
+      for (int x = crop.x0; x < crop.x1; ++x) {
+        const PixelMeans a = whole.film.means(x, y), b = part.film.means(x, y);
+        for (const FilmChannel& channel : film_channels()) different += channel.value(a) != channel.value(b);
+      }
+    }
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("render: a position lies on the surface that its ids name", "[render]") {
+  const auto scene = scene_of(R"("camera": {"position": [0, 0, 5]},
+      "materials": {"a": {"type": "diffuse"}, "b": {"type": "diffuse", "color": [0, 0, 1]}},
+      "objects": [{"name": "ball", "type": "sphere", "radius": 1, "material": "a"},
+                  {"name": "wall", "type": "plane", "normal": [0, 0, 1], "offset": -1, "material": "b"}])");
+  RenderOptions options = options_of(32, 32, 1);
+  options.layers = kAllLayers;
+  const RenderResult result = render(scene, options);
+  int balls = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const PixelMeans pixel = result.film.means(x, y);
+      REQUIRE(pixel.surface_id > 0);
+      const bool ball = scene.surfaces[pixel.surface_id - 1].name == "ball";
+      balls += ball;
+      CHECK(pixel.material_id - 1 == scene.surfaces[pixel.surface_id - 1].material);
+      const glm::dvec3 p = pixel.position;
+      CHECK(std::abs(ball ? glm::length(p) - 1 : p.z + 1) < 1e-5);
+      CHECK(glm::length(p - glm::dvec3(0, 0, 5)) == Approx(pixel.depth).epsilon(1e-6));
+    }
+  }
+  CHECK(balls > 50);
+  CHECK(balls < 900);
 }
 
 TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {

@@ -1,0 +1,51 @@
+// Files that appear whole or not at all: written beside their target, synced, and renamed.
+//
+//     AtomicFile file(path);
+//     file.write(bytes);
+//     if (auto problem = file.commit()) ...
+//
+// Without commit() the target stays as it was. Tested by: tests/runtime/image_io_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fathom::runtime {
+
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  // Each is false after the first failure.
+  bool write(std::span<const std::uint8_t> bytes);
+  bool seek(std::uint64_t position);  // from the file's beginning
+  std::uint64_t position() const { return position_; }
+  const std::optional<std::string>& problem() const { return problem_; }  // the first failure, for people
+
+  // The reason when the file could not be written.
+  [[nodiscard]] std::optional<std::string> commit();
+
+ private:
+  bool give_up(std::string_view why);  // false
+
+  std::string path_, beside_;
+  int file_ = -1;
+  std::uint64_t position_ = 0;
+  std::optional<std::string> problem_;
+};
+
+// Whether a file can be written under this name: whether its folder is there and open to us. The reason when not; to
+// be asked before the work that makes it.
+std::optional<std::string> check_file_path(const std::string& path);
+
+// The bytes as a file; the reason when it cannot be done, and then the target is as it was.
+[[nodiscard]] std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path);
+
+}  // namespace fathom::runtime

@@ -1,0 +1,95 @@
+#include "runtime/cli/picture_attributes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/camera.h"
+#include "runtime/cli/version.h"
+
+namespace fathom::cli {
+namespace {
+
+// FNV-1a (Fowler, Noll, Vo, 1991).
+class Hash {
+ public:
+  template <typename Words>
+  Hash& absorb(const Words& words) {
+    for (const auto word : words) {
+      for (std::size_t i = 0; i < sizeof(word); ++i) {
+        state_ = (state_ ^ (static_cast<std::uint64_t>(word) >> (8 * i) & 0xff)) * 0x100000001b3u;
+      }
+    }
+    return *this;
+  }
+  std::string text() const { return fmt::format("{:016x}", state_); }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+std::string program_hash(const compiler::CompiledScene& scene) {
+  return Hash().absorb(scene.distance.program().words).absorb(scene.surface.program().words).text();
+}
+
+// Columns of the matrix that acts on row vectors: of (p - eye) along each axis.
+using Column = glm::dvec4;
+Column along(glm::dvec3 axis, glm::dvec3 eye) { return {axis, -glm::dot(axis, eye)}; }
+
+runtime::Matrix4 matrix_of(const Column (&columns)[4]) {
+  runtime::Matrix4 rows;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      rows[static_cast<std::size_t>(4 * row + column)] = static_cast<float>(columns[column][row]);
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                       std::optional<double> seconds) {
+  const runtime::Camera camera(scene.camera, settings.width, settings.height);
+  const glm::dvec3 eye = camera.position() + scene.origin;
+  const Column x = along(camera.right(), eye), y = along(camera.up(), eye), z = along(camera.forward(), eye);
+  const Column one{0, 0, 0, 1}, w = camera.orthographic() ? one : z;
+  const glm::dvec2 half = camera.half_size();
+  // 0 to 1 from the left and from the bottom; 1 - 1/depth in perspective, which no finite depth brings to 1.
+  const Column depth = camera.orthographic() ? z : z - one;
+  runtime::Attributes attributes = {
+      {"samplesPerPixel", settings.spp},
+      {"worldToCamera", matrix_of({x, y, z, one})},
+      {"worldToNDC", matrix_of({0.5 * (x / half.x + w), 0.5 * (y / half.y + w), depth, w})},
+      {"fathom.version", std::string(kVersion)},
+      {"fathom.sceneHash", Hash().absorb(scene.source.text()).text()},
+      {"fathom.programHash", program_hash(scene)},
+      {"fathom.seed", std::to_string(settings.seed)},
+      {"fathom.sampleRange", fmt::format("0:{}", settings.spp)},
+      {"fathom.exposure", static_cast<float>(scene.film.exposure)},
+      {"fathom.tone", std::string(compiler::kToneCurves[static_cast<std::size_t>(scene.film.tone)])},
+  };
+  std::vector<std::string> objects, materials;
+  for (const compiler::Surface& surface : scene.surfaces) objects.push_back(surface.name);
+  for (const compiler::Material& material : scene.materials) materials.push_back(material.name);
+  attributes["fathom.objects"] = std::move(objects);
+  attributes["fathom.materials"] = std::move(materials);
+  if (seconds) attributes["renderTimeSeconds"] = static_cast<float>(*seconds);
+  return attributes;
+}
+
+runtime::ToneMapping tone_in(const runtime::Attributes& attributes) {
+  runtime::ToneMapping tone;
+  if (const auto found = attributes.find("fathom.exposure"); found != attributes.end()) {
+    if (const float* stops = std::get_if<float>(&found->second)) tone.exposure = static_cast<double>(*stops);
+  }
+  if (const auto found = attributes.find("fathom.tone"); found != attributes.end()) {
+    const std::string* name = std::get_if<std::string>(&found->second);
+    const auto& names = compiler::kToneCurves;
+    const auto curve = name ? std::find(names.begin(), names.end(), *name) : names.end();
+    if (curve != names.end()) tone.curve = static_cast<compiler::ToneCurve>(curve - names.begin());
+  }
+  return tone;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,106 @@
+// fathom tonemap: numbers to a picture. Of the OpenEXR file of a render it makes, bit for bit, the picture that the
+// render would have written itself.
+// Tested by: tests/runtime/cli_layers_test.cpp
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "runtime/cli/arguments.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/picture_attributes.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/image_io.h"
+#include "runtime/image_read.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom tonemap render.exr -o out.png                      # as the scene says\n"
+    "fathom tonemap render.exr -o out.png --exposure 1.5 --tone agx --bits 16\n"
+    "fathom tonemap render.exr -o normal.png --layer normal";
+
+struct TonemapRequest {
+  std::string input;
+  std::optional<std::string> output;
+  std::optional<double> exposure;
+  int tone = -1;  // a compiler::ToneCurve; -1: not given
+  int layer = 0;  // a runtime::Layer
+  int bits = 0;   // an index into 8, 16
+};
+
+std::vector<std::string_view> layer_names() {
+  std::vector<std::string_view> names;
+  for (const runtime::LayerInfo& layer : runtime::kLayers) names.push_back(layer.name);
+  return names;
+}
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, TonemapRequest& request) {
+  Arguments arguments("tonemap", "Makes a picture of a render's numbers.", kExamples);
+  arguments.positional("picture", "The file to read: " + runtime::image_endings(), request.input);
+  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp",
+                   into(read_shown_output, request.output));
+  arguments.option("--exposure", "STOPS", "Brightness: 1 is twice as bright (what the file says, or 0)",
+                   into(read_exposure, request.exposure));
+  arguments.option("--tone", "CURVE",
+                   "How light becomes a display's: none, filmic, aces, agx or neutral (what the file says, or none)",
+                   one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
+  arguments.option("--layer", "LAYER", "beauty (default), albedo, depth, normal or noisy",
+                   one_of(layer_names(), request.layer));
+  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  if (const auto code = arguments.parse(args, streams)) return code;
+  if (!request.output) return fail(streams, kUsage, "no picture to write", {"name it with -o FILE"});
+  const bool light = runtime::is_light(runtime::kLayers[static_cast<std::size_t>(request.layer)].layer);
+  if (!light && (request.exposure || request.tone >= 0)) {
+    return fail(streams, kUsage, "--exposure and --tone are about light: they do not go with another --layer");
+  }
+  if (request.bits != 0 && !runtime::image_format_of(*request.output)->deep) {
+    return fail(streams, kUsage, fmt::format("--bits 16: `{}` can have 8 bits a sample only", *request.output),
+                {"16 bits go into .png"});
+  }
+  return std::nullopt;
+}
+
+runtime::PictureOptions options_of(const TonemapRequest& request, const runtime::FloatImage& image) {
+  runtime::PictureOptions options{tone_in(image.attributes), request.bits == 0 ? 8 : 16};
+  if (request.exposure) options.tone.exposure = *request.exposure;
+  if (request.tone >= 0) options.tone.curve = static_cast<compiler::ToneCurve>(request.tone);
+  return options;
+}
+
+std::string channel_names(const runtime::FloatImage& image) {
+  std::string names;
+  for (const runtime::ChannelName& channel : image.channels) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+int run_tonemap(std::span<const std::string> args, const Streams& streams) {
+  TonemapRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  if (const auto code = check_collisions(request.input, {*request.output}, streams)) return *code;
+  if (const auto problem = runtime::check_image_path(*request.output)) return fail(streams, kIo, *problem);
+  const auto read = runtime::read_image(request.input);
+  if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
+    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
+  }
+  const auto& image = std::get<runtime::FloatImage>(read);
+  const runtime::LayerInfo& layer = runtime::kLayers[static_cast<std::size_t>(request.layer)];
+  const auto values = runtime::layer_of(image, layer.layer);
+  if (!values) {
+    return fail(streams, kBadScene,
+                fmt::format("`{}` has no layer `{}`, which is made of {}", request.input, layer.name,
+                            fmt::join(layer.channels, ", ")),
+                {"its channels: " + channel_names(image)});
+  }
+  if (const auto problem = runtime::write_layer(*values, options_of(request, image), *request.output)) {
+    return fail(streams, kIo, *problem);
+  }
+  streams.err << fmt::format("wrote {} ({}x{})\n", *request.output, image.area.width(), image.area.height());
+  return kDone;
+}
+
+}  // namespace fathom::cli

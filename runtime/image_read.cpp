@@ -1,0 +1,199 @@
+#include "runtime/image_read.h"
+
+#include <fmt/format.h>
+#include <stb_image.h>
+
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "runtime/elementary.h"
+#include "runtime/image_exr.h"
+#include "runtime/image_io.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Decoded = std::variant<FloatImage, std::string>;
+
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+
+// An image of that size with the channels R, G, B and perhaps A.
+FloatImage empty_image(int width, int height, bool alpha) {
+  FloatImage image;
+  image.width = width;
+  image.height = height;
+  image.area = {0, 0, width, height};
+  for (const char* name : {"R", "G", "B", "A"}) {
+    if (*name == 'A' && !alpha) continue;
+    image.channels.push_back({name, false});
+    image.values.emplace_back(image.area.pixels());
+  }
+  return image;
+}
+
+// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components; `light` and `share` make numbers of them.
+template <typename Sample, typename Light, typename Share>
+FloatImage spread(const Sample* samples, int width, int height, int components, const Light& light,
+                  const Share& share) {
+  const bool alpha = components % 2 == 0, grey = components <= 2;
+  FloatImage image = empty_image(width, height, alpha);
+  const std::size_t step = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < image.area.pixels(); ++i) {
+    const Sample* pixel = samples + i * step;
+    for (std::size_t c = 0; c < 3; ++c) image.values[c][i] = light(pixel[grey ? 0 : c]);
+    if (alpha) image.values[3][i] = share(pixel[step - 1]);
+  }
+  return image;
+}
+
+struct FreeStb {
+  void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+template <typename Sample>
+using StbPixels = std::unique_ptr<Sample, FreeStb>;
+
+std::string stb_problem() {
+  const char* reason = stbi_failure_reason();
+  return reason != nullptr ? reason : "its content makes no sense";
+}
+
+// Whole samples as sRGB signals.
+template <typename Sample>
+Decoded decode_signals(Sample* (*load)(const stbi_uc*, int, int*, int*, int*, int), const Bytes& bytes) {
+  int width = 0, height = 0, components = 0;
+  const StbPixels<Sample> pixels(load(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components, 0));
+  if (!pixels) return stb_problem();
+  constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
+  std::vector<float> light(kMost + 1);
+  for (std::size_t i = 0; i <= kMost; ++i) {
+    light[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
+  }
+  return spread(
+      pixels.get(), width, height, components, [&](Sample sample) { return light[sample]; },
+      [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
+}
+
+Decoded decode_shown(const Bytes& bytes) {
+  if (stbi_is_16_bit_from_memory(bytes.data(), static_cast<int>(bytes.size()))) {
+    return decode_signals<stbi_us>(stbi_load_16_from_memory, bytes);
+  }
+  return decode_signals<stbi_uc>(stbi_load_from_memory, bytes);
+}
+
+Decoded decode_hdr(const Bytes& bytes) {
+  // Otherwise stb would make light of any other picture.
+  if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
+  int width = 0, height = 0, components = 0;
+  const StbPixels<float> pixels(
+      stbi_loadf_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components, 3));
+  if (!pixels) return stb_problem();
+  const auto same = [](float value) { return value; };
+  return spread(pixels.get(), width, height, 3, same, same);
+}
+
+// The next word of a header, which ends with one white character; empty at the end.
+std::string_view next_word(std::string_view text, std::size_t& at) {
+  const auto white = [&](std::size_t i) {
+    return text[i] == ' ' || text[i] == '\n' || text[i] == '\t' || text[i] == '\r';
+  };
+  while (at < text.size() && white(at)) ++at;
+  const std::size_t begin = at;
+  while (at < text.size() && !white(at)) ++at;
+  const std::string_view word = text.substr(begin, at - begin);
+  if (at < text.size()) ++at;
+  return word;
+}
+
+template <typename T>
+std::optional<T> to(std::string_view word) {
+  T value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+// Source: as write_float_map().
+Decoded decode_pfm(const Bytes& bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::size_t at = 0;
+  const std::string_view kind = next_word(text, at);
+  const auto width = to<int>(next_word(text, at)), height = to<int>(next_word(text, at));
+  const auto scale = to<double>(next_word(text, at));
+  const bool grey = kind == "Pf";
+  if ((!grey && kind != "PF") || !width || !height || *width < 1 || *height < 1 || !scale || *scale == 0) {
+    return "it has no header of a portable float map";
+  }
+  const int components = grey ? 1 : 3;
+  if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
+  std::vector<float> values(static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) *
+                            static_cast<std::size_t>(components));
+  if (text.size() - at < values.size() * 4) return "it ends too early";
+  const std::size_t row = values.size() / static_cast<std::size_t>(*height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::uint32_t bits = 0;
+    for (std::size_t byte = 0; byte < 4; ++byte) {
+      bits |= std::uint32_t{bytes[at + 4 * i + byte]} << (8 * (*scale < 0 ? byte : 3 - byte));
+    }
+    const std::size_t y = static_cast<std::size_t>(*height) - 1 - i / row;
+    values[y * row + i % row] = std::bit_cast<float>(bits);
+  }
+  const auto same = [](float value) { return value; };
+  return spread(values.data(), *width, *height, components, same, same);
+}
+
+// False, and errno tells why.
+bool read_bytes(const std::string& path, Bytes& bytes) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) return false;
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  for (std::size_t count = kPiece; count == kPiece;) {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kPiece);
+    count = std::fread(bytes.data() + size, 1, kPiece, file.get());
+    bytes.resize(size + count);
+  }
+  return std::ferror(file.get()) == 0;
+}
+
+Decoded decode(ImageFormat format, const Bytes& bytes) {
+  switch (format) {
+    case ImageFormat::Exr:
+      return decode_exr(bytes);
+    case ImageFormat::Pfm:
+      return decode_pfm(bytes);
+    case ImageFormat::Hdr:
+      return decode_hdr(bytes);
+    default:
+      return decode_shown(bytes);
+  }
+}
+
+}  // namespace
+
+std::variant<FloatImage, UnreadImage> read_image(const std::string& path) {
+  const ImageFormatInfo* format = image_format_of(path);
+  if (format == nullptr) {
+    return UnreadImage{
+        fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
+  }
+  Bytes bytes;
+  if (!read_bytes(path, bytes)) {
+    return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+  }
+  if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {
+    return UnreadImage{fmt::format("cannot read `{}`: it is too large", path)};
+  }
+  Decoded decoded = decode(format->format, bytes);
+  if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
+  return UnreadImage{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
+                                 std::get<std::string>(decoded))};
+}
+
+}  // namespace fathom::runtime

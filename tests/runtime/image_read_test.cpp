@@ -1,0 +1,121 @@
+#include "runtime/image_read.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+
+#include "runtime/elementary.h"
+#include "runtime/image_io.h"
+#include "tests/support/temporary_folder.h"
+
+namespace fathom::runtime {
+namespace {
+
+// 16 x 9 pixels that get brighter and bluer; the last one saw nothing.
+Film ramp() {
+  Film film(16, 9);
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      PathSample sample;
+      sample.radiance = glm::vec3(static_cast<float>(x) / 15, static_cast<float>(y) / 8, 0.37f);
+      sample.hit = x + y < 23;
+      sample.albedo = glm::vec3(0.25f, 0.5f, 0.75f);
+      sample.normal = glm::vec3(0, -0.6f, 0.8f);
+      sample.depth = 1 + x + y;
+      film.add(x, y, sample);
+    }
+  }
+  return film;
+}
+
+// The largest difference of channels R, G, B from the layer's own numbers, once written and read.
+double error_of(const tests::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
+  const Film film = ramp();
+  const LayerValues values = layer_of(film, layer);
+  REQUIRE(write_layer(values, {{}, bits}, folder.file(name)) == std::nullopt);
+  const auto read = read_image(folder.file(name));
+  REQUIRE(std::holds_alternative<FloatImage>(read));
+  const auto& image = std::get<FloatImage>(read);
+  REQUIRE(image.area == film.area());
+  REQUIRE(image.channels.size() == 3);
+  double worst = 0;
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double value = static_cast<double>(image.values[c][image.area.index(x, y)]);
+        const double truth = static_cast<double>(values.at(x, y)[static_cast<int>(c)]);
+        worst = std::max(worst, std::abs(value - truth));
+      }
+    }
+  }
+  return worst;
+}
+
+TEST_CASE("image_read: what is written comes back as exactly as its format says", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  // The steepest step of sRGB's curve is 2.3 at white; half a step of 8 or 16 bits.
+  CHECK(error_of(folder, "a.png", Layer::Beauty) <= 2.3 / 255 / 2);
+  CHECK(error_of(folder, "b.png", Layer::Beauty, 16) <= 2.3 / 65535 / 2 + 1e-7);
+  CHECK(error_of(folder, "a.bmp", Layer::Beauty) <= 2.3 / 255 / 2);
+  CHECK(error_of(folder, "a.jpg", Layer::Beauty) <= 0.1);
+  CHECK(error_of(folder, "a.pfm", Layer::Beauty) == 0);
+  CHECK(error_of(folder, "n.pfm", Layer::Normal) == 0);
+  CHECK(error_of(folder, "d.pfm", Layer::Depth) == 0);  // grey in the file
+  CHECK(error_of(folder, "a.hdr", Layer::Beauty) <= 1.0 / 128);
+  CHECK(error_of(folder, "b.png", Layer::Beauty, 16) > 0);
+}
+
+TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  Picture picture{256, 1, {}};
+  for (int i = 0; i < 256; ++i) picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(i));
+  for (const char* name : {"a.png", "a.bmp"}) {
+    REQUIRE(write_image(picture, folder.file(name)) == std::nullopt);
+    const auto image = std::get<FloatImage>(read_image(folder.file(name)));
+    for (std::size_t i = 0; i < 256; ++i) {
+      CHECK(image.values[1][i] == static_cast<float>(srgb_decode(static_cast<double>(i) / 255)));
+    }
+  }
+}
+
+TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  std::ofstream(folder.file("a.pfm"), std::ios::binary)
+      << "PF\n1 2\n1.0\n"
+      << std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
+  const auto image = std::get<FloatImage>(read_image(folder.file("a.pfm")));
+  CHECK(image.height == 2);
+  CHECK(image.values[0] == std::vector<float>{0, 1});  // the lower row comes first in the file
+  CHECK(image.values[2] == std::vector<float>{0, 3});
+}
+
+TEST_CASE("image_read: what cannot be read is refused with its name and a reason", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  const auto problem = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder.file(name), std::ios::binary) << text;
+    const auto read = read_image(folder.file(name));
+    REQUIRE(std::holds_alternative<UnreadImage>(read));
+    CHECK_FALSE(std::get<UnreadImage>(read).missing);
+    CHECK(std::get<UnreadImage>(read).problem.find(name) != std::string::npos);
+    return std::get<UnreadImage>(read).problem;
+  };
+  for (const char* name : {"a.png", "a.jpg", "a.bmp", "a.exr", "a.pfm", "a.hdr"}) {
+    problem(name, "");
+    problem(name, "not a picture at all");
+  }
+  CHECK(problem("a.tga", "x").find(".exr") != std::string::npos);
+  CHECK(problem("b.pfm", "PF\n2 2\n-1.0\n1234").find("too early") != std::string::npos);
+  CHECK(problem("c.pfm", "PF\n2000000 2000000\n-1.0\n1234").find("too large") != std::string::npos);
+  CHECK(problem("d.pfm", "PF\n-2 2\n-1.0\n1234").find("header") != std::string::npos);
+  const auto missing = read_image(folder.file("none.png"));
+  REQUIRE(std::holds_alternative<UnreadImage>(missing));
+  CHECK(std::get<UnreadImage>(missing).missing);
+  CHECK(std::get<UnreadImage>(missing).problem.find("No such file") != std::string::npos);
+  std::filesystem::create_directory(folder.file("folder.png"));
+  CHECK(std::get<UnreadImage>(read_image(folder.file("folder.png"))).missing);
+  CHECK(std::get<UnreadImage>(read_image("folder/.")).problem.find("format") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace fathom::runtime
