@@ -44,7 +44,7 @@ std::vector<float> filter(const DenoiseInput& input, int threads) {
   filter.commit();
   filter.execute();
   const char* problem = nullptr;
-  CHECK(device.getError(problem) == oidn::Error::None, problem);
+  CHECK(device.getError(problem) == oidn::Error::None, "Open Image Denoise failed");
   return {output, output + 3 * pixels};
 }
 
