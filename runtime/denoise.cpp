@@ -44,7 +44,7 @@ std::vector<float> filter(const DenoiseInput& input, int threads) {
   filter.commit();
   filter.execute();
   const char* problem = nullptr;
-  CHECK(device.getError(problem) == oidn::Error::None, problem);
+  CHECK(device.getError(problem) == oidn::Error::None, "Open Image Denoise failed");
   return {output, output + 3 * pixels};
 }
 
@@ -96,14 +96,15 @@ std::vector<float> denoise(const DenoiseInput& input, int threads) {
   return filter(input, threads);
 }
 
-Film denoise(const Film& film, int threads) {
+void denoise(Film& film, int threads) {
   CHECK(film.layers().first_hit && film.layers().halves, "the film lacks what the denoiser needs");
   std::vector<float> first, second, albedo, normal, depth;
   const auto append = [](std::vector<float>& to, glm::dvec3 value) {
     for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(value[i]));
   };
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x) {
+  const PixelRect area = film.area();
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
       const PixelMeans pixel = film.means(x, y);
       append(first, pixel.halves[0]);
       append(second, pixel.halves[1]);
@@ -113,16 +114,7 @@ Film denoise(const Film& film, int threads) {
       depth.push_back(static_cast<float>(pixel.depth));
     }
   }
-  const std::vector<float> radiance =
-      denoise({film.width(), film.height(), first, second, albedo, normal, depth}, threads);
-  Film result = film;
-  std::size_t at = 0;
-  for (int y = 0; y < film.height(); ++y) {
-    for (int x = 0; x < film.width(); ++x, at += 3) {
-      result.set_radiance(x, y, {radiance[at], radiance[at + 1], radiance[at + 2]});
-    }
-  }
-  return result;
+  film.set_denoised(denoise({film.width(), film.height(), first, second, albedo, normal, depth}, threads));
 }
 
 }  // namespace fathom::runtime

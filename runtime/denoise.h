@@ -31,8 +31,8 @@ struct DenoiseInput {
 // machine.
 std::vector<float> denoise(const DenoiseInput& input, int threads);
 
-// The film with denoised radiance in place of its own, all else as it was; `film` must keep FilmLayers::first_hit and
-// ::halves, with two samples a pixel or more.
-Film denoise(const Film& film, int threads);
+// Gives the film denoised radiance (Film::set_denoised); it must keep FilmLayers::first_hit and ::halves, with two
+// samples a pixel or more.
+void denoise(Film& film, int threads);
 
 }  // namespace fathom::runtime

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
@@ -125,7 +128,8 @@ PixelMeans Film::means(int x, int y) const {
   means.hits = pixel.hits;
   means.samples = pixel.samples;
   if (pixel.samples == 0) return means;
-  means.radiance = mean(pixel.radiance, pixel.samples);
+  means.radiance = means.noisy = mean(pixel.radiance, pixel.samples);
+  if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
   if (layers_.variance) {
     for (int i = 0; i < 3; ++i) {
       means.variance[i] = variance_of_mean(pixel.radiance[i], squares_[at].sums[i], pixel.samples);
@@ -138,6 +142,18 @@ PixelMeans Film::means(int x, int y) const {
   }
   if (pixel.hits > 0) read_first_hit(at, means);
   return means;
+}
+
+void Film::read_halves(std::size_t at, PixelMeans& means) const {
+  const Pixel& pixel = pixels_[at];
+  const OddHalf& odd = odd_halves_[at];
+  const std::uint32_t even = pixel.samples - odd.samples;
+  for (int i = 0; i < 3; ++i) {
+    // In double, for full sums may be further apart than 64 bits reach.
+    const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
+    if (even > 0) means.halves[0][i] = rest * kUnit / even;
+  }
+  if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
 }
 
 void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
@@ -154,21 +170,9 @@ void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
   }
 }
 
-void Film::read_halves(std::size_t at, PixelMeans& means) const {
-  const Pixel& pixel = pixels_[at];
-  const OddHalf& odd = odd_halves_[at];
-  const std::uint32_t even = pixel.samples - odd.samples;
-  for (int i = 0; i < 3; ++i) {
-    // In double, for full sums may be further apart than 64 bits reach.
-    const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
-    if (even > 0) means.halves[0][i] = rest * kUnit / even;
-  }
-  if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
-}
-
-void Film::set_radiance(int x, int y, glm::dvec3 mean) {
-  Pixel& pixel = pixels_[area_.index(x, y)];
-  for (int i = 0; i < 3; ++i) pixel.radiance[i] = to_fixed(mean[i] * pixel.samples);
+void Film::set_denoised(std::vector<float> radiance) {
+  CHECK(radiance.size() == 3 * pixels_.size(), "a denoised picture of another size than its film");
+  denoised_ = std::move(radiance);
 }
 
 std::uint64_t Film::hash() const {
@@ -186,6 +190,10 @@ std::uint64_t Film::hash() const {
     absorb_sums(first.normal);
     absorb(static_cast<std::uint64_t>(first.depth));
   }
+  for (const OddHalf& half : odd_halves_) {
+    absorb_sums(half.radiance);
+    absorb(half.samples);
+  }
   for (const Position& position : positions_) absorb_sums(position.sums);
   for (const Ids& ids : ids_) {
     for (const std::uint32_t id : {ids.number, ids.surface, ids.material}) absorb(id);
@@ -195,10 +203,6 @@ std::uint64_t Film::hash() const {
       absorb(static_cast<std::uint64_t>(sum));
       absorb(static_cast<std::uint64_t>(sum >> 64));
     }
-  }
-  for (const OddHalf& half : odd_halves_) {
-    absorb_sums(half.radiance);
-    absorb(half.samples);
   }
   return hash;
 }

@@ -38,7 +38,7 @@ struct FilmLayers {
   bool position = false;  // of the first surface: 24
   bool ids = false;       // of the first surface: 12
   bool variance = false;  // of radiance: 48
-  bool halves = false;    // radiance of the samples with odd numbers alone, which the denoiser needs: 32
+  bool halves = false;    // radiance of the samples with odd numbers, what the denoiser needs: 32
 
   bool operator==(const FilmLayers&) const = default;
 };
@@ -47,12 +47,13 @@ inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 // Means over a pixel's samples; 0 for what the film does not keep.
 struct PixelMeans {
   glm::dvec3 radiance{0};
-  glm::dvec3 variance{0};  // of `radiance`, the mean: that of the samples by their number; 0 for fewer than two
+  glm::dvec3 noisy{0};                                    // radiance before it was denoised; otherwise the same
+  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // of the samples with even and with odd numbers
+  glm::dvec3 variance{0};  // of `noisy`, the mean: that of the samples by their number; 0 for fewer than two
   glm::dvec3 albedo{0};    // 0 where nothing was hit
   glm::dvec3 normal{0};    // not normalised; 0 where nothing was hit
   double depth = 0;        // over the samples that hit; 0 when none did
   glm::dvec3 position{0};  // likewise
-  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // radiance of the samples with even and odd numbers
   // Of the sample with the least number among those that hit: its surface and material counted from 1; 0 when none
   // did.
   std::uint32_t surface_id = 0, material_id = 0;
@@ -80,8 +81,9 @@ class Film {
   bool add(int x, int y, const PathSample& sample);
   PixelMeans means(int x, int y) const;
 
-  // Puts another mean in the place of the pixel's radiance, its halves stay; does nothing where there are no samples.
-  void set_radiance(int x, int y, glm::dvec3 mean);
+  // From now on means().radiance is this, [y][x][rgb] over area(); no sum changes.
+  void set_denoised(std::vector<float> radiance);
+  bool denoised() const { return !denoised_.empty(); }
 
   // A hash of every sum but the cost's: equal for equal pictures. FNV-1a (Fowler, Noll, Vo, 1991) over 64-bit words.
   std::uint64_t hash() const;
@@ -96,6 +98,11 @@ class Film {
     std::int64_t albedo[3] = {}, normal[3] = {};
     std::int64_t depth = 0;
   };
+  // The sums over odd numbers; the others are what is left of the pixel's.
+  struct OddHalf {
+    std::int64_t radiance[3] = {};
+    std::uint32_t samples = 0;
+  };
   struct Position {
     std::int64_t sums[3] = {};
   };
@@ -108,20 +115,15 @@ class Film {
   struct Squares {
     WideSum sums[3] = {};
   };
-  // The sums over odd numbers; the others are what is left of the pixel's.
-  struct OddHalf {
-    std::int64_t radiance[3] = {};
-    std::uint32_t samples = 0;
-  };
   // Plain sums: 64 bits of instructions take a pixel a lifetime.
   struct Cost {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
+  void read_halves(std::size_t at, PixelMeans& means) const;
   bool add_squares(std::size_t at, glm::vec3 radiance);
   bool add_first_hit(std::size_t at, const PathSample& sample);
   void read_first_hit(std::size_t at, PixelMeans& means) const;
-  void read_halves(std::size_t at, PixelMeans& means) const;
 
   PixelRect area_;
   FilmLayers layers_;
@@ -133,6 +135,7 @@ class Film {
   std::vector<Squares> squares_;
   std::vector<Cost> costs_;
   std::vector<OddHalf> odd_halves_;
+  std::vector<float> denoised_;  // [y][x][rgb]; empty until there is one
 };
 
 }  // namespace fathom::runtime

@@ -29,6 +29,9 @@ constexpr FilmChannel kChannels[] = {
     {"variance.R", false, &FilmLayers::variance, [](const Pixel& p) { return p.variance.x; }},
     {"variance.G", false, &FilmLayers::variance, [](const Pixel& p) { return p.variance.y; }},
     {"variance.B", false, &FilmLayers::variance, [](const Pixel& p) { return p.variance.z; }},
+    {"noisy.R", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.x; }},
+    {"noisy.G", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.y; }},
+    {"noisy.B", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.z; }},
     {"steps", false, &FilmLayers::cost, [](const Pixel& p) { return p.evaluations; }},
     {"evals", false, &FilmLayers::cost, [](const Pixel& p) { return p.instructions; }},
 };

@@ -64,6 +64,8 @@ LayerValues layer_of(const Film& film, Layer layer) {
       return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).albedo); }};
     case Layer::Depth:
       return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).depth); }};
+    case Layer::Noisy:
+      return {layer, film.area(), [&film](int x, int y) { return glm::vec3(film.means(x, y).noisy); }};
     case Layer::Normal:
       break;
   }
@@ -84,7 +86,7 @@ std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer) {
 
 Shown::Shown(LayerValues values, ToneMapping tone)
     : values_(std::move(values)),
-      encoded_(values_.layer == Layer::Beauty || values_.layer == Layer::Albedo),
+      encoded_(is_light(values_.layer) || values_.layer == Layer::Albedo),
       curve_(tone.curve),
       factor_(exposure_factor(tone.exposure)) {
   if (values_.layer == Layer::Depth) nearest_ = nearest_of(values_);
@@ -94,6 +96,7 @@ glm::dvec3 Shown::color(int x, int y) const {
   const glm::dvec3 value(values_.at(x, y));
   switch (values_.layer) {
     case Layer::Beauty:
+    case Layer::Noisy:
       return apply_curve(curve_, value * factor_);
     case Layer::Albedo:
       break;

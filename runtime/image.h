@@ -32,18 +32,21 @@ enum class Layer {
   // Mean normal n of the first surface as n/2 + 1/2, not sRGB encoded: +x is red, +y green, +z blue. Black where no
   // sample hit; pixels that hit with a part of their samples show the mean of those.
   Normal,
+  Noisy,  // as Beauty, before it was denoised
 };
 struct LayerInfo {
   Layer layer;
   std::string_view name;
   std::array<std::string_view, 3> channels;  // that it is made of
 };
-inline constexpr std::array<LayerInfo, 4> kLayers = {{
+inline constexpr std::array<LayerInfo, 5> kLayers = {{
     {Layer::Beauty, "beauty", {"R", "G", "B"}},
     {Layer::Albedo, "albedo", {"albedo.R", "albedo.G", "albedo.B"}},
     {Layer::Depth, "depth", {"Z", "Z", "Z"}},
     {Layer::Normal, "normal", {"N.X", "N.Y", "N.Z"}},
+    {Layer::Noisy, "noisy", {"noisy.R", "noisy.G", "noisy.B"}},
 }};
+constexpr bool is_light(Layer layer) { return layer == Layer::Beauty || layer == Layer::Noisy; }
 constexpr const LayerInfo& info(Layer layer) { return kLayers[static_cast<std::size_t>(layer)]; }
 
 // The numbers of a layer, pixel by pixel, in float: what an OpenEXR file keeps. Refers to what it was made from.
@@ -58,7 +61,7 @@ std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer);  // n
 // A picture that is made row by row, as it is written. Refers to what it was made from.
 class Shown {
  public:
-  // `tone` is for the beauty alone.
+  // `tone` is for light alone.
   explicit Shown(LayerValues values, ToneMapping tone = {});
 
   int width() const { return values_.area.width(); }

@@ -137,7 +137,7 @@ std::optional<std::string> write_layer(const LayerValues& layer, const PictureOp
   const ImageFormat format = image_format_of(path)->format;
   switch (format) {
     case ImageFormat::Png: {
-      const bool srgb = layer.layer == Layer::Beauty || layer.layer == Layer::Albedo;
+      const bool srgb = is_light(layer.layer) || layer.layer == Layer::Albedo;
       return write_encoded(encode_shown(Shown(layer, options.tone), options.bits, srgb), path);
     }
     case ImageFormat::Jpeg:

@@ -158,7 +158,7 @@ class TileFilter {
  public:
   TileFilter(const Framing& framing, Filtered& filtered) : in_(framing), out_(filtered) {}
 
-  void run(const Tile& tile) {
+  void run(const PixelRect& tile) {
     tile_ = tile;
     for (Sums& sums : sums_) sums = {};
     for (int dy = -kWindow; dy <= kWindow; ++dy) {
@@ -306,7 +306,7 @@ class TileFilter {
 
   const Framing& in_;
   Filtered& out_;
-  Tile tile_{};
+  PixelRect tile_;
   std::array<Grown, 2> distances_;  // by each copy's colours
   Row unlikeness_;
   std::array<Sums, 2 * kCandidates> sums_;
@@ -317,7 +317,7 @@ Filtered filter(const Framing& framing, int threads) {
   const std::size_t pixels = static_cast<std::size_t>(framing.width) * static_cast<std::size_t>(framing.height);
   for (auto& colors : filtered.colors) colors.fill(Plane(pixels));
   filtered.errors.fill(Plane(pixels));
-  Tiles tiles(framing.width, framing.height, kTile);
+  Tiles tiles({0, 0, framing.width, framing.height}, kTile);
   const auto work = [&] {
     const auto tile_filter = std::make_unique<TileFilter>(framing, filtered);
     while (const auto tile = tiles.take()) tile_filter->run(*tile);

@@ -32,7 +32,8 @@ constexpr const char* kExamples =
     "fathom diff out.exr reference.exr --metric relmse --tol 0.01   # exit status 1 when it is more\n"
     "fathom diff out.png reference.png -o where.png                 # FLIP pixel by pixel, as colours\n"
     "\n"
-    "mse, relmse, max, mean: of linear light; mean is the first picture less the second, relmse is over the square of\n"
+    "mse, relmse, max, mean: of linear light; mean is the first picture less the second, relmse is over the square "
+    "of\n"
     "the second. flip: what an eye sees of the difference, 0 to 1, with each picture as a screen shows it.";
 
 // Every number that is printed, and whether --tol can be about it.
@@ -76,7 +77,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   Arguments arguments("diff", "Compares a picture with a reference.", kExamples);
   arguments.positional("picture", "The picture", request.first);
   arguments.positional("reference", "What it should be", request.second);
-  arguments.option("--tol", "X", "End with 1 when the metric is more than this", into(read_tolerance, request.tolerance));
+  arguments.option("--tol", "X", "End with 1 when the metric is more than this",
+                   into(read_tolerance, request.tolerance));
   arguments.option("--metric", "NAME", "What --tol is about: mse (default), relmse, max or flip",
                    one_of(names, request.metric));
   arguments.option("-o,--output", "FILE", "Write a map of FLIP: dark violet is alike, yellow is different",

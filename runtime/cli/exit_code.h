@@ -24,9 +24,11 @@ struct ExitCodeInfo {
 
 inline constexpr std::array kExitCodes = {
     ExitCodeInfo{kDone, "done"},
-    ExitCodeInfo{kFoundProblems, "`check` found errors in the scene, or with --probe a broken constant (warnings do not count)"},
+    ExitCodeInfo{kFoundProblems,
+                 "`check` found errors in the scene, or with --probe a broken constant (warnings do not count); "
+                 "`diff` found more than --tol"},
     ExitCodeInfo{kUsage, "the command line makes no sense"},
-    ExitCodeInfo{kBadScene, "the scene, or a list of points, has errors; trying again will not help"},
+    ExitCodeInfo{kBadScene, "the scene, a list of points or a picture has errors; trying again will not help"},
     ExitCodeInfo{kInternal, "a defect of fathom, or not enough memory"},
     ExitCodeInfo{kIo, "a file could not be read or written; trying again may help"},
 };

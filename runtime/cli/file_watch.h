@@ -18,8 +18,8 @@ class FileWatch {
  public:
   explicit FileWatch(const std::vector<std::string>& paths);
 
-  // Whether one of the files is another than at the last call (the first time, than at the beginning). One that is away
-  // for a moment, as while an editor saves, has not changed until it is back.
+  // Whether one of the files is another than at the last call (the first time, than at the beginning). One that is
+  // away for a moment, as while an editor saves, has not changed until it is back.
   bool changed();
 
  private:

@@ -4,18 +4,22 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <system_error>
+#include <thread>
 
 #include "runtime/cli/cost_map.h"
+#include "runtime/cli/file_watch.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/verbosity.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/denoise.h"
 #include "runtime/film_channels.h"
 #include "runtime/image_exr.h"
 #include "runtime/image_io.h"
@@ -37,6 +41,7 @@ std::vector<LayerFile> layer_files(const RenderRequest& request, const std::stri
   add(request.albedo, runtime::Layer::Albedo);
   add(request.depth, runtime::Layer::Depth);
   add(request.normal, runtime::Layer::Normal);
+  add(request.denoise, runtime::Layer::Noisy);
   return files;
 }
 
@@ -99,11 +104,22 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
   return std::nullopt;
 }
 
+// For --watch: the scene's file, and whether the render under way is no longer of it.
+struct Watching {
+  FileWatch files;
+  std::atomic<bool> changed = false;
+};
+
+// `watching`, when given, ends the render as soon as there is a new file.
 runtime::RenderResult render_with_progress(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                           const Streams& streams) {
+                                           const Streams& streams, Watching* watching) {
   runtime::RenderOptions options = request.options;
+  if (watching) options.cancel = &watching->changed;
   ProgressLine line(streams);
-  if (!request.quiet) options.on_progress = [&](const runtime::Progress& progress) { line.update(progress); };
+  options.on_progress = [&](const runtime::Progress& progress) {
+    if (!request.quiet) line.update(progress);
+    if (watching && watching->files.changed()) watching->changed = true;
+  };
   return runtime::render(scene, options);
 }
 
@@ -165,17 +181,11 @@ std::optional<ExitCode> write_all(const RenderRequest& request, const compiler::
   return std::nullopt;
 }
 
-}  // namespace
-
-int run_render(std::span<const std::string> args, const Streams& streams) {
-  auto parsed = parse_render(args, streams);
-  if (const int* code = std::get_if<int>(&parsed)) return *code;
-  RenderRequest& request = std::get<RenderRequest>(parsed);
-  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
-  if (const auto code = check_outputs(request, streams)) return *code;
+// One picture of the file as it is now.
+ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching) {
+  RenderRequest request = asked;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-
   Verbosity verbosity(request.verbosity, streams);
   auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams,
                                 verbosity.watch_compiler());
@@ -184,15 +194,41 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = override_scene(request, scene, streams)) return *code;
   if (const auto code = read_background(scene.background, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
-  if (request.no_denoise && request.verbosity > 0)
-    note(streams, "there is no denoiser; --no-denoise changes nothing");
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
   }
 
-  runtime::RenderResult result = render_with_progress(request, scene, streams);
+  runtime::RenderResult result = render_with_progress(request, scene, streams, watching);
+  if (result.stats.cancelled) return kDone;
+  if (request.denoise) runtime::denoise(result.film, result.settings.threads);
   if (const auto code = write_all(request, scene, result, streams)) return *code;
   return kDone;
+}
+
+// Until a signal ends the program: files are written whole or not at all, so any moment will do.
+[[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
+  Watching watching{FileWatch({request.scene.path})};
+  while (true) {
+    watching.changed = false;
+    render_once(request, streams, &watching);
+    if (watching.changed) continue;
+    if (!request.quiet) note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
+    streams.err.flush();
+    streams.out.flush();
+    while (!watching.files.changed()) std::this_thread::sleep_for(kWatchInterval);
+  }
+}
+
+}  // namespace
+
+int run_render(std::span<const std::string> args, const Streams& streams) {
+  auto parsed = parse_render(args, streams);
+  if (const int* code = std::get_if<int>(&parsed)) return *code;
+  const RenderRequest& request = std::get<RenderRequest>(parsed);
+  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
+  if (const auto code = check_outputs(request, streams)) return *code;
+  if (request.watch) render_on_change(request, streams);
+  return render_once(request, streams, nullptr);
 }
 
 }  // namespace fathom::cli

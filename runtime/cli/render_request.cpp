@@ -17,7 +17,13 @@ constexpr const char* kExamples =
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
     "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
     "fathom render scene.json -o out.exr -o out.png --tone agx --crop 25%,25%,75%,75%\n"
+    "fathom render scene.json -o out.png -s 64 --denoise         # and out-noisy.png\n"
+    "fathom render scene.json -o out.png --preview --watch       # draws again whenever the file is saved\n"
     "fathom render scene.json -o out.png --profile --cost-map cost.png";
+
+// Of --preview.
+constexpr int kPreviewShrink = 4;  // each side
+constexpr int kPreviewSpp = 4;
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
@@ -64,7 +70,7 @@ Verdict read_filter_width(std::string_view text, double& width) {
   return std::nullopt;
 }
 
-void add_renderer_options(Arguments& arguments, RenderRequest& request) {
+void add_renderer_options(Arguments& arguments, RenderRequest& request, bool& no_denoise) {
   runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (what is not given comes from the scene file)");
   arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
@@ -90,7 +96,14 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    into(read_positive, options.far));
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
-  arguments.flag("--no-denoise", "Accepted for compatibility; there is no denoiser", request.no_denoise);
+  arguments.flag("--denoise",
+                 "Take the noise out of the picture; FILE-noisy beside it, or in exr noisy.*, is without",
+                 request.denoise);
+  arguments.flag("--no-denoise", "Leave it in (the default, but for --preview)", no_denoise);
+  arguments.flag("--preview", "Quickly: a quarter of the width and height, 4 samples unless --spp says, denoised",
+                 request.preview);
+  arguments.flag("--watch", "Render again whenever the scene's file changes, until Ctrl-C (130) ends it",
+                 request.watch);
 }
 
 std::vector<std::string_view> method_names() {
@@ -204,7 +217,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
   arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
   add_output_options(arguments, request);
-  add_renderer_options(arguments, request);
+  bool no_denoise = false;
+  add_renderer_options(arguments, request, no_denoise);
   add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
 
@@ -221,11 +235,20 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.default_output = true;
   }
   if (const auto code = check_bits(request, streams)) return *code;
+  if (request.watch && request.scene.path == "-") {
+    return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
+  }
+  if (request.denoise && no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
+  if (request.preview) {
+    request.denoise = !no_denoise;
+    if (!request.options.spp) request.options.spp = kPreviewSpp;
+  }
   request.options.layers = {.first_hit = request.albedo || request.depth || request.normal,
                             .cost = request.cost_map.has_value()};
   if (std::any_of(request.outputs.begin(), request.outputs.end(), holds_layers)) {
     request.options.layers = runtime::kAllLayers;
   }
+  if (request.denoise) request.options.layers.first_hit = request.options.layers.halves = true;
   request.options.threads = request.threads.value_or(0);
   if (request.sampler >= 0) request.options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
   if (request.filter >= 0) request.options.filter = static_cast<compiler::FilterKind>(request.filter);
@@ -259,6 +282,14 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
   if (request.size) {
     width = request.size->width;
     height = request.size->height;
+  }
+  if (request.preview) {
+    width = std::max(1.0, std::round(width / kPreviewShrink));
+    height = std::max(1.0, std::round(height / kPreviewShrink));
+  }
+  if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
+    return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
+                {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
   if (const auto code = check_picture_size(width, height, streams)) return code;
   scene.film.width = static_cast<int>(width);

@@ -36,7 +36,9 @@ struct RenderRequest {
   bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
-  bool quiet = false, no_denoise = false;
+  bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
+  bool preview = false, watch = false;
+  bool quiet = false;
 };
 
 // The request, or the exit code after help or a message.

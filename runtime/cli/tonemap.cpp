@@ -45,12 +45,13 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("--tone", "CURVE",
                    "How light becomes a display's: none, filmic, aces, agx or neutral (what the file says, or none)",
                    one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
-  arguments.option("--layer", "LAYER", "beauty (default), albedo, depth or normal",
+  arguments.option("--layer", "LAYER", "beauty (default), albedo, depth, normal or noisy",
                    one_of(layer_names(), request.layer));
   arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
   if (const auto code = arguments.parse(args, streams)) return code;
   if (!request.output) return fail(streams, kUsage, "no picture to write", {"name it with -o FILE"});
-  if (request.layer != 0 && (request.exposure || request.tone >= 0)) {
+  const bool light = runtime::is_light(runtime::kLayers[static_cast<std::size_t>(request.layer)].layer);
+  if (!light && (request.exposure || request.tone >= 0)) {
     return fail(streams, kUsage, "--exposure and --tone are about light: they do not go with another --layer");
   }
   if (request.bits != 0 && !runtime::image_format_of(*request.output)->deep) {

@@ -18,6 +18,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
 int run_slice(std::span<const std::string> args, const Streams& streams);
 int run_tonemap(std::span<const std::string> args, const Streams& streams);
+int run_diff(std::span<const std::string> args, const Streams& streams);
 int run_chart(std::span<const std::string> args, const Streams& streams);
 int run_emit(std::span<const std::string> args, const Streams& streams);
 int run_import(std::span<const std::string> args, const Streams& streams);
@@ -36,6 +37,7 @@ inline constexpr std::array kVerbs = {
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
     Verb{"tonemap", "in.exr -o out.png", "makes a picture of a render's numbers", run_tonemap},
+    Verb{"diff", "out.png reference.png", "compares two pictures", run_diff},
     Verb{"chart", "[scene.json] -o folder", "charts speed against accuracy", run_chart},
     Verb{"emit", "cpp scene.json -o scene.h", "writes the field as C++ or GLSL", run_emit},
     Verb{"import", "model.vm -o scene.json", "writes a model of another format as a scene file", run_import},

@@ -349,8 +349,6 @@ TEST_CASE("cli: -v says more each time, up to six") {
     shorter = static_cast<std::size_t>(std::count(result.err.begin(), result.err.end(), '\n'));
   }
   CHECK(folder.run("render ball.json -o a.png -vvvvvvvvv").code == 0);
-  CHECK_THAT(folder.run("render ball.json -o a.png -v --no-denoise").err, Contains("there is no denoiser"));
-  CHECK_THAT(folder.run("render ball.json -o a.png --no-denoise").err, !Contains("denoiser"));
   CHECK(folder.run("render ball.json -o a.png -q").err == "");
 }
 

@@ -7,12 +7,18 @@
 namespace fathom::tests {
 
 Result Folder::run(const std::string& arguments, const std::string& in) const {
+  std::ofstream(path().string() + ".in") << in;
+  Result result = run_script("\"$fathom\" " + arguments + " <'" + path().string() + ".in'");
+  std::filesystem::remove(path().string() + ".in");
+  return result;
+}
+
+Result Folder::run_script(const std::string& lines) const {
   const std::filesystem::path io = path().string() + ".io";  // beside the folder, which stays the user's
   std::filesystem::create_directories(io);
-  std::ofstream(io / "in") << in;
-  const std::string command = "cd '" + path().string() + "' && '" FATHOM_PROGRAM "' " + arguments + " <'" +
-                              (io / "in").string() + "' >'" + (io / "out").string() + "' 2>'" +
-                              (io / "err").string() + "'";
+  std::ofstream(io / "script") << "fathom='" FATHOM_PROGRAM "'\n" << lines << '\n';
+  const std::string command = "cd '" + path().string() + "' && sh '" + (io / "script").string() + "' >'" +
+                              (io / "out").string() + "' 2>'" + (io / "err").string() + "'";
   const int status = std::system(command.c_str());
   Result result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("../" + io.filename().string() + "/out"),
                 read("../" + io.filename().string() + "/err")};

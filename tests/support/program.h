@@ -53,6 +53,8 @@ class Folder : public TemporaryFolder {
 
   // `arguments` as for a shell; standard input is `in`.
   Result run(const std::string& arguments, const std::string& in = "") const;
+  // Lines of a shell in the folder, in which $fathom is the program.
+  Result run_script(const std::string& lines) const;
 };
 
 // Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.

@@ -1,0 +1,107 @@
+// fathom render --denoise, --preview and --watch as their users meet them.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::kBall;
+using fathom::tests::png_size;
+using fathom::tests::Result;
+
+// A ball on a floor in soft light, which has noise.
+const char* const kNoisy = R"({
+  "version": 1,
+  "camera": {"position": [0, 1.5, 4], "target": [0, 0, 0]},
+  "film": {"width": 64, "height": 48},
+  "render": {"spp": 8},
+  "background": {"top": [3, 3, 3], "bottom": [0, 0, 0]},
+  "objects": [{"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]},
+              {"type": "box", "half_size": [4, 0.1, 4], "translate": [0, -0.1, 0]}]
+})";
+
+double number_of(const Folder& folder, const std::string& arguments, const std::string& name) {
+  return nlohmann::json::parse(folder.run("diff --json " + arguments).out)[name];
+}
+
+}  // namespace
+
+TEST_CASE("cli: --denoise takes noise out and keeps the noisy picture beside it") {
+  const Folder folder;
+  folder.write("noisy.json", kNoisy);
+  REQUIRE(folder.run("render noisy.json -s 512 --seed 3 -o truth.exr").code == 0);
+  const Result result = folder.run("render noisy.json -o a.png -o a.exr --denoise");
+  CHECK(result.code == 0);
+  CHECK_THAT(result.err, Contains("wrote a.png (64x48)") && Contains("wrote a-noisy.png (64x48)"));
+  REQUIRE(folder.run("render noisy.json -o plain.png -o plain.exr --no-denoise").code == 0);
+  CHECK(folder.read("a-noisy.png") == folder.read("plain.png"));
+  CHECK(number_of(folder, "a.exr truth.exr", "relmse") < number_of(folder, "plain.exr truth.exr", "relmse") / 2);
+  // The layer in the file is the same picture.
+  REQUIRE(folder.run("tonemap a.exr --layer noisy -o layer.png").code == 0);
+  CHECK(folder.read("layer.png") == folder.read("plain.png"));
+  REQUIRE(folder.run("tonemap a.exr -o denoised.png").code == 0);
+  CHECK(folder.read("denoised.png") == folder.read("a.png"));
+  // Any number of threads, the same bits.
+  REQUIRE(folder.run("render noisy.json -o b.exr --denoise --threads 1").code == 0);
+  REQUIRE(folder.run("render noisy.json -o c.exr --denoise --threads 3").code == 0);
+  CHECK(folder.read("b.exr") == folder.read("c.exr"));
+}
+
+TEST_CASE("cli: what cannot be denoised is a matter of usage") {
+  const Folder folder;
+  const Result single = folder.run("render ball.json -o a.png --denoise -s 1");
+  CHECK(single.code == 2);
+  CHECK_THAT(single.err, Contains("--spp 2"));
+  CHECK(folder.run("render ball.json -o a.png --denoise --no-denoise").code == 2);
+  CHECK(folder.run("render ball.json -o a.png -o a-noisy.png --denoise").code == 2);
+  CHECK(folder.files() == 2);
+}
+
+TEST_CASE("cli: --preview is a quarter of each side, of few samples, denoised") {
+  const Folder folder;
+  REQUIRE(folder.run("render ball.json -o a.png --preview").code == 0);
+  CHECK(png_size(folder.read("a.png")) == std::pair(8, 4));
+  CHECK(folder.has("a-noisy.png"));
+  REQUIRE(folder.run("render ball.json -o b.png --size 8x4 -s 4 --denoise").code == 0);
+  CHECK(folder.read("a.png") == folder.read("b.png"));
+  REQUIRE(folder.run("render ball.json -o c.png --preview --no-denoise -s 1").code == 0);
+  CHECK(!folder.has("c-noisy.png"));
+  REQUIRE(folder.run("render ball.json -o d.png --preview -r 2").code == 0);
+  CHECK(png_size(folder.read("d.png")) == std::pair(1, 1));
+}
+
+TEST_CASE("cli: --watch draws again when the file changes, and outlives errors") {
+  const Folder folder;
+  // Waits, at most half a minute, until the condition holds.
+  const std::string until =
+      "until() { for i in $(seq 600); do if eval \"$1\"; then return 0; fi; sleep 0.05; done; exit 9; }\n";
+  const Result result = folder.run_script(until +
+                                          "\"$fathom\" render ball.json -o a.png --watch 2>log & watcher=$!\n"
+                                          "trap 'kill $watcher' EXIT\n"
+                                          "until 'grep -q waiting log'\n"
+                                          "test -f a.png || exit 3\n"
+                                          "echo '{ broken' > ball.json\n"
+                                          "until 'grep -q E0005 log || grep -q \"error\" log'\n"
+                                          "until 'test $(grep -c waiting log) = 2'\n"
+                                          "rm a.png\n"
+                                          "cat two.json > ball.json\n"
+                                          "until 'test -f a.png'\n"
+                                          "until 'test $(grep -c waiting log) = 3'\n"
+                                          "trap - EXIT\n"
+                                          "kill -TERM $watcher\n"
+                                          "wait $watcher\n"
+                                          "test $? = 143\n");
+  INFO(folder.read("log"));
+  CHECK(result.code == 0);
+  REQUIRE(folder.run("render two.json -o b.png").code == 0);
+  CHECK(folder.read("a.png") == folder.read("b.png"));
+}
+
+TEST_CASE("cli: standard input cannot be watched") {
+  const Result result = Folder().run("render - -o a.png --watch", kBall);
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Contains("standard input"));
+}
