@@ -32,18 +32,9 @@ compiler::CompiledScene scene_of(test::Random& random, Kind kind, const std::vec
   graph.root = add_primitive(maker, random, kind, params);
   const vm::VerifiedProgram program = test::plain_lowering(graph);
   const compiler::Knowledge& known = maker.known(graph.root);
-  compiler::CompiledScene scene{{},
-                                {},
-                                dvec3(0),
-                                program,
-                                program,
-                                known.box,
-                                known.box,
-                                known.lipschitz,
-                                known.magnitude,
-                                known.certified,
-                                graph.graph.size(),
-                                {}};
+  compiler::CompiledField field{program,         program,         known.box,      known.box,
+                                known.lipschitz, known.magnitude, known.certified};
+  compiler::CompiledScene scene{{}, std::move(field), {}, dvec3(0), {}, {}, false, {}, graph.graph.size(), {}};
   scene.surfaces.push_back({"it", 0});
   scene.materials.emplace_back();
   return scene;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "runtime/sampler.h"
-#include "support/chi_square.h"
-#include "support/effort.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/effort.h"
 
 namespace fathom::runtime {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "runtime/warp.h"
-#include "support/chi_square.h"
+#include "tests/support/chi_square.h"
 
 namespace fathom::runtime {
 namespace {

@@ -20,19 +20,8 @@ constexpr int kRandomScenes = 8;
 
 EmittedProgram named(std::string name, vm::Program program, glm::dvec3 origin = glm::dvec3(0)) {
   vm::VerifiedProgram distance = verified(std::move(program));
-  return {name,
-          {{},
-           compiler::Source(name, ""),
-           origin,
-           distance,
-           distance,
-           compiler::Box{},
-           compiler::Box{},
-           1,
-           0,
-           true,
-           0,
-           "a test's"}};
+  compiler::CompiledField field{distance, distance, {}, {}, 1, 0, true};
+  return {name, {{}, std::move(field), compiler::Source(name, ""), origin, {}, {}, false, {}, 0, "a test's"}};
 }
 
 // Numbers that no float is, so that the unrounded ones are seen to be kept.
