@@ -95,32 +95,32 @@ TEST_CASE("material: the plain types keep their meaning", "[material]") {
 }
 
 TEST_CASE("material: a formula is what it says in the scene's coordinates", "[material]") {
-  const std::string text = R"({"type": "diffuse", "color": ["0.5 + 0.25*sin(k*x)", 0.125, "x*y/z"]})";
+  const std::string text = R"~({"type": "diffuse", "color": ["0.5 + 0.25*sin(k*x)", 0.125, "x*y/z"]})~";
   for (const char* translate : {"[0, 0, 0]", "[100000, 3, 0]"}) {
-  const CompiledScene scene = scene_of(text, translate);
-  const Materials materials(scene);
-  vm::Workspace workspace;
-  CHECK(materials.varies(0));
-  for (const dvec3 p : {dvec3(1, 0.25, 2), dvec3(100000.5, 0.001, 1000)}) {
-    const vec3 color = materials.at(0, p - scene.origin, workspace).base_color;
-    CHECK(static_cast<double>(color.x) == Approx(0.5 + 0.25 * std::sin(2 * p.x)).epsilon(1e-6));
-    CHECK(color.y == 0.125f);
-    CHECK(static_cast<double>(color.z) == Approx(p.x * p.y / p.z).epsilon(1e-6));
+    const CompiledScene scene = scene_of(text, translate);
+    const Materials materials(scene);
+    vm::Workspace workspace;
+    CHECK(materials.varies(0));
+    for (const dvec3 p : {dvec3(1, 0.25, 2), dvec3(100000.5, 0.001, 1000)}) {
+      const vec3 color = materials.at(0, p - scene.origin, workspace).base_color;
+      CHECK(static_cast<double>(color.x) == Approx(0.5 + 0.25 * std::sin(2 * p.x)).epsilon(1e-6));
+      CHECK(color.y == 0.125f);
+      CHECK(static_cast<double>(color.z) == Approx(p.x * p.y / p.z).epsilon(1e-6));
+    }
   }
-}
-CHECK(scene_of(text, "[100000, 3, 0]").origin != dvec3(0));
+  CHECK(scene_of(text, "[100000, 3, 0]").origin != dvec3(0));
 }
 
 TEST_CASE("material: values out of range are clamped, what is no number is the stand-in", "[material]") {
-  const std::string text = R"({"type": "principled", "roughness": "x", "ior": "y", "color": "log(x)"})";
+  const std::string text = R"~({"type": "principled", "roughness": "x", "ior": "y", "color": "log(x)"})~";
   CHECK(at(text, {-3, 1, 0}).roughness == 0);
-CHECK(at(text, {3, 1, 0}).roughness == 1);
-CHECK(at(text, {0.25, 1.25, 0}).roughness == 0.25f);
-CHECK(at(text, {0.25, 1.25, 0}).ior == 1.25f);
-CHECK(at(text, {0.25, -5, 0}).ior == Approx(1e-3));
-CHECK(at(text, {0.25, 1, 0}).base_color == vec3(0));   // a negative number
-CHECK(at(text, {-1, 1, 0}).base_color == vec3(0.8f));  // none
-CHECK(at(text, {100, 1, 0}).base_color == vec3(1));
+  CHECK(at(text, {3, 1, 0}).roughness == 1);
+  CHECK(at(text, {0.25, 1.25, 0}).roughness == 0.25f);
+  CHECK(at(text, {0.25, 1.25, 0}).ior == 1.25f);
+  CHECK(at(text, {0.25, -5, 0}).ior == Approx(1e-3));
+  CHECK(at(text, {0.25, 1, 0}).base_color == vec3(0));   // a negative number
+  CHECK(at(text, {-1, 1, 0}).base_color == vec3(0.8f));  // none
+  CHECK(at(text, {100, 1, 0}).base_color == vec3(1));
 }
 
 TEST_CASE("material: patterns lie where scale, rotate and translate put them", "[material]") {
@@ -161,27 +161,21 @@ TEST_CASE("material: noise is evaluated at the scene's own coordinates, whatever
 }
 
 TEST_CASE("material: light and priority are known without a place", "[material]") {
-  const CompiledScene scene = tests::compiled(R"({"version": 1, "materials": {
+  const CompiledScene scene = tests::compiled(R"~({"version": 1, "materials": {
       "lamp": {"type": "emissive"}, "glow": {"type": "principled", "emission_luminance": "max(y, 0)"},
-      "glass": {
-  "type" : "transparent", "priority" : 4
-}
-}
-, "objects" : [
-  {"type" : "sphere", "radius" : 1, "material" : "lamp"},
-  {"type" : "sphere", "radius" : 1, "translate" : [ 3, 0, 0 ], "material" : "glow"},
-  {"type" : "sphere", "radius" : 1, "translate" : [ 6, 0, 0 ], "material" : "glass"}
-]
-})");
+      "glass": {"type": "transparent", "priority": 4}},
+    "objects": [{"type": "sphere", "radius": 1, "material": "lamp"},
+      {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "glow"},
+      {"type": "sphere", "radius": 1, "translate": [6, 0, 0], "material": "glass"}]})~");
   const Materials materials(scene);
-REQUIRE(materials.size() == 3);
-CHECK(materials.emits(0));
-CHECK(materials.emits(1));
-CHECK(!materials.emits(2));
-CHECK(materials.priority(2) == 4);
-CHECK(!materials.varies(0));
-CHECK(materials.varies(1));
-CHECK(materials.typical(0).emission == vec3(1));
+  REQUIRE(materials.size() == 3);
+  CHECK(materials.emits(0));
+  CHECK(materials.emits(1));
+  CHECK(!materials.emits(2));
+  CHECK(materials.priority(2) == 4);
+  CHECK(!materials.varies(0));
+  CHECK(materials.varies(1));
+  CHECK(materials.typical(0).emission == vec3(1));
 }
 
 // One of every type, none with a parameter at its default.

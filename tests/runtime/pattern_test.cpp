@@ -90,7 +90,7 @@ TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
 TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pattern]") {
   for (const double size : {10.0, 1e6, 1e9}) {
     Sampler sampler(2, 0, 0, 0);
-    const int count = test::few(100000);
+    const int count = test::few(40000);
     double mean = 0, square = 0, least = 2, most = -2;
     for (int i = 0; i < count; ++i) {
       const double v = gradient_noise(random_point(sampler, size), 5);
@@ -131,7 +131,7 @@ TEST_CASE("pattern: octaves add up within [0,1], seeds differ, and no plane is f
   Sampler sampler(4, 0, 0, 0);
   double mean = 0, plane = 0, difference = 0;
   int ends = 0;
-  const int count = test::few(50000);
+  const int count = test::few(10000);
   for (int i = 0; i < count; ++i) {
     dvec3 p = random_point(sampler, 50);
     const double v = noise(n, p), w = noise(strong, p);
