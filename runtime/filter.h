@@ -42,6 +42,7 @@ class Filter {
 
   double distance(double share) const;
 
+  FilterKind kind_;
   double radius_;
   std::array<double, kCells + 1> magnitude_;  // at the cells' ends; linear between
   std::array<double, kCells + 1> below_;      // [i] the share of the magnitude that lies before cell i

@@ -191,7 +191,8 @@ class Sampler {
   // bit, b for the second, (a, b) becomes (b, a+b) or (a+b, a). These are the rotations.
   std::uint32_t rotated(std::uint32_t v, std::uint32_t seed) const {
     const std::uint32_t pixels = static_cast<std::uint32_t>((1ull << pixel_bits_) - 1) & 0x55555555u;
-    const std::uint32_t hash = owen_scrambled(v, ~seed) << 2;
+    // Bits of lower digits only: multiplied upwards, once by an odd number and once by an even one.
+    const std::uint32_t spread = (v + ~seed) * 0x9e3779b1u, hash = (spread ^ spread * 0x3d20adeau) << 2;
     const std::uint32_t once = hash & ~(hash >> 1) & pixels, twice = ~hash & hash >> 1 & pixels;
     const std::uint32_t a = v & 0x55555555u, b = v >> 1 & 0x55555555u;
     const std::uint32_t first = a ^ ((a ^ b) & once) ^ (b & twice);
