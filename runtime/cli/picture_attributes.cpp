@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 
 #include "runtime/camera.h"
 #include "runtime/cli/version.h"
