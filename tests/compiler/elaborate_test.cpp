@@ -315,8 +315,9 @@ TEST_CASE("every synonym leads to the right word", "[elaborate]") {
 
 TEST_CASE("records name every property once", "[elaborate]") {
   std::vector<const RecordSpec*> records = {&scene_record(),    &film_record(),     &render_record(),
-                                            &gradient_record(), &rotation_record(), &use_record(),
-                                            &parameter_record()};
+                                            &rotation_record(), &use_record(),      &parameter_record()};
+  for (const RecordSpec& r : light_records()) records.push_back(&r);
+  for (const RecordSpec& r : background_records()) records.push_back(&r);
   for (const RecordSpec& r : camera_records()) records.push_back(&r);
   for (const RecordSpec& r : material_records()) records.push_back(&r);
   for (const RecordSpec& r : pattern_records()) records.push_back(&r);

@@ -114,7 +114,8 @@ TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]
   std::size_t found = 0;
   options.on_pass = [&](std::string_view pass, const Scene& scene) {
     if (pass != "graph") return;
-    Material glow{"glow", Material::Type::Emissive};
+    Material glow;
+    glow.type = Material::Type::Emissive;
     glow.emission = glm::dvec3(1);
     const Surface surface{"all", 0};
     found = find_lamps(scene, std::span(&surface, 1), std::span(&glow, 1)).size();

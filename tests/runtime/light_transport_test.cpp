@@ -20,7 +20,7 @@ RenderOptions square(int side, int spp) {
   options.width = side;
   options.height = side;
   options.spp = spp;
-  options.sampler = SamplerKind::Independent;  // so that the pixels' spread tells the error
+  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread tells the error
   return options;
 }
 
@@ -40,19 +40,19 @@ void expect(const LightScene& scene, RenderOptions options, double error) {
 TEST_CASE("light: closed rooms, however paths end", "[render][light]") {
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (const int bounces : {0, 2, 5}) {
-      RenderOptions options = square(24, tests::few(64));
+      RenderOptions options = square(24, test::few(64));
       options.bounces = bounces;
       expect(tests::closed_room(albedo), options, 2e-2);
     }
   }
-  expect(tests::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, tests::few(64)), 2e-2);
+  expect(tests::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, test::few(64)), 2e-2);
 }
 
 TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
   for (const char* material : {R"({"type": "diffuse", "color": [1, 1, 1]})", R"({"type": "specular"})",
                                R"({"type": "transparent"})", R"({"type": "transparent", "ior": 2.4})"}) {
     for (const LightSampling way : kEveryWay) {
-      RenderOptions options = square(16, tests::few(64));
+      RenderOptions options = square(16, test::few(64));
       options.light_sampling = way;
       expect(tests::in_even_light(material), options, 1e-2);
     }
@@ -66,7 +66,7 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
   for (const LightScene& scene : scenes) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
-      RenderOptions options = square(32, tests::few(way == LightSampling::Hits ? 256 : 64));
+      RenderOptions options = square(32, test::few(way == LightSampling::Hits ? 256 : 64));
       options.light_sampling = way;
       expect(scene, options, way == LightSampling::Hits ? 2e-2 : 5e-3);
     }
@@ -74,11 +74,11 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
 }
 
 TEST_CASE("light: a cavity gathers light by many bounces", "[render][light]") {
-  for (const double albedo : {0.5, 0.9}) expect(tests::cavity(albedo, 40), square(24, tests::few(128)), 3e-2);
+  for (const double albedo : {0.5, 0.9}) expect(tests::cavity(albedo, 40), square(24, test::few(128)), 3e-2);
 }
 
 TEST_CASE("light: a slab of glass passes 1 - R over 1 + R", "[render][light]") {
-  expect(tests::slab(), square(24, tests::few(64)), 1e-2);
+  expect(tests::slab(), square(24, test::few(64)), 1e-2);
 }
 
 TEST_CASE("light: Lambert's ball at every phase", "[render][light]") {
