@@ -112,7 +112,7 @@ Space space_at(glm::dvec3 place, const Media& media, const Materials& materials)
   return space;
 }
 
-World make_world(const compiler::CompiledScene& scene, const Settings& settings) {
+World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
   World world{scene,
               settings,
               Camera(scene.camera, settings.width, settings.height),
@@ -120,12 +120,12 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings)
               make_field(scene, settings.far),
               Media(scene, extent_of(scene), settings.far),
               Materials(scene),
-              Lights(scene),
+              Lights(scene, options.environment),
               {}};
   if (settings.regions) {
-    const RegionOptions options{.threads = settings.threads, .memory = settings.region_memory};
-    add_regions(world.field, scene, options);
-    world.media.add_regions(scene, options);
+    const RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
+    add_regions(world.field, scene, regions);
+    world.media.add_regions(scene, regions);
   }
   world.camera_space = space_at(scene.camera.position, world.media, world.materials);
   return world;
@@ -186,7 +186,7 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
   const PixelRect crop = settings.crop;
   CHECK(crop.width() > 0 && crop.height() > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
   CHECK(crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= settings.width && crop.y1 <= settings.height, "a crop within");
-  const World world = make_world(scene, settings);
+  const World world = make_world(scene, settings, options);
   RenderResult result{Film(crop, settings.layers), settings, {}};
   result.stats = render_tiles(world, result.film, options);
   if (world.field.regions) {
