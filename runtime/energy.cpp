@@ -13,7 +13,7 @@ namespace {
 constexpr int kNodes = AlbedoRow::kNodes;
 // What the tables are made with: integrals that err by less than 1e-3, from the denser side 3e-3, where total
 // reflection breaks the integrand.
-constexpr Lattice kOutside{377, 233}, kInside{987, 610};
+constexpr Lattice kOutside{377, 233}, kInside{1597, 987};
 constexpr float kLeastAlpha = 1e-4f;
 
 // Four neighbours of a place among nodes 0, 1 ... and what each of them counts: Lagrange's cubic.
@@ -84,12 +84,12 @@ void add_rows(float alpha, float share, AlbedoRow& sum, RowAt&& row_at) {
 
 // Of dielectrics from their thinner side.
 struct OutsideRow {
-  AlbedoRow reflected, both;
+  AlbedoRow reflected, lost;
 };
 
 // By s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Where it is near 0 slices lie close:
 // there the reflectance at the horizon goes from 0 to 1.
-constexpr int kSlices = 16;
+constexpr int kSlices = 32;
 constexpr float kMostS = (kMostEta - 1) / (kMostEta + 1);
 constexpr float slice_s(int slice) {
   return kMostS * static_cast<float>(slice * slice) / ((kSlices - 1) * (kSlices - 1));
@@ -101,7 +101,7 @@ const OutsideRow& outside_row(int slice, int roughness) {
   const auto make = [&](float cos, std::size_t k, OutsideRow& row) {
     const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), slice_eta(slice), kOutside);
     row.reflected.node[k] = albedo.reflected;
-    row.both.node[k] = albedo.reflected + albedo.transmitted;
+    row.lost.node[k] = albedo.lost;
   };
   return tables[static_cast<std::size_t>(slice)].row(roughness, make);
 }
@@ -109,20 +109,23 @@ const OutsideRow& outside_row(int slice, int roughness) {
 const AlbedoRow& inside_row(int slice, int roughness) {
   static std::array<RowTable<AlbedoRow>, kSlices> tables;
   const auto make = [&](float cos, std::size_t k, AlbedoRow& row) {
-    const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), 1 / slice_eta(slice), kInside);
-    row.node[k] = albedo.reflected + albedo.transmitted;
+    row.node[k] = integrate_dielectric(cos, node_alpha(roughness), 1 / slice_eta(slice), kInside).lost;
   };
   return tables[static_cast<std::size_t>(slice)].row(roughness, make);
 }
 
-// Between two indices in proportion to s^2, in which Fresnel's reflectance is nearly linear (Schlick, "An Inexpensive
-// BRDF Model for Physically-Based Rendering", 1994). `row_at(slice, node)`; eta >= 1.
+// What s is between two slices: of their distance, or of their reflectances' (s^2), in which Fresnel's reflectance is
+// nearly linear (Schlick, "An Inexpensive BRDF Model for Physically-Based Rendering", 1994).
+enum class Between { Indices, Reflectances };
+
+// `row_at(slice, node)`; eta >= 1.
 template <typename RowAt>
-AlbedoRow between_indices(float alpha, float eta, RowAt&& row_at) {
+AlbedoRow interpolate(float alpha, float eta, Between between, RowAt&& row_at) {
   const float s = std::min((eta - 1) / (eta + 1), kMostS);
   const int slice = std::clamp(static_cast<int>(std::sqrt(s / kMostS) * (kSlices - 1)), 0, kSlices - 2);
   const float low = slice_s(slice), high = slice_s(slice + 1);
-  const float share = std::clamp((s * s - low * low) / (high * high - low * low), 0.0f, 1.0f);
+  const float way = (s - low) / (high - low) * (between == Between::Indices ? 1 : (s + low) / (high + low));
+  const float share = std::clamp(way, 0.0f, 1.0f);
   AlbedoRow row = AlbedoRow::constant(0);
   const auto add = [&](int at, float part) {
     if (part > 0) add_rows(alpha, part, row, [&](int node) -> const AlbedoRow& { return row_at(at, node); });
@@ -171,12 +174,12 @@ float AlbedoRow::average() const {
 
 float AlbedoRow::greatest() const { return *std::max_element(node.begin(), node.end()); }
 
-AlbedoRow conductor_albedo(float alpha) {
+AlbedoRow conductor_loss(float alpha) {
   static RowTable<AlbedoRow> table;
   AlbedoRow row = AlbedoRow::constant(0);
   add_rows(alpha, 1, row, [](int node) -> const AlbedoRow& {
     return table.row(node, [&](float cos, std::size_t k, AlbedoRow& made) {
-      made.node[k] = integrate_conductor(cos, node_alpha(node), kOutside);
+      made.node[k] = integrate_conductor_loss(cos, node_alpha(node), kOutside);
     });
   });
   return row;
@@ -184,13 +187,13 @@ AlbedoRow conductor_albedo(float alpha) {
 
 AlbedoRow reflection_albedo(float alpha, float eta) {
   const auto row_at = [](int slice, int node) -> const AlbedoRow& { return outside_row(slice, node).reflected; };
-  return between_indices(alpha, eta, row_at);
+  return interpolate(alpha, eta, Between::Reflectances, row_at);
 }
 
-AlbedoRow dielectric_albedo(float alpha, float eta) {
-  if (eta < 1) return between_indices(alpha, 1 / eta, inside_row);
-  const auto row_at = [](int slice, int node) -> const AlbedoRow& { return outside_row(slice, node).both; };
-  return between_indices(alpha, eta, row_at);
+AlbedoRow dielectric_loss(float alpha, float eta) {
+  if (eta < 1) return interpolate(alpha, 1 / eta, Between::Indices, inside_row);
+  const auto row_at = [](int slice, int node) -> const AlbedoRow& { return outside_row(slice, node).lost; };
+  return interpolate(alpha, eta, Between::Indices, row_at);
 }
 
 AlbedoRow smooth_albedo(float eta) {
@@ -199,35 +202,32 @@ AlbedoRow smooth_albedo(float eta) {
   return row;
 }
 
-// A visible normal counts G2 / G1(wo): what of the light reflected there gets away.
-float integrate_conductor(float cos, float alpha, Lattice lattice) {
+// Of a visible normal G2 / G1(wo) of the light that is reflected there gets away, and of the light that passes
+// G1(wi).
+float integrate_conductor_loss(float cos, float alpha, Lattice lattice) {
   const Ggx ggx(alpha);
   double sum = 0;
   for_visible_normals(cos, ggx, lattice, [&](glm::vec3 wo, glm::vec3 m, float weight) {
     const float cos_i = 2 * glm::dot(wo, m) * m.z - wo.z;
-    if (cos_i > 0) {
-      sum += static_cast<double>(weight * 4 * cos_i * ggx.g2_by_4_cos(cos, cos_i) / ggx.g1_by_cos(cos));
-    }
+    sum += static_cast<double>(weight * (1 - ggx.seen_on_leaving(cos, cos_i)));
   });
   return static_cast<float>(sum);
 }
 
 BoundaryAlbedo integrate_dielectric(float cos, float alpha, float eta, Lattice lattice) {
   const Ggx ggx(alpha);
-  double reflected = 0, transmitted = 0;
+  double reflected = 0, lost = 0;
   for_visible_normals(cos, ggx, lattice, [&](glm::vec3 wo, glm::vec3 m, float weight) {
     const float cos_m = std::min(glm::dot(wo, m), 1.0f);
     const float share = fresnel(cos_m, eta);
-    const float cos_i = 2 * cos_m * m.z - wo.z;
-    if (cos_i > 0) {
-      const float seen = 4 * cos_i * ggx.g2_by_4_cos(cos, cos_i) / ggx.g1_by_cos(cos);
-      reflected += static_cast<double>(weight * share * seen);
-    }
+    const float seen = ggx.seen_on_leaving(cos, 2 * cos_m * m.z - wo.z);
+    reflected += static_cast<double>(weight * share * seen);
+    lost += static_cast<double>(weight * share * (1 - seen));
     if (share >= 1) return;
     const float cos_t = -refract_through(wo, m, eta).z;
-    if (cos_t > 0) transmitted += static_cast<double>(weight * (1 - share) * ggx.g1(cos_t));
+    lost += static_cast<double>(weight * (1 - share) * (cos_t > 0 ? 1 - ggx.g1(cos_t) : 1));
   });
-  return {static_cast<float>(reflected), static_cast<float>(transmitted)};
+  return {static_cast<float>(reflected), static_cast<float>(lost)};
 }
 
 }  // namespace fathom::runtime

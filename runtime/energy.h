@@ -1,9 +1,9 @@
-// What a rough boundary makes of the light that falls on it: its albedo by direction when light meets one microfacet
-// and no more. What is missing from 1 was hidden by other facets; materials give it back
-// (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017).
+// What a rough boundary makes of the light that falls on it, by direction, when light meets one microfacet and no
+// more: its albedo, and what is lost behind other facets. Materials give that back (Kulla and Conty, "Revisiting
+// Physically Based Shading at Imageworks", 2017).
 //
-//     const AlbedoRow albedo = conductor_albedo(alpha);
-//     albedo.at(cos_o), albedo.average()
+//     const AlbedoRow lost = conductor_loss(alpha);
+//     lost.at(cos_o), lost.average()
 //
 // The numbers come from tables made by quadrature, a row of one roughness (and index) when it is first asked for, by
 // whatever thread; a new material takes some milliseconds. Indices go up to kMostEta. Against the integrals rows err
@@ -36,12 +36,12 @@ struct AlbedoRow {
   float greatest() const;
 };
 
-// Of mirrors that reflect everything.
-AlbedoRow conductor_albedo(float alpha);
+// What is lost where facets reflect everything.
+AlbedoRow conductor_loss(float alpha);
 // The part that a rough dielectric reflects; eta >= 1, index of the far side relative to this one.
 AlbedoRow reflection_albedo(float alpha, float eta);
-// What a rough dielectric reflects and lets through (as power, without the scaling of radiance).
-AlbedoRow dielectric_albedo(float alpha, float eta);
+// What is neither reflected by a rough dielectric nor let through; any eta.
+AlbedoRow dielectric_loss(float alpha, float eta);
 // The part that a smooth dielectric reflects; eta >= 1.
 AlbedoRow smooth_albedo(float eta);
 
@@ -51,9 +51,9 @@ struct Lattice {
   int points, step;
 };
 struct BoundaryAlbedo {
-  float reflected, transmitted;
+  float reflected, lost;  // the rest passes
 };
-float integrate_conductor(float cos, float alpha, Lattice lattice);
+float integrate_conductor_loss(float cos, float alpha, Lattice lattice);
 BoundaryAlbedo integrate_dielectric(float cos, float alpha, float eta, Lattice lattice);
 
 }  // namespace fathom::runtime

@@ -33,8 +33,14 @@ inline float fresnel_between(float cos_i, float cos_t, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// The same where only the angle in [0,1] on the side that the light comes from is known. 1 when nothing passes (total
-// internal reflection).
+// 1 - fresnel_between(), with all its digits where next to nothing passes.
+inline float passed_between(float cos_i, float cos_t, float eta) {
+  const float parallel = eta * cos_i + cos_t, perpendicular = cos_i + eta * cos_t;
+  return 2 * eta * cos_i * cos_t * (1 / (parallel * parallel) + 1 / (perpendicular * perpendicular));
+}
+
+// fresnel_between() where only the angle in [0,1] on the side that the light comes from is known. 1 when nothing
+// passes (total internal reflection).
 inline float fresnel(float cos_i, float eta) {
   const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
   if (sin2_t >= 1) return 1;

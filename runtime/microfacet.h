@@ -36,6 +36,11 @@ class Ggx {
   // equation 99, height-correlated).
   float g2_by_4_cos(float cos_o, float cos_i) const { return 0.5f / (cos_i * slope(cos_o) + cos_o * slope(cos_i)); }
 
+  // G2 / G1(wo) of light that a mirror sends from cos_o, in [0,1], to cos_i; 0 where cos_i is below the surface.
+  float seen_on_leaving(float cos_o, float cos_i) const {
+    return cos_i > 0 ? 4 * cos_i * g2_by_4_cos(cos_o, cos_i) / g1_by_cos(cos_o) : 0;
+  }
+
   // One of the mirrors that wo sees. Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023.
   glm::vec3 sample_visible(glm::vec3 wo, glm::vec2 u) const {
     const glm::vec3 view = glm::normalize(glm::vec3(alpha_ * wo.x, alpha_ * wo.y, wo.z));

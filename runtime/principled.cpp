@@ -11,6 +11,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr float kInversePi = 0.318309886183790672f;
+constexpr float kEvenPdf = kInversePi / 2;  // over a hemisphere
 // Below this a boundary is a mirror: no picture resolves a lobe a twentieth of a degree wide.
 constexpr float kLeastAlpha = 1e-3f;
 // Indices nearer to each other are taken as equal but for what they reflect (1/40000): nothing is bent that could
@@ -24,27 +25,33 @@ float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 glm::vec3 mirrored(glm::vec3 w) { return {-w.x, -w.y, w.z}; }
 glm::vec3 below(glm::vec3 w) { return {w.x, w.y, -w.z}; }
 
+// Of either with the mirror between them: the same bits from both, for near total reflection the last one counts.
+float cos_between(glm::vec3 wo, glm::vec3 wi) { return std::min(glm::length(wo + wi) / 2, 1.0f); }
+
+// What is lost is lost near the horizon, where directions by the cosine are few.
+glm::vec3 even_over_hemisphere(glm::vec2 u) {
+  const float z = 1 - u.x, radius = std::sqrt(std::max(1 - z * z, 0.0f));
+  const SinCos angle = sincos_turn(u.y);
+  return {radius * angle.cos, radius * angle.sin, z};
+}
+
 AlbedoRow rest_of(AlbedoRow row) {
   for (float& value : row.node) value = std::max(1 - value, 0.0f);
   return row;
 }
 
-// specular_weight scales the reflectance at normal incidence, the square of s (OpenPBR 1.1, "Dielectric base").
+// specular_weight scales the reflectance at normal incidence, the square of s (OpenPBR 1.1, "Dielectric base"). In
+// double, so that both sides find the same boundary.
 float weighted_eta(float eta, float weight) {
-  const float s = std::clamp(std::sqrt(weight) * (eta - 1) / (eta + 1), -0.99f, 0.99f);
-  return (1 + s) / (1 - s);
+  if (weight == 1) return eta;
+  const double wide = static_cast<double>(eta);
+  const double s = std::clamp(std::sqrt(static_cast<double>(weight)) * (wide - 1) / (wide + 1), -0.99, 0.99);
+  return static_cast<float>((1 + s) / (1 - s));
 }
 
 // Of diffuse light. What a boundary lets through is the same from both sides but for eta^2, as radiance is.
 float average_passed(float eta) {
   return eta >= 1 ? 1 - smooth_albedo(eta).average() : (1 - smooth_albedo(1 / eta).average()) * (eta * eta);
-}
-
-// The mirror that sends wo to wi through the boundary; in double, because wo + eta wi has few digits left.
-glm::vec3 refracting_mirror(glm::vec3 wo, glm::vec3 wi, float eta) {
-  const glm::dvec3 sum = glm::dvec3(wo) + static_cast<double>(eta) * glm::dvec3(wi);
-  const glm::dvec3 m = sum / std::sqrt(glm::dot(sum, sum));
-  return glm::vec3(m.z < 0 ? -m : m);
 }
 
 }  // namespace
@@ -88,11 +95,11 @@ void Principled::add_metal(const MaterialPoint& m) {
   metal_tint_ = F82Tint(m.base_color, m.specular_color);
   if (smooth_metal_) return;
   // Light that meets facets again and again, each time coloured: Kulla and Conty's geometric series.
-  const AlbedoRow albedo = conductor_albedo(ggx_.alpha());
-  const float once = albedo.average();
+  const AlbedoRow lost = conductor_loss(ggx_.alpha());
+  const float once = 1 - lost.average();
   const glm::vec3 average = m.specular_weight * metal_tint_.average();
   const glm::vec3 color = average * average * once / (1.0f - average * (1 - once));
-  lost_metal_.row = inside_ ? rest_of(albedo) : under_coat(rest_of(albedo));
+  lost_metal_.row = inside_ ? lost : under_coat(lost);
   const float norm = lost_metal_.row.average();
   if (norm > 0) lost_metal_.strength = coat_tint_ * m.metalness * color * (lost_metal_.row.at(wo_.z) / norm);
 }
@@ -121,10 +128,10 @@ void Principled::add_pigment(const MaterialPoint& m) {
   const float norm = glm::mix(pigment_.row.average(), pigment_.row.greatest(), m.diffuse_roughness);
   if (!(norm > 0)) return;
   const glm::vec3 strength = coat_tint_ * (part * pigment_.row.at(wo_.z) / norm);
-  pigment_albedo_ = strength * m.base_color;
   rough_pigment_ = m.diffuse_roughness > 0;
   if (rough_pigment_) oren_nayar_ = OrenNayar(m.base_color, m.diffuse_roughness);
-  pigment_.strength = rough_pigment_ ? strength : pigment_albedo_;
+  pigment_.strength = rough_pigment_ ? strength : strength * m.base_color;
+  pigment_albedo_ = strength * m.base_color * pigment_.row.average();
 }
 
 // What was lost on both sides goes to both, so that each side gets back its loss and the two ways through are each
@@ -133,11 +140,11 @@ void Principled::add_lost_glass(const MaterialPoint& m) {
   AlbedoRow here, beyond;
   float passed;
   if (thin_) {
-    here = beyond = rest_of(conductor_albedo(ggx_.alpha()));
+    here = beyond = conductor_loss(ggx_.alpha());
     passed = 1 - slab_reflectance(1 - average_passed(eta_));
   } else {
-    here = rest_of(dielectric_albedo(ggx_.alpha(), eta_));
-    beyond = rest_of(dielectric_albedo(ggx_.alpha(), 1 / eta_));
+    here = dielectric_loss(ggx_.alpha(), eta_);
+    beyond = dielectric_loss(ggx_.alpha(), 1 / eta_);
     passed = average_passed(eta_);
   }
   AlbedoRow& outside = inside_ ? beyond : here;
@@ -163,9 +170,10 @@ void Principled::set_chances() {
   const float away = thin_ ? 1 : eta_ * eta_;
   if (coat_weight_ > 0 && !inside_) chance_[kCoat] = 1 - coat_passes_o_;
   if (metal_ > 0) chance_[kMetal] = coat_passes_o_ * metal_ * greatest(coat_tint_ * metal_tint_(wo_.z));
-  chance_[kBoundary] = coat_passes_o_ * (greatest(coat_tint_ * glossy) + greatest(boundary_passes(reflected)));
-  chance_[kDiffuse] = greatest(pigment_albedo_ + lost_metal_.strength + lost_glass_.strength);
-  chance_[kDiffuseThrough] = away * greatest(lost_through_.strength);
+  chance_[kBoundary] = coat_passes_o_ * (greatest(coat_tint_ * glossy) + greatest(boundary_passes(1 - reflected)));
+  chance_[kPigment] = greatest(pigment_albedo_);
+  chance_[kLost] = greatest(lost_metal_.albedo() + lost_glass_.albedo());
+  chance_[kLostThrough] = away * greatest(lost_through_.albedo());
   float sum = 0;
   for (float chance : chance_) sum += chance;
   for (float& chance : chance_) chance = sum > 0 ? chance * opacity_ / sum : 0;
@@ -175,7 +183,7 @@ void Principled::set_chances() {
 bool Principled::is_delta() const {
   const bool rough = (!smooth_coat_ && chance_[kCoat] > 0) || (!smooth_metal_ && chance_[kMetal] > 0) ||
                      (!smooth_boundary_ && chance_[kBoundary] > 0);
-  return !rough && chance_[kDiffuse] == 0 && chance_[kDiffuseThrough] == 0;
+  return !rough && chance_[kPigment] + chance_[kLost] + chance_[kLostThrough] == 0;
 }
 
 float Principled::coat_passes(float cos) const { return coat_weight_ > 0 ? 1 - coat_weight_ * coat_row_.at(cos) : 1; }
@@ -191,12 +199,14 @@ glm::vec3 Principled::boundary_reflects(float fresnel) const {
   return tint_ * (over_pigment_ * fresnel + glass_ * (thin_ ? slab_reflectance(fresnel) : fresnel));
 }
 
-glm::vec3 Principled::boundary_passes(float fresnel) const {
-  return coat_tint_through_ * glass_tint_ * (glass_ * (1 - (thin_ ? slab_reflectance(fresnel) : fresnel)));
+// `passed`: 1 - Fresnel's reflectance; of a slab 1 - 2 R / (1 + R).
+glm::vec3 Principled::boundary_passes(float passed) const {
+  return coat_tint_through_ * glass_tint_ * (glass_ * (thin_ ? passed / (2 - passed) : passed));
 }
 
 float Principled::chance_to_reflect(float fresnel) const {
-  const float back = greatest(coat_tint_ * boundary_reflects(fresnel)), through = greatest(boundary_passes(fresnel));
+  const float back = greatest(coat_tint_ * boundary_reflects(fresnel)),
+              through = greatest(boundary_passes(1 - fresnel));
   return back + through > 0 ? back / (back + through) : 1;
 }
 
@@ -218,10 +228,12 @@ Principled::Draw Principled::draw(float lobe, glm::vec2 u) const {
               true};
     case kBoundary:
       return draw_boundary(std::min(lobe / chance_[kBoundary], kBelowOne), u);
-    case kDiffuse:
+    case kPigment:
       return {.wi = square_to_cosine_hemisphere(u)};
-    case kDiffuseThrough:
-      return {.wi = below(square_to_cosine_hemisphere(u)), .through = true, .straight = thin_};
+    case kLost:
+      return {.wi = even_over_hemisphere(u)};
+    case kLostThrough:
+      return {.wi = below(even_over_hemisphere(u)), .through = true, .straight = thin_};
     default:
       return {};
   }
@@ -240,7 +252,7 @@ Principled::Draw Principled::draw_boundary(float lobe, glm::vec2 u) const {
   }
   Draw draw{.wi = pass_boundary(m), .delta = smooth_boundary_, .through = true, .straight = thin_};
   const float seen = inside_ ? coat_passes(std::min(std::abs(draw.wi.z), 1.0f)) : 1;
-  draw.weight = boundary_passes(reflected) * (seen * part / ((1 - chance) * (thin_ ? 1 : eta_ * eta_)));
+  draw.weight = boundary_passes(1 - reflected) * (seen * part / ((1 - chance) * (thin_ ? 1 : eta_ * eta_)));
   return draw;
 }
 
@@ -257,9 +269,8 @@ BsdfValue Principled::evaluate(glm::vec3 wi) const {
     add_diffuse(wi, value);
   } else if (wi.z < 0 && glass_ > 0) {
     if (!smooth_boundary_) thin_ ? add_thin(wi, value) : add_refracted(wi, value);
-    const float evenly = -wi.z * kInversePi;
-    value.f += lost_through_(-wi.z) * (opacity_ * evenly);
-    value.pdf += chance_[kDiffuseThrough] * evenly;
+    value.f += lost_through_(-wi.z) * (opacity_ * -wi.z * kInversePi);
+    value.pdf += chance_[kLostThrough] * kEvenPdf;
   }
   return value;
 }
@@ -269,7 +280,7 @@ void Principled::add_glossy(glm::vec3 wi, BsdfValue& value) const {
   const bool metal = !smooth_metal_ && chance_[kMetal] > 0, boundary = !smooth_boundary_ && chance_[kBoundary] > 0;
   if (!coat && !metal && !boundary) return;
   const glm::vec3 m = glm::normalize(wo_ + wi);
-  const float cos_m = std::clamp(glm::dot(wo_, m), 0.0f, 1.0f);
+  const float cos_m = cos_between(wo_, wi);
   if (coat) {
     const float facets = coat_ggx_.d(m) * coat_ggx_.g2_by_4_cos(wo_.z, wi.z) * wi.z;
     value.f += coat_weight_ * opacity_ * fresnel(cos_m, coat_eta_) * facets;
@@ -293,33 +304,42 @@ void Principled::add_glossy(glm::vec3 wi, BsdfValue& value) const {
 }
 
 void Principled::add_diffuse(glm::vec3 wi, BsdfValue& value) const {
-  if (chance_[kDiffuse] == 0) return;
-  glm::vec3 pigment = pigment_(wi.z);
-  if (rough_pigment_) pigment *= oren_nayar_(wo_, wi);
-  const float evenly = wi.z * kInversePi;
-  value.f += (pigment + lost_metal_(wi.z) + lost_glass_(wi.z)) * (opacity_ * evenly);
-  value.pdf += chance_[kDiffuse] * evenly;
+  const float lambert = wi.z * kInversePi;
+  if (chance_[kPigment] > 0) {
+    glm::vec3 pigment = pigment_(wi.z);
+    if (rough_pigment_) pigment *= oren_nayar_(wo_, wi);
+    value.f += pigment * (opacity_ * lambert);
+    value.pdf += chance_[kPigment] * lambert;
+  }
+  if (chance_[kLost] > 0) {
+    value.f += (lost_metal_(wi.z) + lost_glass_(wi.z)) * (opacity_ * lambert);
+    value.pdf += chance_[kLost] * kEvenPdf;
+  }
 }
 
 // Walter et al. 2007, equations 17 and 21, with what hides facets on one side taken to be independent of the other's.
-// As radiance: eta^2 of the equation is gone.
+// As radiance: eta^2 of the equation is gone. The facet's normal is sought in double: wo + eta wi has few digits
+// left.
 void Principled::add_refracted(glm::vec3 wi, BsdfValue& value) const {
-  const glm::vec3 m = refracting_mirror(wo_, wi, eta_);
-  const float cos_o = glm::dot(wo_, m), cos_i = glm::dot(wi, m);
-  if (!(cos_o > 0 && cos_i < 0)) return;
-  const float reflected = fresnel_between(cos_o, -cos_i, eta_);
-  const float sum = cos_o + eta_ * cos_i;
-  const float visible = ggx_.visible_pdf(wo_, m), turn = -cos_i / (sum * sum);
+  const glm::dvec3 sum = glm::dvec3(wo_) + static_cast<double>(eta_) * glm::dvec3(wi);
+  const double length2 = glm::dot(sum, sum);
+  const glm::dvec3 m = sum * ((sum.z < 0 ? -1 : 1) / std::sqrt(length2));
+  const float cos_o = static_cast<float>(glm::dot(glm::dvec3(wo_), m));
+  const float cos_i = static_cast<float>(-glm::dot(glm::dvec3(wi), m));
+  if (!(cos_o > 0 && cos_i > 0)) return;
+  const float passed = passed_between(cos_o, cos_i, eta_);
+  const float visible = ggx_.g1_by_cos(wo_.z) * ggx_.d(glm::vec3(m)) * cos_o;
+  const float turn = cos_i / static_cast<float>(length2);
   const float passes = inside_ ? coat_passes(std::min(-wi.z, 1.0f)) : coat_passes_o_;
-  value.f += boundary_passes(reflected) * (opacity_ * passes * visible * ggx_.g1(-wi.z) * turn);
-  value.pdf += chance_[kBoundary] * (1 - chance_to_reflect(reflected)) * visible * turn * (eta_ * eta_);
+  value.f += boundary_passes(passed) * (opacity_ * passes * visible * ggx_.g1(-wi.z) * turn);
+  value.pdf += chance_[kBoundary] * (1 - chance_to_reflect(1 - passed)) * visible * turn * (eta_ * eta_);
 }
 
 void Principled::add_thin(glm::vec3 wi, BsdfValue& value) const {
   const glm::vec3 up = below(wi), m = glm::normalize(wo_ + up);
-  const float reflected = fresnel(std::clamp(glm::dot(wo_, m), 0.0f, 1.0f), eta_);
+  const float reflected = fresnel(cos_between(wo_, up), eta_);
   const float passes = inside_ ? coat_passes(up.z) : coat_passes_o_;
-  value.f += boundary_passes(reflected) * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, up.z) * up.z);
+  value.f += boundary_passes(1 - reflected) * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, up.z) * up.z);
   value.pdf += chance_[kBoundary] * (1 - chance_to_reflect(reflected)) * ggx_.reflection_pdf(wo_, m);
 }
 

@@ -58,11 +58,12 @@ class Principled {
   float eta() const { return eta_; }  // that light is bent by
 
  private:
-  enum Lobe { kStraight, kCoat, kMetal, kBoundary, kDiffuse, kDiffuseThrough, kLobes };
+  enum Lobe { kStraight, kCoat, kMetal, kBoundary, kPigment, kLost, kLostThrough, kLobes };
   // What comes back, or through, evenly: strength * row(cos_i) * cos_i; the strength is wo's.
   struct DiffuseLobe {
     glm::vec3 strength{0};
     AlbedoRow row = {};
+    glm::vec3 albedo() const { return strength == glm::vec3(0) ? strength : strength * row.average(); }
     glm::vec3 operator()(float cos_i) const { return strength == glm::vec3(0) ? strength : strength * row.at(cos_i); }
   };
 
@@ -76,7 +77,7 @@ class Principled {
   AlbedoRow under_coat(AlbedoRow row) const;
   float coat_passes(float cos) const;
   glm::vec3 boundary_reflects(float fresnel) const;
-  glm::vec3 boundary_passes(float fresnel) const;
+  glm::vec3 boundary_passes(float passed) const;
   float chance_to_reflect(float fresnel) const;
   Draw draw_boundary(float lobe, glm::vec2 u) const;
   glm::vec3 pass_boundary(glm::vec3 m) const;

@@ -27,19 +27,19 @@ TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[
                       {0.75f, {0.46392, 0.49232, 0.56462, 0.71553}},
                       {1, {0.30685, 0.35126, 0.45069, 0.64165}}};
   for (const Row& row : rows) {
-    const AlbedoRow table = conductor_albedo(row.alpha);
+    const AlbedoRow lost = conductor_loss(row.alpha);
     for (std::size_t i = 0; i < 4; ++i) {
       CAPTURE(row.alpha, cosines[i]);
-      CHECK(static_cast<double>(integrate_conductor(cosines[i], row.alpha, kFine)) ==
+      CHECK(1 - static_cast<double>(integrate_conductor_loss(cosines[i], row.alpha, kFine)) ==
             Approx(row.albedo[i]).margin(2e-4));
-      CHECK(static_cast<double>(table.at(cosines[i])) == Approx(row.albedo[i]).margin(2e-3));
+      CHECK(1 - static_cast<double>(lost.at(cosines[i])) == Approx(row.albedo[i]).margin(2e-3));
     }
   }
-  CHECK(static_cast<double>(conductor_albedo(1).at(1)) == Approx(1 - std::log(2.0)).margin(1e-3));
+  CHECK(static_cast<double>(conductor_loss(1).at(1)) == Approx(std::log(2.0)).margin(1e-3));
 }
 
-TEST_CASE("energy: tables are within 5e-3 of their integrals, 1e-3 in the mean", "[runtime]") {
-  const int n = 300;
+TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the mean", "[runtime]") {
+  const int n = 100;
   std::array<double, 4> worst{}, squares{};
   Sampler sampler(5, 0, 0, 0);
   for (int i = 0; i < n; ++i) {
@@ -47,11 +47,10 @@ TEST_CASE("energy: tables are within 5e-3 of their integrals, 1e-3 in the mean",
     const float alpha = 1e-3f + 0.999f * u * u * u, eta = 1.02f + 2.9f * v * v;
     const BoundaryAlbedo outside = integrate_dielectric(cos, alpha, eta, kFine);
     const BoundaryAlbedo inside = integrate_dielectric(cos, alpha, 1 / eta, kFine);
-    const std::array<float, 4> errors{
-        conductor_albedo(alpha).at(cos) - integrate_conductor(cos, alpha, kFine),
-        reflection_albedo(alpha, eta).at(cos) - outside.reflected,
-        dielectric_albedo(alpha, eta).at(cos) - outside.reflected - outside.transmitted,
-        dielectric_albedo(alpha, 1 / eta).at(cos) - inside.reflected - inside.transmitted};
+    const std::array<float, 4> errors{conductor_loss(alpha).at(cos) - integrate_conductor_loss(cos, alpha, kFine),
+                                      reflection_albedo(alpha, eta).at(cos) - outside.reflected,
+                                      dielectric_loss(alpha, eta).at(cos) - outside.lost,
+                                      dielectric_loss(alpha, 1 / eta).at(cos) - inside.lost};
     for (std::size_t k = 0; k < 4; ++k) {
       const double error = std::abs(static_cast<double>(errors[k]));
       worst[k] = std::max(worst[k], error);
@@ -60,20 +59,21 @@ TEST_CASE("energy: tables are within 5e-3 of their integrals, 1e-3 in the mean",
   }
   for (std::size_t k = 0; k < 4; ++k) {
     CAPTURE(k, worst[k], std::sqrt(squares[k]));
-    CHECK(worst[k] <= 5e-3);
-    CHECK(std::sqrt(squares[k]) <= 1e-3);
+    CHECK(worst[k] <= 1.5e-2);
+    CHECK(std::sqrt(squares[k]) <= 1.5e-3);
   }
 }
 
 TEST_CASE("energy: a row's average is that of the function it gives", "[runtime]") {
-  for (const AlbedoRow& row : {smooth_albedo(1.5f), conductor_albedo(0.3f), dielectric_albedo(0.6f, 1 / 1.5f)}) {
+  for (const AlbedoRow& row :
+       {smooth_albedo(1.5f), conductor_loss(0.05f), conductor_loss(0.01f), dielectric_loss(0.6f, 1 / 1.5f)}) {
     double sum = 0;
     const int n = 20000;
     for (int i = 0; i < n; ++i) {
       const double cos = (i + 0.5) / n;
       sum += static_cast<double>(row.at(static_cast<float>(cos))) * 2 * cos / n;
     }
-    CHECK(static_cast<double>(row.average()) == Approx(sum).margin(1e-5));
+    CHECK(static_cast<double>(row.average()) == Approx(sum).epsilon(1e-3));
   }
   CHECK(AlbedoRow::constant(0.25f).average() == Approx(0.25).epsilon(1e-5));
   CHECK(AlbedoRow::constant(0.25f).at(0.3f) == Approx(0.25).epsilon(1e-5));
@@ -95,7 +95,7 @@ TEST_CASE("energy: a smooth dielectric reflects as Fresnel's equations say", "[r
 TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
   std::array<AlbedoRow, 4> rows;
   std::vector<std::thread> threads;
-  for (AlbedoRow& row : rows) threads.emplace_back([&row] { row = dielectric_albedo(0.37f, 1.77f); });
+  for (AlbedoRow& row : rows) threads.emplace_back([&row] { row = dielectric_loss(0.37f, 1.77f); });
   for (std::thread& thread : threads) thread.join();
   for (const AlbedoRow& row : rows) CHECK(row.node == rows[0].node);
 }

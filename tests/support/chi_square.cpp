@@ -109,7 +109,7 @@ std::vector<double> count(const DirectionSampler& sample, const runtime::Frame& 
 }
 
 std::vector<double> expect(const DirectionPdf& pdf, const runtime::Frame& frame, const ChiSquareSetup& setup) {
-  const Integral integral(pdf, frame, 0.01 / setup.samples);
+  const Integral integral(pdf, frame, 0.1 / setup.samples);
   std::vector<double> expected;
   double sum = 0;
   for (int row = 0; row < setup.rows; ++row) {
