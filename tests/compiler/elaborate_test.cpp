@@ -42,6 +42,7 @@ TEST_CASE("defaults are those of the documentation", "[elaborate]") {
   CHECK(e.camera.fov == Camera().fov);
   CHECK(!e.camera.vertical_fov);
   CHECK((e.film.width == 640 && e.film.height == 360 && e.film.exposure == 0));
+  CHECK(e.film.tone == ToneCurve::None);
   CHECK((e.settings.spp == 16 && e.settings.bounces == 10 && e.settings.tile == 16 && e.settings.seed == 0));
   CHECK(!e.settings.far);
   CHECK((e.settings.sampler == SamplerKind::Blue && e.film.filter == FilterKind::Box && !e.film.filter_width));
@@ -71,7 +72,7 @@ TEST_CASE("settings are read", "[elaborate]") {
   const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
-      "film": {"width": 65535, "height": 1, "exposure": -1.5},
+      "film": {"width": 65535, "height": 1, "exposure": -1.5, "tone": "agx"},
       "render": {"spp": 1048576, "bounces": 0, "tile": 1024, "seed": 9007199254740992, "far": 100},
       "background": {"top": [0.5, 0.7, 1]})");
   CHECK(e.camera.position == glm::dvec3(1, 2, 3));
@@ -79,6 +80,7 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(e.camera.up == glm::dvec3(0, 0, 1));
   CHECK(e.camera.vertical_fov.value() == Approx(std::numbers::pi / 2));
   CHECK((e.film.width == 65535 && e.film.height == 1 && e.film.exposure == -1.5));
+  CHECK(e.film.tone == ToneCurve::Agx);
   CHECK((e.settings.spp == 1048576 && e.settings.bounces == 0 && e.settings.tile == 1024));
   CHECK(e.settings.seed == 9007199254740992u);
   CHECK(e.settings.far.value() == 100);
