@@ -119,8 +119,7 @@ class Finder {
   };
 
   bool glows(std::uint32_t surface) const {
-    const Material& material = materials_[surfaces_[surface].material];
-    return material.type == Material::Type::Emissive && material.emission != dvec3(0);
+    return emits(materials_[surfaces_[surface].material]);
   }
   std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
 

@@ -52,7 +52,8 @@ Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const Envir
 void Lights::add_lamps(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds) {
   has_lamps_.resize(scene.surfaces.size(), false);
   for (const compiler::Lamp& lamp : scene.lamps) {
-    const glm::vec3 radiance(scene.materials[lamp.material].emission);
+    const compiler::Material& material = scene.materials[lamp.material];
+    const glm::vec3 radiance(material.emission * material.emission_luminance);
     lamps_.push_back({LampShape(lamp), radiance, false});
     bounds.push_back(bounds_of(lamps_.back().shape, radiance));
     has_lamps_[lamp.surface] = true;

@@ -177,8 +177,12 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(const Vertex& v,
   const glm::vec2 place = path.sampler.next2();
   if (bsdf.is_delta() || world_.lights.empty()) return std::nullopt;
   if (settings.cut_after && path.bounces >= *settings.cut_after) return std::nullopt;
-  const LightSample light = world_.lights.sample(path.from, choice, place);
+  LightSample light = world_.lights.sample(path.from, choice, place);
   if (!(light.pdf > 0) || (!light.delta && settings.light_sampling == LightSampling::Hits)) return std::nullopt;
+  if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
+    const glm::dvec3 lamp = path.from.position + light.distance * glm::dvec3(light.wi);
+    light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emission;
+  }
   const BsdfValue value = bsdf.evaluate(light.wi);
   const bool both = !light.delta && settings.light_sampling == LightSampling::Both;
   const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;

@@ -68,6 +68,31 @@ TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
   CHECK(material_records()[3].find("ior")->fallback[0] == Material().ior);
 }
 
+TEST_CASE("lights and skies are read", "[elaborate]") {
+  const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
+      "background": {"type": "sky", "elevation": 30, "azimuth": 90, "turbidity": 5, "ground_albedo": [0.1, 0.2, 0.3],
+                     "strength": 2, "sun_disc": false},
+      "lights": {"bulb": {"type": "point", "position": [1, 2, 3], "intensity": [4, 5, 6]},
+                 "desk": {"type": "spot", "position": [0, 2, 0], "target": [0, 0, 2], "angle": 20, "blend": 0.25},
+                 "noon": {"type": "directional"},
+                 "dusk": {"type": "directional", "toward": [0, 0, 2], "irradiance": [3, 2, 1], "angle": 1}})");
+  const Background::Sky& sky = e.background.sky;
+  CHECK(e.background.type == Background::Type::Sky);
+  CHECK(glm::length(sky.sun - glm::dvec3(0, 0.5, -std::sqrt(0.75))) < 1e-15);
+  CHECK((sky.turbidity == 5 && sky.strength == 2 && !sky.sun_disc && sky.ground_albedo == glm::dvec3(0.1, 0.2, 0.3)));
+  REQUIRE(e.lights.size() == 4);
+  CHECK((e.lights[0].name == "bulb" && e.lights[0].type == Light::Type::Point));
+  CHECK((e.lights[0].position == glm::dvec3(1, 2, 3) && e.lights[0].intensity == glm::dvec3(4, 5, 6)));
+  CHECK(glm::length(e.lights[1].direction - glm::dvec3(0, -1, 1) / std::sqrt(2.0)) < 1e-15);
+  CHECK((e.lights[1].angle == 20 && e.lights[1].blend == 0.25));
+  CHECK((e.lights[2].direction == glm::dvec3(0, -1, 0) && e.lights[2].intensity == glm::dvec3(1)));
+  CHECK((e.lights[3].direction == glm::dvec3(0, 0, -1) && e.lights[3].intensity == glm::dvec3(3, 2, 1)));
+  const auto& sky_row = background_records()[1];
+  CHECK(sky_row.find("turbidity")->fallback[0] == Background::Sky().turbidity);
+  CHECK(sky_row.find("ground_albedo")->fallback[0] == Background::Sky().ground_albedo.x);
+  CHECK(sky_row.find("strength")->fallback[0] == Background::Sky().strength);
+}
+
 TEST_CASE("settings are read", "[elaborate]") {
   const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "$schema": 5,

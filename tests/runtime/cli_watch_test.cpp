@@ -76,20 +76,20 @@ TEST_CASE("cli: --preview is a quarter of each side, of few samples, denoised") 
 TEST_CASE("cli: --watch draws again when the file changes, and outlives errors") {
   const Folder folder;
   // Waits, at most half a minute, until the condition holds.
-  const std::string until =
-      "until() { for i in $(seq 600); do if eval \"$1\"; then return 0; fi; sleep 0.05; done; exit 9; }\n";
-  const Result result = folder.run_script(until +
+  const std::string wait_for =
+      "wait_for() { for i in $(seq 600); do if eval \"$1\"; then return 0; fi; sleep 0.05; done; exit 9; }\n";
+  const Result result = folder.run_script(wait_for +
                                           "\"$fathom\" render ball.json -o a.png --watch 2>log & watcher=$!\n"
                                           "trap 'kill $watcher' EXIT\n"
-                                          "until 'grep -q waiting log'\n"
+                                          "wait_for 'grep -q waiting log'\n"
                                           "test -f a.png || exit 3\n"
                                           "echo '{ broken' > ball.json\n"
-                                          "until 'grep -q E0005 log || grep -q \"error\" log'\n"
-                                          "until 'test $(grep -c waiting log) = 2'\n"
+                                          "wait_for 'grep -q E0005 log || grep -q \"error\" log'\n"
+                                          "wait_for 'test $(grep -c waiting log) = 2'\n"
                                           "rm a.png\n"
                                           "cat two.json > ball.json\n"
-                                          "until 'test -f a.png'\n"
-                                          "until 'test $(grep -c waiting log) = 3'\n"
+                                          "wait_for 'test -f a.png'\n"
+                                          "wait_for 'test $(grep -c waiting log) = 3'\n"
                                           "trap - EXIT\n"
                                           "kill -TERM $watcher\n"
                                           "wait $watcher\n"

@@ -82,7 +82,7 @@ inline double polygon_irradiance(const std::vector<std::array<double, 3>>& corne
   return radiance * std::abs(sum) / 2;
 }
 
-// A box lamp whose lower face alone is seen from the floor's spot, for it is thin and far from the side.
+// A box lamp of which only the lower face is seen from the floor's spot, which must lie below it.
 inline LightScene under_rectangle(double half_x, double half_z, double x, double y) {
   const auto face = [&] {
     return std::vector<std::array<double, 3>>{

@@ -65,6 +65,12 @@ TEST_CASE("shares: halfway between two of one shape each has half, whatever join
   }
 }
 
+TEST_CASE("shares: a chamfer is of both, in equal parts", "[vm]") {
+  const auto scene = blend_of(R"("type": "chamfer_union", "radius": 0.4)");
+  CHECK(share_of(scene, "a", {0.74, 0.7, 0}) == Approx(0.5).epsilon(1e-9));
+  CHECK(share_of(scene, "a", {0.76, 0.7, 0}) == Approx(0.5).epsilon(1e-9));
+}
+
 TEST_CASE("shares: a cut shows the material of what cuts", "[vm]") {
   const auto scene = blend_of(R"("type": "smooth_subtraction", "k": 0.1)");
   CHECK(share_of(scene, "b", {0.5, 0, 0}) == 1);
