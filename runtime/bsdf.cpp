@@ -22,6 +22,8 @@ Bsdf::Bsdf(const MaterialPoint& m, glm::vec3 normal, glm::vec3 wo, float eta, bo
 
 bool Bsdf::is_delta() const { return layers_ ? layers_->principled.is_delta() : !is_lambert(type_); }
 
+bool Bsdf::has_lobes() const { return type_ == Type::Principled || type_ == Type::Transparent; }
+
 BsdfSample Bsdf::sample(float lobe, glm::vec2 u) const {
   switch (type_) {
     case Type::Diffuse:

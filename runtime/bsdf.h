@@ -43,6 +43,7 @@ class Bsdf {
   BsdfSample sample(float lobe, glm::vec2 u) const;  // three uniform numbers in [0,1)
   BsdfValue evaluate(glm::vec3 wi) const;            // mirrors and clear panes count nothing
   bool is_delta() const;                             // evaluate() is black everywhere
+  bool has_lobes() const;                            // sample() makes use of `lobe`
 
  private:
   struct Layers {

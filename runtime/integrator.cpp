@@ -155,7 +155,8 @@ void Integrator::leave_scene(const Arrival& arrival) {
   Path& path = paths_[arrival.id];
   if (arrival.status != Arrival::Status::Invalid && path.space.field == 0) {
     const glm::vec3 direction(path.direction);
-    const float share = hit_share(path, world_.lights.pdf_of_background(path.from, direction));
+    const bool sought = path.pdf > 0 && !world_.lights.empty();
+    const float share = hit_share(path, sought ? world_.lights.pdf_of_background(path.from, direction) : 0);
     if (share > 0) add_light(path, path.throughput * world_.lights.background(direction) * share, path.bounces);
   }
   ended_.push_back(arrival.id);

@@ -101,7 +101,7 @@ class Integrator {
   float hit_share(const Path& path, float light_pdf) const;
   void add_light(Path& path, glm::vec3 radiance, int bounces);
   std::optional<ShadowRay> look_for_light(const Vertex& vertex, const Bsdf& bsdf);
-  void sample_next(const Vertex& vertex, const Bsdf& bsdf);
+  void go_with(const Vertex& vertex, const BsdfSample& next);
   bool survives_roulette(Path& path);
   void end_shadow_test(const Arrival& arrival);
   void go_on(std::uint32_t id);

@@ -21,11 +21,16 @@ constexpr double kPi = std::numbers::pi;
 
 // --- boxes
 
-// The faces across each axis, on the side where `from` is; weight 0 where it is within the box's slab.
+// The faces across each axis, on the side where `from` is; weight 0 where it is within the box's slab. The weights
+// are near the solid angles, up to the half sphere's: exactly known but the chosen face's need not be.
 struct BoxFaces {
   BoxFaces(dvec3 from, dvec3 half) {
     for (int i = 0; i < 3; ++i) {
-      if (std::abs(from[i]) > half[i]) parts.weights[static_cast<std::size_t>(i)] = face(from, half, i).solid_angle();
+      const double z = std::abs(from[i]) - half[i];
+      if (!(z > 0)) continue;
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      const double d2 = z * z + from[j] * from[j] + from[k] * from[k], flat = 4 * half[j] * half[k] * z;
+      parts.weights[static_cast<std::size_t>(i)] = 1 / (d2 * std::sqrt(d2) / flat + 1 / (2 * kPi));
     }
   }
   static SphericalRectangle face(dvec3 from, dvec3 half, int axis) {

@@ -19,9 +19,10 @@ constexpr double kShadowOffsets = 4, kMostShortened = 0.1;
 
 float max_component(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
-glm::vec3 transmittance(const Space& space, double distance) {
-  // Beer-Lambert law.
-  if (space.absorption == glm::vec3(0)) return glm::vec3(1);
+// Beer-Lambert law.
+inline glm::vec3 transmittance(const Space& space, double distance) {
+  if (space.absorption == glm::vec3(0)) [[likely]]
+    return glm::vec3(1);
   return exp(-space.absorption * static_cast<float>(distance));
 }
 
@@ -74,8 +75,11 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   add_emission(vertex, arrival);
   path.sampler.start_bounce(path.bounces);
   const Bsdf bsdf(vertex.material, point.normal, hit.wo, vertex.beyond.ior / path.space.ior, vertex.inside);
+  // The numbers that every hit needs are drawn first, so that they are the same dimensions in all samples.
+  const glm::vec2 place = path.sampler.next2();
+  const BsdfSample next = bsdf.sample(bsdf.has_lobes() ? path.sampler.next() : 0, place);
   const std::optional<ShadowRay> shadow = look_for_light(vertex, bsdf);
-  sample_next(vertex, bsdf);
+  go_with(vertex, next);
   if (!shadow) return go_on(arrival.id);
   path.in_shadow_test = true;
   marchers_[shadow->field]->add(arrival.id, shadow->ray);
@@ -161,7 +165,7 @@ void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {
   if (v.material.emission == glm::vec3(0)) return;
   const Path& path = v.path;
   float light_pdf = 0;
-  if (path.pdf > 0) {
+  if (path.pdf > 0 && !world_.lights.empty()) {
     light_pdf = world_.lights.pdf_of_hit(path.from, v.point.surface, v.hit.position, -v.hit.wo, arrival.t);
   }
   const float share = hit_share(path, light_pdf);
@@ -172,12 +176,12 @@ void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {
 std::optional<Integrator::ShadowRay> Integrator::look_for_light(const Vertex& v, const Bsdf& bsdf) {
   Path& path = v.path;
   const Settings& settings = world_.settings;
+  if (world_.lights.empty()) return std::nullopt;
   path.from = {spawn(v.hit, v.point, false), v.point.normal, v.material.transmits()};
-  const float choice = path.sampler.next();
-  const glm::vec2 place = path.sampler.next2();
-  if (bsdf.is_delta() || world_.lights.empty()) return std::nullopt;
+  if (bsdf.is_delta()) return std::nullopt;
   if (settings.cut_after && path.bounces >= *settings.cut_after) return std::nullopt;
-  LightSample light = world_.lights.sample(path.from, choice, place);
+  const float choice = path.sampler.next();
+  LightSample light = world_.lights.sample(path.from, choice, path.sampler.next2());
   if (!(light.pdf > 0) || (!light.delta && settings.light_sampling == LightSampling::Hits)) return std::nullopt;
   if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
     const glm::dvec3 lamp = path.from.position + light.distance * glm::dvec3(light.wi);
@@ -197,10 +201,8 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(const Vertex& v,
   return shadow;
 }
 
-void Integrator::sample_next(const Vertex& v, const Bsdf& bsdf) {
+void Integrator::go_with(const Vertex& v, const BsdfSample& next) {
   Path& path = v.path;
-  const float lobe = path.sampler.next();
-  const BsdfSample next = bsdf.sample(lobe, path.sampler.next2());
   path.throughput *= next.weight;
   path.eta_scale *= next.eta_scale;
   path.pdf = next.pdf;
