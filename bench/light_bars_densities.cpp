@@ -109,10 +109,8 @@ Group environments(int samples) {
   const std::string gradient = R"("background": {"bottom": [0, 0, 0], "top": [1, 2, 3]})";
   const std::string disc = R"(, "lights": {"far": {"type": "directional", "direction": [-1, -2, -1],
       "irradiance": [2, 2, 2], "angle": 10}})";
-  const std::pair<const char*, std::string> backgrounds[] = {{"gradient", gradient},
-                                                             {"gradient and a disc", gradient + disc},
-                                                             {"sky", test::kSky},
-                                                             {"picture", test::kPicture}};
+  const std::pair<const char*, std::string> backgrounds[] = {
+      {"a disc before a gradient", gradient + disc}, {"sky", test::kSky}, {"picture", test::kPicture}};
   const runtime::LightQuery queries[] = {
       {{0, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {0.6f, -0.48f, 0.64f}}, {{0, 0, 0}, {0, 0, 1}, true}};
   Group group{"what lies beyond the scene, for 3 surfaces", {}};

@@ -40,7 +40,7 @@ const char* const kOutside = R"("camera": {"position": [0, 1.6, 4.5], "target": 
     "lights": {"sun": {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": [3, 2.6, 2], "angle": 12}},
     "render": {"bounces": 3},
     "materials": {"clay": {"type": "diffuse", "color": [0.7, 0.35, 0.2]},
-      "gold": {"type": "principled", "metal": "gold", "roughness": 0.4},
+      "gold": {"type": "principled", "preset": "gold", "roughness": 0.4},
       "varnish": {"type": "principled", "color": [0.1, 0.3, 0.1], "roughness": 0.6, "coat": 1, "coat_roughness": 0.3}},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "material": "clay"},
       {"type": "torus", "major_radius": 0.6, "minor_radius": 0.22, "translate": [-0.8, 0.25, 0], "material": "gold"},

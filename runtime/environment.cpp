@@ -22,10 +22,6 @@ glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
   return {cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x};
 }
 
-// Where the surface cannot see it, a direction is mirrored to its other side.
-bool folds(const LightQuery& query) { return !query.both_sides && query.normal != glm::vec3(0); }
-glm::vec3 mirrored(glm::vec3 w, glm::vec3 normal) { return glm::normalize(w - 2 * glm::dot(w, normal) * normal); }
-
 // The mean over each pixel of the picture as bilinear filtering shows it: weights 1, 6, 1 of 8 along each axis.
 std::vector<float> filtered_luminance(const EnvironmentImage& image) {
   const int width = image.width, height = image.height;
@@ -136,9 +132,9 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
   return sum;
 }
 
+// A gradient is so even that directions chosen by the BSDF find its light with less noise (docs/BENCHMARKS.md).
 float Environment::mean() const {
-  if (type_ != Type::Gradient) return strength_ * static_cast<float>(table_.mean());
-  return 0.5f * (luminance(glm::vec3(bottom_)) + luminance(glm::vec3(top_)));
+  return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
 }
 
 float Environment::estimate(const Disc& disc, const LightQuery& query) const {
@@ -163,7 +159,7 @@ glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u
     if (own > 0) chosen = &disc;
     rest -= own;
   }
-  if (chosen == nullptr) return sample_backdrop(query, u);
+  if (chosen == nullptr) return turned(table_.sample(u), turn_sine_, turn_cosine_);
   const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
   const SinCos turn = sincos_turn(u.y);
   return to_frame(glm::vec3(chosen->direction),
@@ -173,33 +169,12 @@ glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u
 float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {
   const float all = estimate(query);
   if (!(all > 0)) return 0;
-  float sum = mean() > 0 ? kPi * mean() * backdrop_pdf(query, direction) : 0;
+  float sum = mean() > 0 ? kPi * mean() * table_.pdf(turned(direction, -turn_sine_, turn_cosine_)) : 0;
   for (const Disc& disc : discs_) {
     if (!disc.holds(direction)) continue;
     sum += estimate(disc, query) / (2 * kPi * static_cast<float>(disc.height));
   }
   return sum / all;
-}
-
-// The gradient's luminance l is linear in the height, and heights are uniform on the sphere.
-glm::vec3 Environment::sample_backdrop(const LightQuery& query, glm::vec2 u) const {
-  if (type_ != Type::Gradient) return turned(table_.sample(u), turn_sine_, turn_cosine_);
-  const float a = luminance(glm::vec3(bottom_)), b = luminance(glm::vec3(top_));
-  // The root of the running integral; with a = 0 and u = 0 both parts are 0.
-  const float root = a + std::sqrt(std::max(0.0f, a * a + u.x * (b * b - a * a)));
-  const float share = root > 0 ? std::min(1.0f, u.x * (a + b) / root) : 0;
-  const float y = 2 * share - 1, sine = std::sqrt(std::max(0.0f, 1 - y * y));
-  const SinCos turn = sincos_turn(u.y);
-  const glm::vec3 w(sine * turn.cos, y, sine * turn.sin);
-  return folds(query) && glm::dot(w, query.normal) < 0 ? mirrored(w, query.normal) : w;
-}
-
-float Environment::backdrop_pdf(const LightQuery& query, glm::vec3 direction) const {
-  if (type_ != Type::Gradient) return table_.pdf(turned(direction, -turn_sine_, turn_cosine_));
-  const auto density = [&](glm::vec3 w) { return luminance(backdrop(w)) / (4 * kPi * mean()); };
-  if (!folds(query)) return density(direction);
-  if (glm::dot(direction, query.normal) < 0) return 0;
-  return density(direction) + density(mirrored(direction, query.normal));
 }
 
 }  // namespace fathom::runtime

@@ -1,10 +1,9 @@
 // What lies beyond the scene: a background all around and discs before it, the sun's and those of directional lights
 // with an angle. Its radiance for rays that leave, and directions chosen by it.
 //
-// The background is sampled by its luminance: a gradient in closed form, and folded onto the side that the surface
-// faces; a sky as a table of its cells' means; a picture by its pixels, with what filtering spreads of each. A disc
-// is sampled uniformly. Of these one is chosen by an estimate of its irradiance, and densities are those of all
-// together. Tested by: tests/runtime/environment_test.cpp
+// The background is sampled by its luminance: a sky as a table of its cells' means; a picture by its pixels, with
+// what filtering spreads of each; a gradient not at all. A disc is sampled uniformly. Of these one is chosen by an
+// estimate of its irradiance, and densities are those of all together. Tested by: tests/runtime/environment_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -26,9 +25,9 @@ class Environment {
   // `image` is the picture that the scene's background names, when it names one.
   Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image);
 
-  glm::vec3 radiance(glm::vec3 direction) const;  // of rays that leave the scene
-  bool emits() const { return mean() > 0 || !discs_.empty(); }
-  // About the irradiance at the place, as luminance; 0 only where no light arrives.
+  glm::vec3 radiance(glm::vec3 direction) const;                // of rays that leave the scene
+  bool emits() const { return mean() > 0 || !discs_.empty(); }  // light to look for
+  // About the irradiance at the place of what is sampled, as luminance; 0 only where none of it arrives.
   float estimate(const LightQuery& query) const;
   // A direction, by three numbers in [0,1); only where estimate() > 0. pdf() is its density, per solid angle.
   glm::vec3 sample(const LightQuery& query, float choice, glm::vec2 u) const;
@@ -48,10 +47,8 @@ class Environment {
   void add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance);
   glm::vec3 backdrop(glm::vec3 direction) const;  // without discs
   glm::vec3 pixel(glm::vec3 direction) const;
-  float mean() const;  // luminance of the backdrop
+  float mean() const;  // luminance of the backdrop, if it is sampled; otherwise 0
   float estimate(const Disc& disc, const LightQuery& query) const;
-  glm::vec3 sample_backdrop(const LightQuery& query, glm::vec2 u) const;
-  float backdrop_pdf(const LightQuery& query, glm::vec3 direction) const;
 
   Type type_;
   glm::dvec3 bottom_, top_;  // gradient

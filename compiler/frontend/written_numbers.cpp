@@ -15,7 +15,8 @@ namespace {
 using syntax::Value;
 
 bool may_be_number(ValueType type) {
-  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Scale;
+  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Scale ||
+         type == ValueType::Color;
 }
 
 bool may_be_numbers(ValueType type) {

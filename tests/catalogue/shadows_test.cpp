@@ -19,6 +19,7 @@ RenderResult picture(const std::string& scene_text, int width, int height, int s
   options.width = width;
   options.height = height;
   options.spp = spp;
+  options.sampler = compiler::SamplerKind::Independent;  // the pixels' spread tells the error
   RenderResult result = render(scene_of(scene_text), options);
   CHECK(result.stats.dropped_samples == 0);
   return result;

@@ -78,21 +78,18 @@ Mean irradiance(const Environment& environment, const LightQuery& query, int n) 
 }
 
 TEST_CASE("environment: directions fall as their density says", "[lights]") {
-  const Environment gradient(scene_with(R"("background": {"bottom": [0, 0, 0], "top": [1, 2, 3]})"), nullptr);
   const Environment sky(scene_with(kSky), nullptr);
   const Environment picture(scene_with(kPicture), random_image(12, 6));
   for (const LightQuery& query : {kUp, kAside, kBoth}) {
-    check_density(gradient, query);
     check_density(sky, query);
     check_density(picture, query);
   }
 }
 
 TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
-  // Of bottom b and top t on what faces up: the integral of (b + (t - b)(1 + y)/2) y over the upper half.
   const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
-  const Mean e = irradiance(gradient, kUp, 40000);
-  CHECK(std::abs(e.value - M_PI * (1 + 3 * (0.5 + 1.0 / 3))) < 4 * e.error);
+  CHECK(!gradient.emits());  // rays find it
+  CHECK(gradient.estimate(kUp) == 0);
   auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
   const Environment picture(scene_with(kPicture), white);
   const Mean of_white = irradiance(picture, kAside, 40000);

@@ -21,6 +21,7 @@ RenderOptions options_of(int width, int height, int spp) {
   options.width = width;
   options.height = height;
   options.spp = spp;
+  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread tells the error
   return options;
 }
 

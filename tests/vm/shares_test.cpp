@@ -57,7 +57,7 @@ TEST_CASE("shares: far from a blend, and in a plain union, one surface has all",
 }
 
 TEST_CASE("shares: halfway between two of one shape each has half, whatever joins them", "[vm]") {
-  for (const char* combinator : {R"("type": "smooth_union", "k": 0.5)", R"("type": "chamfer_union", "radius": 0.4)",
+  for (const char* combinator : {R"("type": "smooth_union", "k": 0.5)",
                                  R"("type": "round_union", "radius": 0.5)", R"("type": "morph", "t": 0.5)"}) {
     INFO(combinator);
     const auto scene = blend_of(combinator);
