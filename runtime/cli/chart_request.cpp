@@ -8,7 +8,7 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kExamples =
-    "fathom chart -o charts                     # the project's own scenes; about three minutes\n"
+    "fathom chart -o charts                     # the project's own scenes; about five minutes\n"
     "fathom chart scene.json -o charts          # index.html there shows all of it\n"
     "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3   # a first look";
 

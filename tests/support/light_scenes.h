@@ -1,6 +1,6 @@
 // Scenes whose light is known in closed form. The text of each is what follows `"version": 1`; every one is seen by a
 // camera for which all pixels have the same value, or that value is the mean.
-// Sources: P1 to P10 of the tests' names are those of docs/LIGHT.md.
+// Sources: P1 to P10 of the tests' names are those of docs/ACCURACY.md.
 #pragma once
 
 #include <array>
