@@ -4,11 +4,13 @@
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "compiler/compiled_scene.h"
 #include "runtime/environment_file.h"
@@ -27,6 +29,7 @@ struct Progress {
 // How paths find light: by looking for lights from every hit and by hitting them, weighted so that both add up; or by
 // one of the two alone, to compare. Lights without a size can only be looked for.
 enum class LightSampling { Both, Lights, Hits };
+inline constexpr std::array<std::string_view, 3> kLightSamplingNames = {"both", "lights", "hits"};  // [LightSampling]
 
 struct RenderOptions {
   int threads = 0;                   // 0: one per processor

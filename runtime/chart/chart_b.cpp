@@ -14,16 +14,45 @@
 namespace fathom::runtime {
 namespace {
 
-std::string name_of(const ImageCurve& curve) {
+// The relMSE that a light chart says the time to.
+constexpr double kGoal = 1e-3;
+
+std::string slope_of(const ImageCurve& curve) {
+  if (std::isnan(curve.slope)) return "";
+  return fmt::format(", slope {}{:.2f}", curve.slope < 0 ? "−" : "", std::abs(curve.slope));
+}
+
+std::string name_by_method(const ImageCurve& curve) {
   std::string name = curve.method + " " + curve.precision;
   if (curve.eps > 0) name += ", eps " + scientific(curve.eps);
-  if (std::isnan(curve.slope)) return name;
-  return name + fmt::format(", slope {}{:.2f}", curve.slope < 0 ? "−" : "", std::abs(curve.slope));
+  return name + slope_of(curve);
 }
+
+std::string name_by_light(const ImageCurve& curve) {
+  std::string name = curve.lights + ", " + curve.sampler + slope_of(curve);
+  const double seconds = seconds_to(curve, kGoal);
+  return std::isnan(seconds) ? name : name + fmt::format(", {} after {} s", scientific(kGoal), readable(seconds));
+}
+
+// What a chart of pictures shows: the curves that differ from the default in one thing alone.
+struct ImageChart {
+  const char* title;
+  bool (*shows)(const ImageCurve& curve);
+  std::string (*name)(const ImageCurve& curve);
+};
+constexpr ImageChart kByMethod = {
+    "Speed against accuracy of pictures: ",
+    [](const ImageCurve& curve) { return curve.sampler == kDefaultSampler && curve.lights == kDefaultLights; },
+    name_by_method};
+constexpr ImageChart kByLight = {
+    "Speed against accuracy of finding light: ",
+    [](const ImageCurve& curve) { return curve.method == kDefaultMethod && curve.precision == "f32"; },
+    name_by_light};
 
 std::string tooltip_of(const ImageMeasurement& row) {
   std::string text = row.method + " " + row.precision;
   if (row.eps > 0) text += ", eps " + scientific(row.eps);
+  if (row.sampler != kDefaultSampler || row.lights != kDefaultLights) text += ", " + row.lights + ", " + row.sampler;
   return text +
          fmt::format("\n{} samples per pixel, {} seeds\n{} s ({} to {})\n", row.spp, row.seeds,
                      readable(row.seconds_med), readable(row.seconds_min), readable(row.seconds_max)) +
@@ -34,7 +63,9 @@ std::string tooltip_of(const ImageMeasurement& row) {
 
 // The rows of one curve by samples.
 std::vector<ImageMeasurement> points_of(const ImageCurve& curve, std::span<const ImageMeasurement> rows) {
-  const auto key = [](const auto& of) { return std::tie(of.scene, of.method, of.precision, of.eps); };
+  const auto key = [](const auto& of) {
+    return std::tie(of.scene, of.method, of.precision, of.eps, of.sampler, of.lights);
+  };
   std::vector<ImageMeasurement> points;
   for (const ImageMeasurement& row : rows) {
     if (key(row) == key(curve)) points.push_back(row);
@@ -46,9 +77,8 @@ std::vector<ImageMeasurement> points_of(const ImageCurve& curve, std::span<const
 
 PlotSeries series_of(const ImageCurve& curve, std::span<const ImageMeasurement> rows, bool trimmed) {
   PlotSeries series;
-  series.name = name_of(curve);
   series.hollow = curve.precision == "f64";
-  series.emphasised = curve.method == kDefaultMethod && curve.precision == "f32";
+  series.emphasised = kByMethod.shows(curve) && kByLight.shows(curve);
   for (const ImageMeasurement& row : points_of(curve, rows)) {
     PlotPoint point;
     point.x = row.seconds_med;
@@ -90,11 +120,10 @@ std::string seeds_of(std::span<const ImageMeasurement> rows, const std::string& 
   return fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most);
 }
 
-}  // namespace
-
-std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& scene, const Provenance& provenance) {
+std::string draw(const ImageChart& chart, std::span<const ImageMeasurement> rows, const std::string& scene,
+                 const Provenance& provenance) {
   Plot plot;
-  plot.title = "Speed against accuracy of pictures: " + scene;
+  plot.title = chart.title + scene;
   plot.subtitle =
       "Each point is a number of samples per pixel (spp). relMSE is the squared error over the reference's "
       "square, mean of the pixels.";
@@ -104,8 +133,9 @@ std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& s
     PlotPanel panel{trimmed ? "without the worst 0.1 % of pixels" : "all pixels", {}, {}};
     bool measured = false;
     for (const ImageCurve& curve : fit_curves(rows)) {
-      if (curve.scene != scene) continue;
+      if (curve.scene != scene || !chart.shows(curve)) continue;
       panel.series.push_back(series_of(curve, rows, trimmed));
+      panel.series.back().name = chart.name(curve);
       for (const PlotPoint& point : panel.series.back().points) measured |= !std::isnan(point.y);
     }
     paint(panel.series);
@@ -116,6 +146,17 @@ std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& s
                                seeds_of(rows, scene));
   plot.footer = source_of(provenance);
   return plot_svg(plot);
+}
+
+}  // namespace
+
+std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& scene, const Provenance& provenance) {
+  return draw(kByMethod, rows, scene, provenance);
+}
+
+std::string chart_light(std::span<const ImageMeasurement> rows, const std::string& scene,
+                        const Provenance& provenance) {
+  return draw(kByLight, rows, scene, provenance);
 }
 
 }  // namespace fathom::runtime

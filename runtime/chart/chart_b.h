@@ -14,7 +14,12 @@
 
 namespace fathom::runtime {
 
-// The rows of `scene` as SVG.
+// The rows of `scene` as SVG: those with the default's sampler and way to find light.
 std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& scene, const Provenance& provenance);
+
+// Those with the default's method: a curve is a sampler and a way to find light, and its name says the time to a
+// relMSE of 1e-3 by the fitted law.
+std::string chart_light(std::span<const ImageMeasurement> rows, const std::string& scene,
+                        const Provenance& provenance);
 
 }  // namespace fathom::runtime

@@ -63,6 +63,8 @@ constexpr Column<Image> kImageColumns[] = {
     {"method", of_row<Image, &Image::method>},
     {"precision", of_row<Image, &Image::precision>},
     {"eps", of_row<Image, &Image::eps>},
+    {"sampler", of_row<Image, &Image::sampler>},
+    {"lights", of_row<Image, &Image::lights>},
     {"spp", of_row<Image, &Image::spp>},
     {"seeds", of_row<Image, &Image::seeds>},
     {"seconds_med", of_row<Image, &Image::seconds_med>},

@@ -10,7 +10,7 @@ namespace {
 
 template <class Row>
 auto key_of(const Row& row) {
-  return std::tie(row.scene, row.method, row.precision, row.eps);
+  return std::tie(row.scene, row.method, row.precision, row.eps, row.sampler, row.lights);
 }
 
 }  // namespace
@@ -51,9 +51,14 @@ std::vector<ImageCurve> fit_curves(std::span<const ImageMeasurement> rows) {
       relmse.push_back(other.relmse_med);
     }
     const PowerLaw law = fit_power_law(seconds, relmse);
-    curves.push_back({row.scene, row.method, row.precision, row.eps, law.slope, law.factor});
+    curves.push_back({row.scene, row.method, row.precision, row.eps, row.sampler, row.lights, law.slope, law.factor});
   }
   return curves;
+}
+
+double seconds_to(const ImageCurve& curve, double relmse) {
+  if (!(curve.slope < 0)) return std::numeric_limits<double>::quiet_NaN();
+  return std::pow(relmse / curve.factor, 1 / curve.slope);
 }
 
 }  // namespace fathom::runtime

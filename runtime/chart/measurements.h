@@ -11,6 +11,8 @@
 namespace fathom::runtime {
 
 inline constexpr const char* kDefaultMethod = "tiered";
+inline constexpr const char* kDefaultSampler = "blue";
+inline constexpr const char* kDefaultLights = "both";
 
 // One way to intersect one class of rays with one scene.
 struct RayMeasurement {
@@ -41,6 +43,8 @@ struct ImageMeasurement {
   std::string method;
   std::string precision;
   double eps = 0;  // scene units; 0: the method has none
+  std::string sampler = kDefaultSampler;
+  std::string lights = kDefaultLights;  // how paths find them: "both" ways, "lights" are looked for, by "hits" alone
   int spp = 0;
   int seeds = 0;                                             // pictures taken
   double seconds_med = 0, seconds_min = 0, seconds_max = 0;  // for one picture
@@ -55,6 +59,7 @@ struct ImageCurve {
   std::string method;
   std::string precision;
   double eps = 0;
+  std::string sampler, lights;
   double slope = 0;   // -1 without bias and with independent samples; NaN where there are no two points
   double factor = 0;  // relMSE after one second
 };

@@ -26,6 +26,14 @@ const char* const kReadChartB =
     "slope is -1. A curve that bends to its dashed line has met its bias: more samples no longer help. A floor is "
     "measured with the noise that the mean of all seeds still has, so an unbiased method has one too, far below its "
     "curve.";
+const char* const kReadChartLight =
+    "The same pictures by how paths find light and by what their random numbers are. \"lights\": lamps are looked "
+    "for "
+    "from every hit; \"hits\": paths meet them by chance; \"both\": both, weighted. Light through glass or from "
+    "mirrors "
+    "is met by chance in any way, so in scenes with both the curves come together where that is what is left. The "
+    "time "
+    "to 1e-3 is that of the fitted law, beyond the last point a guess.";
 
 namespace {
 

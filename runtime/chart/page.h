@@ -42,5 +42,6 @@ std::string page_html(const Page& page);
 extern const char* const kReadChartATime;
 extern const char* const kReadChartAEvaluations;
 extern const char* const kReadChartB;
+extern const char* const kReadChartLight;
 
 }  // namespace fathom::runtime

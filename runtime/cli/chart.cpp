@@ -146,9 +146,15 @@ class Charts {
   void add_pictures(const compiler::CompiledScene& scene, runtime::PageScene& section) {
     const runtime::ImagePlan& plan = request_.images;
     say(fmt::format("{}: pictures of {}x{}, {} seeds\n", section.name, plan.width, plan.height, plan.seeds));
-    const auto rows = runtime::measure_images(scene, runtime::painted_methods(), plan, section.name);
+    const std::vector<runtime::ImageWay> ways = runtime::painted_ways(scene);
+    const auto rows = runtime::measure_images(scene, ways, plan, section.name);
     images_.insert(images_.end(), rows.begin(), rows.end());
     add_chart(section, "pictures", runtime::chart_b(rows, section.name, provenance_), runtime::kReadChartB);
+    const bool has_lights = std::any_of(ways.begin(), ways.end(), [](const runtime::ImageWay& way) {
+      return way.light_sampling != runtime::LightSampling::Both;
+    });
+    if (!has_lights) return;
+    add_chart(section, "light", runtime::chart_light(rows, section.name, provenance_), runtime::kReadChartLight);
   }
 
   void add_map(runtime::PageScene& section, const std::vector<float>& values, int width, int height,

@@ -8,7 +8,7 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kExamples =
-    "fathom chart -o charts                     # the project's own scenes; about three minutes\n"
+    "fathom chart -o charts                     # the project's own scenes; about five minutes\n"
     "fathom chart scene.json -o charts          # index.html there shows all of it\n"
     "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3   # a first look";
 
@@ -38,7 +38,7 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
   arguments.option("--size", "WxH", "Width and height of the pictures compared (64x36)", into(read_size, size));
   arguments.option("-s,--spp", "N", "Most samples per pixel (64)", whole(spp, 2, 1 << 14));
   arguments.option("--seeds", "N", "Pictures for each point of the chart (16)", whole(seeds, 1, 4096));
-  arguments.option("--reference-spp", "N", "Samples per pixel of the reference (256)",
+  arguments.option("--reference-spp", "N", "Samples per pixel of the reference (1024)",
                    whole(reference_spp, 2, 1 << 20));
   if (const auto code = arguments.parse(args, streams)) return *code;
 

@@ -9,8 +9,6 @@
 namespace fathom::runtime {
 namespace {
 
-using Channels = std::vector<double>;  // linear sRGB, [y][x][rgb]
-
 // Far from those of the pictures, which count from 1.
 constexpr std::uint64_t kReferenceSeed = 1u << 20;
 // Of the mean of the reference, squared: what keeps the relative error of dark pixels finite.
@@ -50,16 +48,17 @@ RelativeError relative_error(const Channels& picture, const Channels& reference)
   return result;
 }
 
-// What is gathered for one method at one number of samples.
-struct Point {
-  Marching marching;
-  int spp;
+// What is gathered at one point.
+struct Gathered {
+  ImagePoint point;
   std::vector<double> seconds, errors, trimmed;
   Channels sum;
 
   void add(const compiler::CompiledScene& scene, RenderOptions options, const Channels& reference) {
-    options.marching = marching;
-    options.spp = spp;
+    options.marching = point.way.marching;
+    options.sampler = point.way.sampler;
+    options.light_sampling = point.way.light_sampling;
+    options.spp = point.spp;
     const double start = thread_seconds();
     const RenderResult result = render(scene, options);
     seconds.push_back(thread_seconds() - start);
@@ -73,10 +72,13 @@ struct Point {
 
   ImageMeasurement row(const Channels& reference) const {
     ImageMeasurement row;
+    const Marching& marching = point.way.marching;
     row.method = info(marching.method).name;
     row.precision = marching.precision == Precision::Double ? "f64" : "f32";
     row.eps = info(marching.method).uses_epsilon ? marching.epsilon : 0;
-    row.spp = spp;
+    row.sampler = compiler::kSamplerNames[static_cast<std::size_t>(point.way.sampler)];
+    row.lights = kLightSamplingNames[static_cast<std::size_t>(point.way.light_sampling)];
+    row.spp = point.spp;
     row.seeds = static_cast<int>(errors.size());
     const Spread time = spread(seconds);
     row.seconds_med = time.median, row.seconds_min = time.least, row.seconds_max = time.most;
@@ -96,39 +98,64 @@ struct Point {
 
 }  // namespace
 
-std::vector<Marching> painted_methods() {
-  std::vector<Marching> methods = {{.method = Method::Tiered}};
-  for (const double epsilon : {1e-2, 1e-3, 1e-4}) methods.push_back({.method = Method::Sphere, .epsilon = epsilon});
-  return methods;
+std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene) {
+  using compiler::SamplerKind;
+  std::vector<ImageWay> ways = {{}};
+  for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
+    ways.push_back({.marching = {.method = Method::Sphere, .epsilon = epsilon}});
+  }
+  if (scene.lamps.empty() && scene.lights.empty()) return ways;
+  for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
+    ways.push_back({.sampler = sampler});
+  ways.push_back({.light_sampling = LightSampling::Lights});
+  for (const SamplerKind sampler : {SamplerKind::Blue, SamplerKind::Independent}) {
+    ways.push_back({.sampler = sampler, .light_sampling = LightSampling::Hits});
+  }
+  return ways;
 }
 
-std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const Marching> methods,
-                                             const ImagePlan& plan, const std::string& scene_name) {
+Channels reference_picture(const compiler::CompiledScene& scene, const ImagePlan& plan) {
   RenderOptions options;
   options.width = plan.width;
   options.height = plan.height;
   options.seed = kReferenceSeed;
   options.spp = plan.reference_spp;
-  options.marching.method = Method::Certified;
-  const Channels reference = channels_of(render(scene, options).film);
+  options.marching = plan.reference_way.marching;
+  options.sampler = plan.reference_way.sampler;
+  options.light_sampling = plan.reference_way.light_sampling;
+  return channels_of(render(scene, options).film);
+}
 
+std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scene, std::span<const ImagePoint> points,
+                                             const ImagePlan& plan, const Channels& reference,
+                                             const std::string& scene_name) {
   const Pinned pinned;
+  RenderOptions options;
+  options.width = plan.width;
+  options.height = plan.height;
   options.threads = 1;
-  std::vector<Point> points;
-  for (const Marching& marching : methods) {
-    // At least two samples: a single one is taken at the pixel's centre.
-    for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({marching, spp, {}, {}, {}, {}});
-  }
+  std::vector<Gathered> all;
+  for (const ImagePoint& point : points) all.push_back({point, {}, {}, {}, {}});
   for (int seed = 1; seed <= plan.seeds; ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
-    for (Point& point : points) point.add(scene, options, reference);
+    for (Gathered& gathered : all) gathered.add(scene, options, reference);
   }
   std::vector<ImageMeasurement> rows;
-  for (const Point& point : points) {
-    rows.push_back(point.row(reference));
+  for (const Gathered& gathered : all) {
+    rows.push_back(gathered.row(reference));
     rows.back().scene = scene_name;
   }
   return rows;
+}
+
+std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageWay> ways,
+                                             const ImagePlan& plan, const std::string& scene_name) {
+  std::vector<ImagePoint> points;
+  for (const ImageWay& way : ways) {
+    // At least two samples: a single one is taken at the pixel's centre.
+    for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({way, spp});
+  }
+  return measure_points(scene, points, plan, reference_picture(scene, plan), scene_name);
 }
 
 }  // namespace fathom::runtime

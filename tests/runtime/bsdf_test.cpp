@@ -11,104 +11,20 @@
 #include "runtime/sampler.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/effort.h"
+#include "tests/support/materials.h"
 
 namespace fathom::runtime {
 namespace {
 
-const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
-const float kCosines[] = {1, 0.8f, 0.5f, 0.2f, 0.05f};
-
-// A direction on the normal's side.
-glm::vec3 towards(float cos, float turn) {
-  const float sin = std::sqrt(1 - cos * cos);
-  return to_frame(kNormal, {sin * sincos_turn(turn).cos, sin * sincos_turn(turn).sin, cos});
-}
-
-struct Case {
-  std::string name;
-  MaterialPoint material;
-  bool inside = false;
-
-  float eta() const { return inside ? 1 / material.ior : material.ior; }
-  Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
-};
-
-MaterialPoint principled(float roughness) {
-  MaterialPoint m;
-  m.type = Material::Type::Principled;
-  m.base_color = glm::vec3(1);
-  m.roughness = roughness;
-  return m;
-}
-MaterialPoint metal(float alpha) {
-  MaterialPoint m = principled(std::sqrt(alpha));
-  m.metalness = 1;
-  return m;
-}
-MaterialPoint glass(float alpha, bool thin = false) {
-  MaterialPoint m = principled(std::sqrt(alpha));
-  m.transmission = 1;
-  m.thin_walled = thin;
-  return m;
-}
-MaterialPoint coated(float coat_roughness) {
-  MaterialPoint m = principled(0.5f);
-  m.coat_weight = 1;
-  m.coat_roughness = coat_roughness;
-  return m;
-}
-MaterialPoint matte(float diffuse_roughness) {
-  MaterialPoint m = principled(0.3f);
-  m.diffuse_roughness = diffuse_roughness;
-  m.specular_weight = 0;
-  return m;
-}
-MaterialPoint mix() {
-  MaterialPoint m = principled(0.6f);
-  m.base_color = {0.9f, 0.5f, 0.2f};
-  m.diffuse_roughness = 0.5f;
-  m.metalness = 0.3f;
-  m.specular_weight = 0.8f;
-  m.specular_color = {1, 0.8f, 0.7f};
-  m.transmission = 0.4f;
-  m.transmission_color = {0.5f, 0.9f, 0.8f};
-  m.coat_weight = 0.6f;
-  m.coat_roughness = 0.4f;
-  m.coat_color = {0.8f, 0.9f, 1};
-  m.opacity = 0.8f;
-  return m;
-}
-
-std::vector<Case> materials() {
-  std::vector<Case> cases;
-  cases.push_back({"diffuse", {}});
-  cases.push_back({"rough diffuse", matte(1)});
-  for (float alpha : {0.02f, 0.1f, 0.5f, 1.0f}) cases.push_back({"metal " + std::to_string(alpha), metal(alpha)});
-  for (float alpha : {0.1f, 0.5f}) {
-    cases.push_back({"glass " + std::to_string(alpha), glass(alpha)});
-    cases.push_back({"glass from inside " + std::to_string(alpha), glass(alpha), true});
-  }
-  cases.push_back({"plastic", principled(0.5f)});
-  cases.push_back({"varnish", coated(0)});
-  cases.push_back({"rough coat", coated(0.5f)});
-  cases.push_back({"thin wall", glass(0.2f, true)});
-  cases.push_back({"mix", mix()});
-  cases.push_back({"mix from inside", mix(), true});
-  return cases;
-}
+using test::coated, test::glass, test::matte, test::metal, test::principled, test::towards;
+using test::kCosines, test::kNormal;
+using Case = test::MaterialCase;
 
 // What the material makes of light from everywhere, without the scaling of radiance: the greatest channel of the mean
 // of random samples, and that mean's standard deviation.
 struct Albedo {
   double mean, deviation;
 };
-
-// The index that light is bent by, specular_weight in it.
-float bending(const Case& c) {
-  if (c.material.thin_walled || c.material.type != Material::Type::Principled) return 1;
-  const float s = std::sqrt(c.material.specular_weight) * (c.eta() - 1) / (c.eta() + 1);
-  return (1 + s) / (1 - s);
-}
 
 float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
@@ -180,7 +96,7 @@ TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only wh
 }
 
 TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime]") {
-  for (const Case& c : materials()) {
+  for (const Case& c : test::materials()) {
     for (float cos : kCosines) {
       const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
       CHECK(!bsdf.is_delta());
@@ -204,7 +120,7 @@ TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime
 
 // How often each lobe is drawn holds against its density, for every material from five directions.
 void check_densities(int samples, int rows) {
-  const std::vector<Case> cases = materials();
+  const std::vector<Case> cases = test::materials();
   const double level = test::sidak(0.01, static_cast<int>(cases.size()) * 5);
   std::uint64_t seed = 0;
   for (const Case& c : cases) {
@@ -240,54 +156,15 @@ TEST_CASE("bsdf: every material passes a chi-square test of a million samples", 
 }
 
 TEST_CASE("bsdf: light goes either way alike", "[runtime]") {
-  // About z local space is world space, bit for bit, from either side.
-  const glm::vec3 up(0, 0, 1);
-  for (Case c : materials()) {
-    // Indices whose inverses are floats: a rounded one is another boundary.
-    c.material.ior = 2;
-    c.material.specular_weight = 1;
-    double worst = 0;
-    for (int i = 0; i < 4000; ++i) {
-      Sampler sampler(7, static_cast<std::uint32_t>(i), 0, 0);
-      const bool through = i % 2 == 1;
-      const glm::vec3 wo = square_to_cosine_hemisphere(sampler.next2());
-      const glm::vec3 other = square_to_cosine_hemisphere(sampler.next2());
-      if (wo.z < 0.01f || other.z < 0.01f) continue;
-      const glm::vec3 wi(other.x, other.y, through ? -other.z : other.z);
-      const Bsdf here(c.material, up, wo, c.eta(), c.inside);
-      const Bsdf there(c.material, through ? -up : up, wi, through ? 1 / c.eta() : c.eta(), through != c.inside);
-      // Radiance counts by the square of its side's index.
-      const float index = through ? bending(c) : 1;
-      const glm::vec3 forth = here.evaluate(wi).f / other.z * (index * index), back = there.evaluate(wo).f / wo.z;
-      if (greatest(back) < 1e-6f) continue;
-      worst = std::max(worst, static_cast<double>(greatest(glm::abs(forth - back)) / greatest(back)));
-    }
+  for (const Case& c : test::materials()) {
+    const double worst = test::worst_asymmetry(c, 4000, 7);
     CAPTURE(c.name, worst);
     CHECK(worst <= 1e-5);
   }
 }
 
 TEST_CASE("bsdf: nothing gives more light than it gets", "[runtime]") {
-  std::vector<Case> cases = materials();
-  for (float roughness : {0.0f, 0.15f, 0.4f, 0.8f}) {
-    for (float diffuse_roughness : {0.0f, 0.5f, 1.0f}) {
-      MaterialPoint m = coated(0.3f);
-      m.roughness = roughness;
-      m.diffuse_roughness = diffuse_roughness;
-      cases.push_back({"coated plastic", m});
-      m.metalness = 0.5f;
-      m.transmission = 0.5f;
-      cases.push_back({"all in one", m});
-      cases.push_back({"all in one from inside", m, true});
-    }
-    MaterialPoint m = glass(roughness * roughness);
-    m.coat_weight = 0.7f;
-    cases.push_back({"coated glass", m});
-    cases.push_back({"coated glass from inside", m, true});
-    m.thin_walled = true;
-    cases.push_back({"coated pane", m});
-  }
-  for (const Case& c : cases) {
+  for (const Case& c : test::layered_materials()) {
     for (float cos : kCosines) {
       CAPTURE(c.name, c.material.roughness, c.material.diffuse_roughness, cos);
       const Albedo found = albedo(c, cos, test::few(20000));
@@ -298,18 +175,7 @@ TEST_CASE("bsdf: nothing gives more light than it gets", "[runtime]") {
 }
 
 TEST_CASE("bsdf: what is white loses nothing", "[runtime]") {
-  std::vector<Case> cases{{"diffuse", {}}, {"rough diffuse", matte(1)}, {"matte", matte(0)}};
-  cases[0].material.base_color = glm::vec3(1);
-  for (float roughness : {0.0f, 0.1f, 0.3f, 0.5f, 0.7f, 1.0f}) {
-    const float alpha = roughness * roughness;
-    cases.push_back({"metal", metal(alpha)});
-    cases.push_back({"glass", glass(alpha)});
-    cases.push_back({"glass from inside", glass(alpha), true});
-    cases.push_back({"pane", glass(alpha, true)});
-    cases.push_back({"plastic", principled(roughness)});
-    cases.push_back({"plastic from inside", principled(roughness), true});
-  }
-  for (const Case& c : cases) {
+  for (const Case& c : test::white_materials()) {
     for (float cos : kCosines) {
       CAPTURE(c.name, c.material.roughness, cos);
       const Albedo found = albedo(c, cos, test::few(20000));

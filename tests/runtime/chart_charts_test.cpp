@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 #include "runtime/chart/chart_a.h"
 #include "runtime/chart/chart_b.h"
@@ -161,6 +162,43 @@ TEST_CASE("chart B: curves over samples with their slopes, floors and both panel
   CHECK(count_of(svg, ">1024 spp<") == 2);  // of the default, in both panels
   CHECK(contains(svg, "tiered f32\n4 samples per pixel, 16 seeds\n0.084 s (0.0806 to 0.0899)\n"));
   CHECK(contains(svg, "5 to 95 % of 16 seeds"));
+}
+
+// An exact power law, 1e-3 after as many seconds as samples.
+std::vector<ImageMeasurement> light_samples() {
+  std::vector<ImageMeasurement> rows;
+  for (const auto& [sampler, lights, slope] :
+       {std::tuple("blue", "both", -1.25), std::tuple("independent", "both", -1.0),
+        std::tuple("blue", "hits", -1.0)}) {
+    for (int spp = 4; spp <= 64; spp *= 4) {
+      ImageMeasurement row;
+      row.scene = "composite", row.method = "tiered", row.precision = "f32", row.sampler = sampler,
+      row.lights = lights;
+      row.spp = spp, row.seeds = 8;
+      row.seconds_med = row.seconds_min = row.seconds_max = 0.1 * spp;
+      row.relmse_med = row.relmse_p05 = row.relmse_p95 = row.relmse_trimmed_med =
+          1e-3 * std::pow(0.1 * spp / 20, slope);
+      row.floor = 1e-6;
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+TEST_CASE("chart light: curves by ways to find light and by samplers, with the time to 1e-3", "[chart]") {
+  auto rows = light_samples();
+  for (const ImageMeasurement& row : sample_images()) rows.push_back(row);
+  const std::string svg = chart_light(light_samples(), "composite", kProvenance);
+  CHECK(what_is_wrong(svg) == "");
+  const auto words = texts(svg);
+  CHECK(find_text(words, "both, blue, slope −1.25, 1e-3 after 20 s") != nullptr);
+  CHECK(find_text(words, "both, independent, slope −1.00, 1e-3 after 20 s") != nullptr);
+  CHECK(find_text(words, "hits, blue, slope −1.00, 1e-3 after 20 s") != nullptr);
+  CHECK(circles(svg, "marker").size() == 2 * 9 + 3);
+  CHECK(count_of(svg, ">64 spp<") == 2);  // of the default, in both panels
+  // Each chart has what differs from the default in its own way alone.
+  CHECK_FALSE(contains(chart_light(rows, "composite", kProvenance), "sphere tracing"));
+  CHECK_FALSE(contains(chart_b(rows, "composite", kProvenance), "independent"));
 }
 
 TEST_CASE("chart B: points are in the order of samples, whatever the rows' order", "[chart]") {

@@ -27,6 +27,12 @@ const char* const kBallScene = R"("camera": {"position": [0, 0, 4], "target": [0
 const char* const kGroundScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
     "film": {"width": 32, "height": 16}, "background": {"bottom": [0.2, 0.2, 0.2], "top": [1, 1, 1]},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1}, {"type": "sphere", "radius": 1}])";
+// A floor under a small lamp.
+const char* const kLampScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
+    "film": {"width": 32, "height": 16}, "render": {"bounces": 2},
+    "materials": {"lamp": {"type": "emissive", "emission": [50, 50, 50]}},
+    "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
+                {"type": "sphere", "radius": 0.2, "translate": [0, 1, 0], "material": "lamp"}])";
 // The ball with the camera turned away.
 const char* const kNothingSeen = R"("camera": {"position": [0, 0, 4], "target": [0, 0, 8]},
     "objects": [{"type": "sphere", "radius": 1}])";
@@ -113,14 +119,21 @@ TEST_CASE("chart: where the camera sees nothing there is nothing to bounce off",
 }
 
 TEST_CASE("chart: what is charted ends with the reference, and starts with what pictures are made with", "[chart]") {
-  const std::vector<Marching> charted = charted_methods(), painted = painted_methods();
+  const std::vector<Marching> charted = charted_methods();
   CHECK(charted.size() == 33);
   CHECK(charted.back().method == Method::Certified);
-  for (const std::vector<Marching>& methods : {charted, painted}) {
-    CHECK(methods.front().method == Marching{}.method);
-    CHECK(methods.front().precision == Marching{}.precision);
+  const std::vector<ImageWay> painted = painted_ways(scene_of(kBallScene));
+  CHECK(painted.size() == 4);
+  for (const Marching& first : {charted.front(), painted.front().marching}) {
+    CHECK(first.method == Marching{}.method);
+    CHECK(first.precision == Marching{}.precision);
   }
   CHECK(info(Marching{}.method).name == kDefaultMethod);
+  const Settings settings = resolve(scene_of(kBallScene), {});
+  CHECK((painted.front().sampler == settings.sampler && painted.front().light_sampling == settings.light_sampling));
+  CHECK(compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)] == kDefaultSampler);
+  CHECK(kLightSamplingNames[static_cast<std::size_t>(settings.light_sampling)] == kDefaultLights);
+  CHECK(painted_ways(scene_of(kLampScene)).size() == 9);
 }
 
 // One row for each way, in the order of kWays, for each class of rays.
@@ -203,17 +216,17 @@ TEST_CASE("chart: a ray without a true answer is nobody's failure", "[chart]") {
 TEST_CASE("chart: small pictures against their reference", "[chart]") {
   const auto scene = scene_of(kGroundScene);
   const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 2, .reference_spp = 512};
-  const std::vector<Marching> methods = {{.method = Method::Tiered}, {.method = Method::Sphere, .epsilon = 0.3}};
+  const std::vector<ImageWay> ways = {{}, {.marching = {.method = Method::Sphere, .epsilon = 0.3}}};
   cpu_set_t before, after;
   REQUIRE(sched_getaffinity(0, sizeof before, &before) == 0);
-  const std::vector<ImageMeasurement> rows = measure_images(scene, methods, plan, "ground");
+  const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "ground");
   REQUIRE(sched_getaffinity(0, sizeof after, &after) == 0);
   CHECK(CPU_EQUAL(&before, &after));
   REQUIRE(rows.size() == 4);  // 16 and 4 samples
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImageMeasurement& row = rows[i];
     CHECK(row.scene == "ground");
-    CHECK(row.method == info(methods[i / 2].method).name);
+    CHECK(row.method == info(ways[i / 2].marching.method).name);
     CHECK(row.eps == (i < 2 ? 0 : 0.3));
     CHECK(row.spp == (i % 2 == 0 ? 16 : 4));
     CHECK(row.seeds == 2);
@@ -224,11 +237,23 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
   }
   CHECK(rows[0].relmse_p95 < rows[1].relmse_p05);  // four times the samples
   CHECK(rows[2].floor > 4 * rows[0].floor);        // a thick ball is another picture
-  const std::vector<ImageMeasurement> again = measure_images(scene, methods, plan, "ground");
+  const std::vector<ImageMeasurement> again = measure_images(scene, ways, plan, "ground");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CHECK(again[i].relmse_med == rows[i].relmse_med);
     CHECK(again[i].floor == rows[i].floor);
   }
+}
+
+TEST_CASE("chart: samplers and ways to find light are told apart, and looking for lamps pays", "[chart]") {
+  const auto scene = scene_of(kLampScene);
+  const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 3, .reference_spp = 1024};
+  const std::vector<ImageWay> ways = {
+      {}, {.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits}};
+  const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "lamp");
+  REQUIRE(rows.size() == 4);
+  CHECK((rows[0].sampler == "blue" && rows[0].lights == "both"));
+  CHECK((rows[2].sampler == "independent" && rows[2].lights == "hits"));
+  CHECK(rows[0].relmse_p95 < 0.1 * rows[2].relmse_p05);
 }
 
 TEST_CASE("chart: maps have a number for each pixel, and none where nothing is to see", "[chart]") {

@@ -74,6 +74,24 @@ TEST_CASE("cli: chart writes a page, tables, charts and maps") {
   }
 }
 
+TEST_CASE("cli: chart of a scene with a lamp compares ways to find light") {
+  const Folder folder;
+  folder.write("lamp.json", R"({"version": 1, "film": {"width": 24, "height": 12}, "background": [0.1, 0.1, 0.1],
+    "camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
+    "materials": {"lamp": {"type": "emissive", "emission": [9, 9, 9]}},
+    "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
+                {"type": "sphere", "radius": 0.5, "material": "lamp"}]})");
+  const Result result =
+      folder.run(std::string("chart lamp.json -o a --size 6x4 -s 4 --seeds 2 --reference-spp 8") + kFew);
+  REQUIRE(result.code == 0);
+  CHECK(folder.read("a/lamp-light.svg").substr(0, 4) == "<svg");
+  CHECK_THAT(folder.read("a/index.html"), Contains("finding light: lamp"));
+  const std::vector<std::string> pictures = lines_of(folder.read("a/images.csv"));
+  REQUIRE(pictures.size() == 1 + 9);
+  CHECK(pictures[0].starts_with("scene,method,precision,eps,sampler,lights,spp,seeds,"));
+  CHECK(pictures[9].starts_with("lamp,tiered,f32,0,independent,hits,4,2,"));
+}
+
 TEST_CASE("cli: chart without pictures, quietly, from standard input and of a scene where nothing is seen") {
   const Folder folder;
   const Result quiet = folder.run(std::string("chart - -o a -q --no-images") + kFew, kBall);

@@ -8,10 +8,13 @@
 #include "runtime/sampler.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
+#include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"
 
 namespace fathom::runtime {
 namespace {
+
+using test::kPicture, test::kSky, test::random_image;
 
 const LightQuery kUp{{0, 0, 0}, {0, 1, 0}};
 const LightQuery kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
@@ -73,21 +76,6 @@ Mean irradiance(const Environment& environment, const LightQuery& query, int n) 
   }
   return {sum / n, std::sqrt((squares / n - sum / n * (sum / n)) / n)};
 }
-
-std::shared_ptr<EnvironmentImage> random_image(int width, int height) {
-  auto image = std::make_shared<EnvironmentImage>(EnvironmentImage{width, height, {}});
-  for (int i = 0; i < width * height; ++i) {
-    Sampler s(9, static_cast<std::uint32_t>(i), 0, 0);
-    const float bright = i % 17 == 3 ? 5.0f : 0.5f;
-    image->pixels.emplace_back(bright * s.next(), bright * s.next(), bright * s.next());
-  }
-  return image;
-}
-
-const char* const kSky = R"("background": {"type": "sky", "elevation": 35, "azimuth": 50, "turbidity": 4,
-    "sun_disc": false})";
-const char* const kPicture =
-    R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR R"(/README.md", "rotate": 40, "strength": 2})";
 
 TEST_CASE("environment: directions fall as their density says", "[lights]") {
   const Environment sky(scene_with(kSky), nullptr);

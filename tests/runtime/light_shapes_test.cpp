@@ -3,54 +3,20 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
-#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "runtime/sampler.h"
 #include "tests/support/effort.h"
-#include "tests/support/sample_bins.h"
+#include "tests/support/lamp_patches.h"
 
 namespace fathom::runtime {
 namespace {
 
 using compiler::Lamp;
 using glm::dvec3;
-
-Lamp lamp_of(Lamp::Shape shape) {
-  Lamp lamp;
-  lamp.shape = shape;
-  // Turned and moved, so that no axis is special.
-  const dvec3 z = glm::normalize(dvec3(1, -2, 3)), x = glm::normalize(glm::cross(dvec3(0, 1, 0), z));
-  lamp.rotation = glm::dmat3(x, glm::cross(z, x), z);
-  lamp.translation = {0.3, -0.2, 0.1};
-  return lamp;
-}
-Lamp ball(double radius) {
-  Lamp lamp = lamp_of(Lamp::Shape::Sphere);
-  lamp.radius = radius;
-  return lamp;
-}
-Lamp box(dvec3 half) {
-  Lamp lamp = lamp_of(Lamp::Shape::Box);
-  lamp.half_size = half;
-  return lamp;
-}
-Lamp round(Lamp::Shape shape, double radius, double half_height) {
-  Lamp lamp = lamp_of(shape);
-  lamp.radius = radius;
-  lamp.half_height = half_height;
-  return lamp;
-}
-Lamp quad(double thickness, double skew) {
-  Lamp lamp = lamp_of(Lamp::Shape::Quad);
-  lamp.radius = thickness;
-  lamp.corners = {{{-1, -0.5}, {1, -0.5}, {1 + skew, 0.5}, {-1, 0.5}}};
-  return lamp;
-}
+using test::ball, test::quad, test::round;
 
 // Where a ray first comes within 1e-10 of the lamp. Lamps are convex, and so is the distance along a ray: the line
 // through two of its values falls to 0 before it does.
@@ -69,187 +35,24 @@ std::optional<dvec3> meet(const LampShape& shape, dvec3 from, dvec3 w) {
   return std::nullopt;
 }
 
-struct Case {
-  const char* name;
-  Lamp lamp;
-};
-const Case kCases[] = {
-    {"sphere", ball(0.7)},
-    {"tiny sphere", ball(1e-3)},
-    {"box", box({0.5, 0.8, 0.3})},
-    {"flat box", box({1, 0.01, 0.6})},
-    {"small box", box({0.01, 0.02, 0.01})},
-    {"cylinder", round(Lamp::Shape::Cylinder, 0.5, 0.8)},
-    {"disc", round(Lamp::Shape::Cylinder, 0.8, 0.005)},
-    {"tube", round(Lamp::Shape::Cylinder, 0.05, 1)},
-    {"capsule", round(Lamp::Shape::Capsule, 0.4, 0.6)},
-    {"rectangle", quad(0.01, 0)},
-    {"quadrilateral", quad(0.01, 0.7)},
-};
-const dvec3 kPlaces[] = {{2, 1, 0.5}, {-0.4, 3, 1}, {0.5, -1.5, -0.9}, {10, -7, 4}};
-
-// A part of a lamp's surface over the unit square, in the lamp's space.
-struct Patch {
-  std::function<dvec3(double u, double v)> place;
-  std::function<glm::dvec2(dvec3)> parameters;  // of a point of the patch
-  std::function<bool(dvec3)> holds;             // a point of the surface
-};
-
-// About the y axis: by the distance from it and the height.
-Patch turned(const std::function<glm::dvec2(double)>& profile, const std::function<double(dvec3)>& parameter,
-             const std::function<bool(dvec3)>& holds) {
-  const auto place = [profile](double u, double v) {
-    const glm::dvec2 p = profile(u);
-    return dvec3(p.x * std::cos(2 * M_PI * v), p.y, p.x * std::sin(2 * M_PI * v));
-  };
-  const auto parameters = [parameter](dvec3 q) {
-    const double turn = std::atan2(q.z, q.x) / (2 * M_PI);
-    return glm::dvec2(parameter(q), turn < 0 ? turn + 1 : turn);
-  };
-  return {place, parameters, holds};
-}
-
-double across_axis(dvec3 q) { return std::sqrt(q.x * q.x + q.z * q.z); }
-
-// A ball's part above `sign` times the height h; the whole ball when sign is 0.
-Patch cap_of_ball(double r, double h, double sign) {
-  const auto height = [=](double u) { return sign == 0 ? r * (2 * u - 1) : r * u; };
-  return turned(
-      [=](double u) {
-        return glm::dvec2(std::sqrt(std::max(0.0, r * r - height(u) * height(u))),
-                          (sign < 0 ? -1 : 1) * (h + height(u)));
-      },
-      [=](dvec3 q) { return sign == 0 ? (q.y / r + 1) / 2 : (sign * q.y - h) / r; },
-      [=](dvec3 q) { return sign == 0 || sign * q.y > h; });
-}
-// The side, from the one line along which it turns away from the local place `from` to the other.
-Patch side_of(double r, double h, bool capsule, dvec3 from) {
-  const double middle = std::atan2(from.z, from.x), half = std::acos(std::min(1.0, r / across_axis(from)));
-  return {[=](double u, double v) {
-            const double turn = middle + half * (2 * v - 1);
-            return dvec3(r * std::cos(turn), (2 * u - 1) * h, r * std::sin(turn));
-          },
-          [=](dvec3 q) {
-            const double turn = std::remainder(std::atan2(q.z, q.x) - middle, 2 * M_PI);
-            return glm::dvec2((q.y / h + 1) / 2, (turn / half + 1) / 2);
-          },
-          [=](dvec3 q) { return capsule ? std::abs(q.y) <= h : std::abs(across_axis(q) - r) < 1e-9 * r; }};
-}
-Patch disc_of(double r, double y) {
-  return turned([=](double u) { return glm::dvec2(r * std::sqrt(u), y); },
-                [=](dvec3 q) { return across_axis(q) * across_axis(q) / (r * r); },
-                [=](dvec3 q) { return std::abs(across_axis(q) - r) >= 1e-9 * r && q.y * y > 0; });
-}
-Patch face_of_box(dvec3 half, int axis, double sign) {
-  const int j = (axis + 1) % 3, k = (axis + 2) % 3;
-  return {[=](double u, double v) {
-            dvec3 q;
-            q[axis] = sign * half[axis];
-            q[j] = (2 * u - 1) * half[j];
-            q[k] = (2 * v - 1) * half[k];
-            return q;
-          },
-          [=](dvec3 q) { return glm::dvec2(q[j] / half[j] + 1, q[k] / half[k] + 1) / 2.0; },
-          [=](dvec3 q) { return std::abs(q[axis] - sign * half[axis]) < 1e-9 * half[axis]; }};
-}
-Patch face_of_quad(const Lamp& lamp, double sign) {
-  const double skew = lamp.corners[2].x - 1, z = sign * lamp.radius;
-  return {[=](double u, double v) { return dvec3(-1 + u * (2 + skew * v), v - 0.5, z); },
-          [=](dvec3 q) { return glm::dvec2((q.x + 1) / (2 + skew * (q.y + 0.5)), q.y + 0.5); },
-          [=](dvec3 q) { return q.z * sign > 0; }};
-}
-
-std::vector<Patch> patches_of(const Lamp& lamp, dvec3 place) {
-  const dvec3 from = glm::transpose(lamp.rotation) * (place - lamp.translation);
-  const double r = lamp.radius, h = lamp.half_height;
-  std::vector<Patch> patches;
-  switch (lamp.shape) {
-    case Lamp::Shape::Sphere:
-      return {cap_of_ball(r, 0, 0)};
-    case Lamp::Shape::Cylinder:
-      return {side_of(r, h, false, from), disc_of(r, h), disc_of(r, -h)};
-    case Lamp::Shape::Capsule:
-      return {side_of(r, h, true, from), cap_of_ball(r, h, 1), cap_of_ball(r, h, -1)};
-    case Lamp::Shape::Quad:
-      return {face_of_quad(lamp, 1), face_of_quad(lamp, -1)};
-    case Lamp::Shape::Box:
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const double sign : {-1.0, 1.0}) patches.push_back(face_of_box(lamp.half_size, axis, sign));
-      }
-  }
-  return patches;
-}
-
-constexpr int kBins = 8, kGrid = 16;  // a side of a patch, of a bin
-
-std::size_t bin(double t) { return static_cast<std::size_t>(std::clamp(static_cast<int>(t * kBins), 0, kBins - 1)); }
-
-// The density's share in each bin of a patch: per solid angle, times the solid angle of pieces of the surface.
-void integrate(const LampShape& shape, const Patch& patch, dvec3 from, std::vector<double>& expected) {
-  const Lamp& lamp = shape.lamp();
-  const std::size_t first = expected.size();
-  expected.resize(first + kBins * kBins);
-  const double du = 1.0 / (kBins * kGrid), dv = 1.0 / (kBins * kGrid), e = 1e-6;
-  for (int i = 0; i < kBins * kGrid; ++i) {
-    for (int j = 0; j < kBins * kGrid; ++j) {
-      const double u = (i + 0.5) * du, v = (j + 0.5) * dv;
-      const dvec3 along_u = (patch.place(u + e, v) - patch.place(u - e, v)) / (2 * e);
-      const dvec3 along_v = (patch.place(u, v + e) - patch.place(u, v - e)) / (2 * e);
-      const dvec3 area = lamp.rotation * glm::cross(along_u, along_v) * (du * dv);
-      const dvec3 place = lamp.rotation * patch.place(u, v) + lamp.translation, way = place - from;
-      const double d2 = glm::dot(way, way), solid_angle = std::abs(glm::dot(area, way)) / (d2 * std::sqrt(d2));
-      // What turns away is behind the lamp.
-      const dvec3 inwards = shape.centre() - place;
-      const bool seen = glm::dot(area, way) * glm::dot(area, inwards) > 0;
-      if (seen) expected[first + bin(u) * kBins + bin(v)] += shape.pdf(from, place) * solid_angle;
-    }
-  }
-}
-
-// The counts of n samples; the last bin is for no sample.
-std::vector<double> count_samples(const LampShape& shape, const std::vector<Patch>& patches, dvec3 from, int n) {
-  const Lamp& lamp = shape.lamp();
-  std::vector<double> counts(patches.size() * kBins * kBins + 1);
-  for (int i = 0; i < n; ++i) {
-    Sampler sampler(1, static_cast<std::uint32_t>(i), 0, 0);
-    const ShapeSample s = shape.sample(from, sampler.next2());
-    if (!(s.pdf > 0)) {
-      ++counts.back();
-      continue;
-    }
-    const dvec3 local = glm::transpose(lamp.rotation) * (s.position - lamp.translation);
-    std::size_t patch = 0;
-    while (patch + 1 < patches.size() && !patches[patch].holds(local)) ++patch;
-    const glm::dvec2 uv = patches[patch].parameters(local);
-    ++counts[(patch * kBins + bin(uv.x)) * kBins + bin(uv.y)];
-  }
-  return counts;
-}
-
 TEST_CASE("light shapes: points fall as their density says", "[lights]") {
   const int n = test::few(40000);
-  for (const Case& c : kCases) {
+  for (const test::NamedLamp& c : test::kLamps) {
     const LampShape shape(c.lamp);
-    for (const dvec3 from : kPlaces) {
-      const std::vector<Patch> patches = patches_of(c.lamp, from);
-      std::vector<double> expected;
-      for (const Patch& patch : patches) integrate(shape, patch, from, expected);
-      const double mass = std::accumulate(expected.begin(), expected.end(), 0.0);
-      expected.push_back(std::max(0.0, 1 - mass));
-      const std::vector<double> counts = count_samples(shape, patches, from, n);
-      const double deviation = test::chi_square_deviation(counts, expected, n);
-      CAPTURE(c.name, from.x, mass);
-      CHECK(mass < 1.005);
-      CHECK(mass > (c.lamp.shape == Lamp::Shape::Capsule ? 0.5 : 0.995));
-      CHECK(std::abs(deviation) < 5);
+    for (const dvec3 from : test::kLampPlaces) {
+      const test::ChiSquare result = test::lamp_chi_square(shape, from, n, 16);
+      CAPTURE(c.name, from.x, result.describe());
+      CHECK(result.integral < 1.005);
+      CHECK(result.integral > (c.lamp.shape == Lamp::Shape::Capsule ? 0.5 : 0.995));
+      CHECK(result.p > test::sidak(0.001, 44));
     }
   }
 }
 
 TEST_CASE("light shapes: a sample's density is the density of hitting it, and it is seen", "[lights]") {
-  for (const Case& c : kCases) {
+  for (const test::NamedLamp& c : test::kLamps) {
     const LampShape shape(c.lamp);
-    for (const dvec3 from : kPlaces) {
+    for (const dvec3 from : test::kLampPlaces) {
       int good = 0;
       double worst = 0, off = 0, least_facing = 1, unseen = 0;
       for (std::uint32_t i = 0; i < 500; ++i) {
@@ -275,7 +78,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
 }
 
 TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[lights]") {
-  for (const Case& c : kCases) {
+  for (const test::NamedLamp& c : test::kLamps) {
     const LampShape shape(c.lamp);
     CAPTURE(c.name);
     CHECK(shape.sample(shape.centre(), {0.3f, 0.6f}).pdf == 0);

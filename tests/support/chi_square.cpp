@@ -20,6 +20,18 @@ struct Cell {
   double theta0, theta1, phi0, phi1;
 };
 
+// [row * columns + column]
+std::vector<Cell> cells(int rows, int columns) {
+  std::vector<Cell> all;
+  const double dt = M_PI / rows, dp = 2 * M_PI / columns;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      all.push_back({row * dt, (row + 1) * dt, column * dp - M_PI, (column + 1) * dp - M_PI});
+    }
+  }
+  return all;
+}
+
 class Integral {
  public:
   Integral(const DirectionPdf& pdf, const runtime::Frame& frame, double tolerance)
@@ -112,13 +124,9 @@ std::vector<double> expect(const DirectionPdf& pdf, const runtime::Frame& frame,
   const Integral integral(pdf, frame, 0.1 / setup.samples);
   std::vector<double> expected;
   double sum = 0;
-  for (int row = 0; row < setup.rows; ++row) {
-    for (int column = 0; column < setup.columns; ++column) {
-      const double dt = M_PI / setup.rows, dp = 2 * M_PI / setup.columns;
-      const Cell cell{row * dt, (row + 1) * dt, column * dp - M_PI, (column + 1) * dp - M_PI};
-      expected.push_back(integral.over(cell) * setup.samples);
-      sum += expected.back();
-    }
+  for (const Cell& cell : cells(setup.rows, setup.columns)) {
+    expected.push_back(integral.over(cell) * setup.samples);
+    sum += expected.back();
   }
   expected.push_back(std::max(setup.samples - sum, 0.0));
   return expected;
@@ -139,11 +147,8 @@ double chi_square_tail(double statistic, double freedom) {
 
 double sidak(double alpha, int tests) { return 1 - std::pow(1 - alpha, 1.0 / tests); }
 
-ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, const ChiSquareSetup& setup) {
-  const runtime::Frame frame(setup.pole);
-  const std::vector<double> counts = count(sample, frame, setup), expected = expect(pdf, frame, setup);
+ChiSquare pearson(std::span<const double> counts, std::span<const double> expected) {
   ChiSquare result;
-  for (std::size_t i = 0; i + 1 < expected.size(); ++i) result.integral += expected[i] / setup.samples;
   std::vector<std::size_t> order(expected.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
@@ -161,6 +166,21 @@ ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, co
   result.freedom = std::max(cells - 1, 1);
   result.p = chi_square_tail(result.statistic, result.freedom);
   return result;
+}
+
+ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, const ChiSquareSetup& setup) {
+  const runtime::Frame frame(setup.pole);
+  const std::vector<double> counts = count(sample, frame, setup), expected = expect(pdf, frame, setup);
+  ChiSquare result = pearson(counts, expected);
+  for (std::size_t i = 0; i + 1 < expected.size(); ++i) result.integral += expected[i] / setup.samples;
+  return result;
+}
+
+double sphere_integral(const DirectionPdf& f, glm::vec3 pole, int rows, double tolerance) {
+  const Integral integral(f, runtime::Frame(pole), tolerance);
+  double sum = 0;
+  for (const Cell& cell : cells(rows, 2 * rows)) sum += integral.over(cell);
+  return sum;
 }
 
 }  // namespace fathom::test

@@ -10,6 +10,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "runtime/sampler.h"
@@ -31,11 +32,18 @@ struct ChiSquare {
   double p = 0;  // that a true density gives so much deviation or more
   double statistic = 0;
   int freedom = 0;
-  double integral = 0;  // of the density over the sphere
+  double integral = 0;  // of the density, where it was integrated
   std::string describe() const;
 };
 
 ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, const ChiSquareSetup& setup = {});
+
+// What fell into cells against what was expected to.
+ChiSquare pearson(std::span<const double> counts, std::span<const double> expected);
+
+// Of a function of the direction over the sphere, by as many adaptive rules as there are cells of `rows` x 2 `rows`;
+// a cell is halved both ways until it changes by `tolerance` or less.
+double sphere_integral(const DirectionPdf& f, glm::vec3 pole, int rows, double tolerance);
 
 // The level that each of `tests` independent tests is held to so that all together have the level alpha (Sidak 1967).
 double sidak(double alpha, int tests);

@@ -1,8 +1,9 @@
 // Scenes whose light is known in closed form. The text of each is what follows `"version": 1`; every one is seen by a
 // camera for which all pixels have the same value, or that value is the mean.
-// Sources: P1 to P10 of the tests' names are those of docs/LIGHT.md.
+// Sources: P1 to P10 of the tests' names are those of docs/ACCURACY.md.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -136,5 +137,23 @@ inline LightScene moon(double degrees) {
              "objects": [{"type": "sphere", "radius": 1, "material": "white"}])",
           disc * phase * irradiance / std::numbers::pi};
 }
+
+// A room with lamps of every kind, glass, a mirror and something rough, in which all ways to find light must agree.
+inline constexpr const char* kLampRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
+    "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"bounces": 4},
+    "materials": {"white": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},
+      "mirror": {"type": "specular"}, "lamp": {"type": "emissive", "emission": [6, 5, 4]},
+      "gloss": {"type": "principled", "color": [0.6, 0.2, 0.1], "roughness": 0.3},
+      "gold": {"type": "principled", "preset": "gold", "roughness": 0.25}},
+    "objects": [{"type": "plane", "normal": [0, 1, 0], "material": "white"},
+      {"type": "box", "half_size": [2, 1.5, 0.1], "translate": [0, 1.5, -1.5], "material": "gloss"},
+      {"type": "sphere", "radius": 0.4, "translate": [-0.9, 0.4, 0], "material": "glass"},
+      {"type": "sphere", "radius": 0.4, "translate": [0, 0.4, -0.5], "material": "gold"},
+      {"type": "torus", "major_radius": 0.35, "minor_radius": 0.12, "translate": [0.9, 0.3, 0], "material": "mirror"},
+      {"type": "sphere", "radius": 0.15, "translate": [0.4, 1.9, 0.5], "material": "lamp"},
+      {"type": "box", "half_size": [0.3, 0.02, 0.2], "rotate": [0, 0, 30], "translate": [-1, 1.9, 0], "material": "lamp"},
+      {"type": "capsule", "radius": 0.06, "half_height": 0.3, "rotate": [0, 0, 60], "translate": [1.3, 1.4, -0.4], "material": "lamp"},
+      {"type": "cylinder", "radius": 0.2, "half_height": 0.05, "rotate": [20, 0, 10], "translate": [0, 1.3, -1], "material": "lamp"},
+      {"type": "torus", "major_radius": 0.2, "minor_radius": 0.04, "translate": [-0.4, 1.4, 0.4], "material": "lamp"}])";
 
 }  // namespace fathom::tests

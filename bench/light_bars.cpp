@@ -1,0 +1,68 @@
+// Do the bars of light hold? Exit status 1 when one is missed.
+//
+//     build/release/bench_light_bars           a few minutes on two cores
+//     build/release/bench_light_bars --full    half the errors, many more cases and pictures
+#include "bench/light_bars.h"
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+
+#include "runtime/measure/sampling_error.h"
+
+namespace fathom::bench {
+
+compiler::CompiledScene compile_scene(const std::string& json) {
+  compiler::Diagnostics diagnostics;
+  const compiler::Source source("bars", "{\"version\": 1, " + json + "}");
+  auto scene = compiler::compile(source, diagnostics);
+  if (!scene) {
+    fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
+    std::exit(2);
+  }
+  return *std::move(scene);
+}
+
+void slope_bars(BarTable& table, const LightCounts& counts) {
+  using namespace runtime;
+  constexpr std::array<int, 9> kPowersOfTwo = {16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
+  struct Row {
+    SamplerKind kind;
+    double most, least;
+  };
+  for (std::size_t f = 0; f < square_integrands().size(); ++f) {
+    const double most = f == 0 ? -1.2 : -0.7;
+    for (const Row& row : {Row{SamplerKind::Independent, -0.45, -0.55}, Row{SamplerKind::Sobol, most, -9},
+                           Row{SamplerKind::Blue, most, -9}}) {
+      const auto& integrand = square_integrands()[f];
+      const double slope = error_slope(sampling_errors(row.kind, integrand, kPowersOfTwo, counts.slope_repeats, -1));
+      const bool two_sided = row.least > -9;
+      table.row("B22",
+                fmt::format("{}, {}: exponent of the error's fall, 16 to 4096 samples",
+                            compiler::kSamplerNames[static_cast<std::size_t>(row.kind)], integrand.name),
+                two_sided ? "-0.50 +- 0.05" : fmt::format("<= {:.2f}", row.most), fmt::format("{:.3f}", slope),
+                slope <= row.most && slope >= row.least);
+    }
+  }
+}
+
+}  // namespace fathom::bench
+
+int main(int argc, char** argv) {
+  using namespace fathom;
+  const bool full = argc == 2 && std::string_view(argv[1]) == "--full";
+  if (argc > 1 && !full) {
+    fmt::print(stderr, "bench_light_bars: does not know `{}`; the only option is --full\n", argv[argc - 1]);
+    return 2;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const bench::LightCounts counts = full ? bench::kFullLight : bench::LightCounts{};
+  bench::BarTable table;
+  for (const auto bars :
+       {bench::furnace_bars, bench::material_bars, bench::density_bars, bench::picture_bars, bench::slope_bars}) {
+    bars(table, counts);
+  }
+  fmt::print("{} in {:.0f} s\n", table.missed() ? fmt::format("{} missed", table.missed()) : "all hold",
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  return table.missed() ? 1 : 0;
+}

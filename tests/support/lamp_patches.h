@@ -1,0 +1,45 @@
+// Lamps of every shape, seen from places around them, and whether points on them fall as their density says: a lamp's
+// surface is cut into patches with parameters of their own, for directions would not tell the parts of a small lamp
+// apart.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <glm/vec3.hpp>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/light_shapes.h"
+#include "tests/support/chi_square.h"
+
+namespace fathom::test {
+
+// Turned and moved, so that no axis is special.
+compiler::Lamp ball(double radius);
+compiler::Lamp box(glm::dvec3 half);
+compiler::Lamp round(compiler::Lamp::Shape shape, double radius, double half_height);
+compiler::Lamp quad(double thickness, double skew);
+
+struct NamedLamp {
+  const char* name;
+  compiler::Lamp lamp;
+};
+inline const NamedLamp kLamps[] = {
+    {"sphere", ball(0.7)},
+    {"tiny sphere", ball(1e-3)},
+    {"box", box({0.5, 0.8, 0.3})},
+    {"flat box", box({1, 0.01, 0.6})},
+    {"small box", box({0.01, 0.02, 0.01})},
+    {"cylinder", round(compiler::Lamp::Shape::Cylinder, 0.5, 0.8)},
+    {"disc", round(compiler::Lamp::Shape::Cylinder, 0.8, 0.005)},
+    {"tube", round(compiler::Lamp::Shape::Cylinder, 0.05, 1)},
+    {"capsule", round(compiler::Lamp::Shape::Capsule, 0.4, 0.6)},
+    {"rectangle", quad(0.01, 0)},
+    {"quadrilateral", quad(0.01, 0.7)},
+};
+inline constexpr glm::dvec3 kLampPlaces[] = {{2, 1, 0.5}, {-0.4, 3, 1}, {0.5, -1.5, -0.9}, {10, -7, 4}};
+
+// Of `samples` points chosen for the place `from`, over 8 x 8 bins of each patch. The density is summed over `grid` x
+// `grid` pieces of a bin: where the lamp turns away within one, that is as exact as the pieces are small.
+ChiSquare lamp_chi_square(const runtime::LampShape& shape, glm::dvec3 from, int samples, int grid);
+
+}  // namespace fathom::test
