@@ -4,11 +4,13 @@
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "compiler/compiled_scene.h"
 #include "runtime/environment_file.h"
@@ -27,6 +29,7 @@ struct Progress {
 // How paths find light: by looking for lights from every hit and by hitting them, weighted so that both add up; or by
 // one of the two alone, to compare. Lights without a size can only be looked for.
 enum class LightSampling { Both, Lights, Hits };
+inline constexpr std::array<std::string_view, 3> kLightSamplingNames = {"both", "lights", "hits"};  // [LightSampling]
 
 struct RenderOptions {
   int threads = 0;                   // 0: one per processor
@@ -40,6 +43,9 @@ struct RenderOptions {
   std::optional<double> filter_width;  // pixels; not given beside `filter`: that filter's own
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
+  // More samples where the picture is noisy, `spp` on average (runtime/adaptive.h). Not for a crop: a pixel's samples
+  // depend on all others.
+  std::optional<bool> adaptive;
   LightSampling light_sampling = LightSampling::Both;
   // The most radiance that a path of two bounces or more may bring: less noise, but biased, for light is lost.
   std::optional<double> clamp;
@@ -71,6 +77,7 @@ struct Settings {
   std::optional<double> filter_width;
   std::optional<double> far;
   std::optional<int> cut_after;
+  bool adaptive;  // asked for, and spp suffices; layers.variance then is kept
   LightSampling light_sampling;
   std::optional<double> clamp;  // radiance
   Marching marching;

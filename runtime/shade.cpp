@@ -78,6 +78,7 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   sample_next(vertex, bsdf);
   if (!shadow) return go_on(arrival.id);
   path.in_shadow_test = true;
+  ++stats_.shadow_rays;
   marchers_[shadow->field]->add(arrival.id, shadow->ray);
 }
 
@@ -235,6 +236,7 @@ void Integrator::go_on(std::uint32_t id) {
   Path& path = paths_[id];
   if (path.ends) return ended_.push_back(id);
   path.space = path.next_space;
+  ++stats_.bounce_rays;
   follow(id, path.next);
 }
 
