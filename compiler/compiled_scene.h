@@ -78,6 +78,7 @@ struct RenderSettings {
   int tile = 16;     // pixels a side
   std::uint64_t seed = 0;
   SamplerKind sampler = SamplerKind::Blue;
+  bool adaptive = false;      // more samples where the picture is noisy
   std::optional<double> far;  // how far from the camera rays are followed, scene units; default: see render
 };
 

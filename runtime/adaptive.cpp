@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/exponential.hpp>
 
+#include "runtime/light_query.h"
 #include "runtime/sampler.h"
 #include "vm/check.h"
 
@@ -11,6 +13,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr double kLeastShare = 0.25, kMostShare = 16;  // of the average
+constexpr double kLeastSamples = 2;
 // Brightness below which noise is no more visible, and noise below which a pixel counts as quiet, of the average.
 constexpr double kDark = 0.01, kQuiet = 1e-3;
 
@@ -88,13 +91,28 @@ int first_samples(int spp) {
 
 double first_share(int spp) { return static_cast<double>(first_samples(spp)) / spp; }
 
+std::vector<PixelEstimate> estimates_of(const Film& film) {
+  CHECK(film.layers().variance, "the film lacks what estimates are made of");
+  std::vector<PixelEstimate> estimates;
+  const PixelRect area = film.area();
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      const PixelMeans pixel = film.means(x, y);
+      const float deviation = luminance(glm::vec3(glm::sqrt(pixel.variance)));  // of the mean
+      const double variance = static_cast<double>(deviation) * static_cast<double>(deviation);
+      estimates.push_back({static_cast<double>(luminance(glm::vec3(pixel.noisy))), pixel.samples * variance});
+    }
+  }
+  return estimates;
+}
+
 std::uint64_t second_seed(std::uint64_t seed) { return mix64(~seed); }
 
 std::vector<int> second_samples(std::span<const PixelEstimate> estimates, int width, int height, int spp) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   CHECK(pixels > 0 && estimates.size() == pixels, "an estimate for each pixel");
   const double average = spp - first_samples(spp);
-  const double least = std::max(1.0, kLeastShare * average), most = kMostShare * average;
+  const double least = std::max(kLeastSamples, kLeastShare * average), most = kMostShare * average;
   std::vector<double> shares = visible_noise(estimates, width, height);
   const double factor = fitting_factor(shares, least, most, average * static_cast<double>(pixels));
   for (double& share : shares) share = std::clamp(factor * share, least, most);

@@ -6,9 +6,9 @@
 // is not: pixels that miss a light in stage 1 get few samples and stay dark. Kirk and Arvo, "Unbiased Sampling
 // Techniques for Image Synthesis", 1991.)
 //
-//     plan.spp = first_samples(spp);                    // stage 1: every pixel, samples [0, plan.spp)
-//     const std::vector<int> more = second_samples(estimates, width, height, spp);
-//     plan.seed = second_seed(seed);                    // stage 2: samples [0, more[pixel])
+//     {sampler, seed, first_samples(spp)}                     // stage 1: every pixel, samples [0,
+//     first_samples(spp)) const std::vector<int> more = second_samples(estimates_of(film), width, height, spp);
+//     {sampler, second_seed(seed), spp - first_samples(spp)}  // stage 2: samples [0, more[pixel])
 //
 // Stage 2 needs numbers that know nothing of stage 1's: in one sequence later points avoid earlier ones, and bias is
 // back. Tested by: tests/runtime/adaptive_test.cpp
@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "runtime/film.h"
 
 namespace fathom::runtime {
 
@@ -33,13 +35,17 @@ int first_samples(int spp);
 // The weight w of stage 1's mean; 1 - w is that of stage 2's.
 double first_share(int spp);
 
+// What a film of stage 1, which keeps `variance`, says of its pixels' luminance, [y][x]. The variance is what it
+// would be if the colours of a pixel's samples differed in brightness alone: at most too large.
+std::vector<PixelEstimate> estimates_of(const Film& film);
+
 std::uint64_t second_seed(std::uint64_t seed);
 
 // Samples of stage 2 for each pixel, [y * width + x] like `estimates`: together width * height *
-// (spp - first_samples(spp)), none below 1. In proportion to the noise as the eye sees it, standard deviation over
-// the root of brightness (Dammertz, Hanika, Keller, Lensch, "A Hierarchical Automatic Stopping Condition for Monte
-// Carlo Global Illumination", 2010), which is taken over the neighbours, too, but within a quarter and sixteen times
-// of the average: few samples may know nothing of a rare bright path, or too much.
+// (spp - first_samples(spp)), none below 2, so that each has a variance. In proportion to the noise as the eye sees
+// it, standard deviation over the root of brightness (Dammertz, Hanika, Keller, Lensch, "A Hierarchical Automatic
+// Stopping Condition for Monte Carlo Global Illumination", 2010), which is taken over the neighbours, too, but within
+// a quarter and sixteen times of the average: few samples may know nothing of a rare bright path, or too much.
 std::vector<int> second_samples(std::span<const PixelEstimate> estimates, int width, int height, int spp);
 
 }  // namespace fathom::runtime

@@ -69,38 +69,54 @@ double variance_of_mean(std::int64_t sum, WideSum squares, std::uint32_t count) 
 
 Film::Film(PixelRect area, FilmLayers layers) : area_(area), layers_(layers) {
   const std::size_t count = area.pixels();
-  pixels_.resize(count);
+  stages_.push_back(empty_stage());
   if (layers.first_hit) first_hits_.resize(count);
   if (layers.position) positions_.resize(count);
   if (layers.ids) ids_.resize(count);
-  if (layers.variance) squares_.resize(count);
   if (layers.cost) costs_.resize(count);
-  if (layers.halves) odd_halves_.resize(count);
+}
+
+Film::Stage Film::empty_stage() const {
+  const std::size_t count = area_.pixels();
+  Stage stage;
+  stage.pixels.resize(count);
+  if (layers_.variance) stage.squares.resize(count);
+  if (layers_.halves) stage.odd_halves.resize(count);
+  return stage;
+}
+
+void Film::begin_second_stage(double first_share) {
+  CHECK(stages_.size() == 1, "a film has two stages at most");
+  CHECK(first_share >= 0 && first_share <= 1, "the share of the first stage");
+  stages_.push_back(empty_stage());
+  first_share_ = first_share;
 }
 
 bool Film::add(int x, int y, const PathSample& sample) {
   const std::size_t at = area_.index(x, y);
-  Pixel& pixel = pixels_[at];
+  Stage& stage = stages_.back();
+  Pixel& pixel = stage.pixels[at];
   ++pixel.samples;
   bool room = accumulate(pixel.radiance, sample.radiance);
-  if (layers_.variance) room &= add_squares(at, sample.radiance);
+  if (layers_.variance) room &= add_squares(stage.squares[at], sample.radiance);
   if (layers_.cost) {
     costs_[at].evaluations += sample.evaluations;
     costs_[at].instructions += sample.instructions;
   }
   if (layers_.halves && sample.number % 2 == 1) {
-    ++odd_halves_[at].samples;
-    room &= accumulate(odd_halves_[at].radiance, sample.radiance);
+    OddHalf& odd = stage.odd_halves[at];
+    ++odd.samples;
+    room &= accumulate(odd.radiance, sample.radiance);
   }
   if (!sample.hit) return room;
   ++pixel.hits;
   return add_first_hit(at, sample) && room;
 }
 
-bool Film::add_squares(std::size_t at, glm::vec3 radiance) {
+bool Film::add_squares(Squares& squares, glm::vec3 radiance) {
   bool room = true;
   for (int i = 0; i < 3; ++i) {
-    WideSum& sum = squares_[at].sums[i];
+    WideSum& sum = squares.sums[i];
     if (!__builtin_add_overflow(sum, square(to_fixed(static_cast<double>(radiance[i]))), &sum)) continue;
     sum = ~WideSum{0};
     room = false;
@@ -123,37 +139,57 @@ bool Film::add_first_hit(std::size_t at, const PathSample& sample) {
 
 PixelMeans Film::means(int x, int y) const {
   const std::size_t at = area_.index(x, y);
-  const Pixel& pixel = pixels_[at];
   PixelMeans means;
-  means.hits = pixel.hits;
-  means.samples = pixel.samples;
-  if (pixel.samples == 0) return means;
-  means.radiance = means.noisy = mean(pixel.radiance, pixel.samples);
-  if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
-  if (layers_.variance) {
-    for (int i = 0; i < 3; ++i) {
-      means.variance[i] = variance_of_mean(pixel.radiance[i], squares_[at].sums[i], pixel.samples);
-    }
+  for (const Stage& stage : stages_) {
+    means.hits += stage.pixels[at].hits;
+    means.samples += stage.pixels[at].samples;
   }
-  if (layers_.halves) read_halves(at, means);
+  if (means.samples == 0) return means;
+  read_radiance(at, means);
   if (layers_.cost) {
-    means.evaluations = static_cast<double>(costs_[at].evaluations) / pixel.samples;
-    means.instructions = static_cast<double>(costs_[at].instructions) / pixel.samples;
+    means.evaluations = static_cast<double>(costs_[at].evaluations) / means.samples;
+    means.instructions = static_cast<double>(costs_[at].instructions) / means.samples;
   }
-  if (pixel.hits > 0) read_first_hit(at, means);
+  if (means.hits > 0) read_first_hit(at, means);
   return means;
 }
 
-void Film::read_halves(std::size_t at, PixelMeans& means) const {
-  const Pixel& pixel = pixels_[at];
-  const OddHalf& odd = odd_halves_[at];
-  const std::uint32_t even = pixel.samples - odd.samples;
+// The stages' means are independent, given how many samples each has: their variances add up by the squares of the
+// weights.
+void Film::read_radiance(std::size_t at, PixelMeans& means) const {
+  const StageMeans first = stage_means(stages_.front(), at);
+  const StageMeans second = stages_.size() > 1 ? stage_means(stages_.back(), at) : StageMeans();
+  const double w = second.samples == 0 ? 1 : first.samples == 0 ? 0 : first_share_;
+  means.noisy = w * first.radiance + (1 - w) * second.radiance;
+  means.variance = w * w * first.variance + (1 - w) * (1 - w) * second.variance;
+  for (int i = 0; i < 2; ++i) {
+    const double share = second.half_samples[i] == 0 ? 1 : first.half_samples[i] == 0 ? 0 : first_share_;
+    means.halves[i] = share * first.halves[i] + (1 - share) * second.halves[i];
+  }
+  means.radiance = means.noisy;
+  if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
+}
+
+Film::StageMeans Film::stage_means(const Stage& stage, std::size_t at) const {
+  const Pixel& pixel = stage.pixels[at];
+  StageMeans means;
+  means.samples = pixel.samples;
+  if (pixel.samples == 0) return means;
+  means.radiance = mean(pixel.radiance, pixel.samples);
+  for (int i = 0; layers_.variance && i < 3; ++i) {
+    means.variance[i] = variance_of_mean(pixel.radiance[i], stage.squares[at].sums[i], pixel.samples);
+  }
+  if (!layers_.halves) return means;
+  const OddHalf& odd = stage.odd_halves[at];
+  means.half_samples[0] = pixel.samples - odd.samples;
+  means.half_samples[1] = odd.samples;
   for (int i = 0; i < 3; ++i) {
     // In double, for full sums may be further apart than 64 bits reach.
     const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
-    if (even > 0) means.halves[0][i] = rest * kUnit / even;
+    if (means.half_samples[0] > 0) means.halves[0][i] = rest * kUnit / means.half_samples[0];
   }
   if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
+  return means;
 }
 
 void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
@@ -171,7 +207,7 @@ void Film::read_first_hit(std::size_t at, PixelMeans& means) const {
 }
 
 void Film::set_denoised(std::vector<float> radiance) {
-  CHECK(radiance.size() == 3 * pixels_.size(), "a denoised picture of another size than its film");
+  CHECK(radiance.size() == 3 * area_.pixels(), "a denoised picture of another size than its film");
   denoised_ = std::move(radiance);
 }
 
@@ -181,28 +217,30 @@ std::uint64_t Film::hash() const {
   const auto absorb_sums = [&](const std::int64_t(&sums)[3]) {
     for (const std::int64_t sum : sums) absorb(static_cast<std::uint64_t>(sum));
   };
-  for (const Pixel& pixel : pixels_) {
-    absorb_sums(pixel.radiance);
-    absorb(static_cast<std::uint64_t>(pixel.hits) << 32 | pixel.samples);
+  for (const Stage& stage : stages_) {
+    for (const Pixel& pixel : stage.pixels) {
+      absorb_sums(pixel.radiance);
+      absorb(static_cast<std::uint64_t>(pixel.hits) << 32 | pixel.samples);
+    }
+    for (const OddHalf& half : stage.odd_halves) {
+      absorb_sums(half.radiance);
+      absorb(half.samples);
+    }
+    for (const Squares& squares : stage.squares) {
+      for (const WideSum sum : squares.sums) {
+        absorb(static_cast<std::uint64_t>(sum));
+        absorb(static_cast<std::uint64_t>(sum >> 64));
+      }
+    }
   }
   for (const FirstHit& first : first_hits_) {
     absorb_sums(first.albedo);
     absorb_sums(first.normal);
     absorb(static_cast<std::uint64_t>(first.depth));
   }
-  for (const OddHalf& half : odd_halves_) {
-    absorb_sums(half.radiance);
-    absorb(half.samples);
-  }
   for (const Position& position : positions_) absorb_sums(position.sums);
   for (const Ids& ids : ids_) {
     for (const std::uint32_t id : {ids.number, ids.surface, ids.material}) absorb(id);
-  }
-  for (const Squares& squares : squares_) {
-    for (const WideSum sum : squares.sums) {
-      absorb(static_cast<std::uint64_t>(sum));
-      absorb(static_cast<std::uint64_t>(sum >> 64));
-    }
   }
   return hash;
 }

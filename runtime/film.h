@@ -3,7 +3,15 @@
 // Sums are whole multiples of 2^-32 in 64 bits, those of squares of 2^-64 in 128 bits: the exact squares of the
 // terms. Integer addition does not depend on its order, and a pixel's ids are those of its sample with the least
 // number, so any partition of the work gives the same bits. A sum may reach 2^31 (of squares 2^63); beyond that it
-// stays there and is counted. Tested by: tests/runtime/film_test.cpp
+// stays there and is counted.
+//
+// A film of two stages (runtime/adaptive.h) keeps what is made of radiance for each, with the samples counted apart:
+//
+//     film.add(...);                        // stage 1
+//     film.begin_second_stage(first_share);
+//     film.add(...);                        // stage 2; means() now are of both
+//
+// Tested by: tests/runtime/film_test.cpp
 #pragma once
 
 #include <compare>
@@ -31,7 +39,8 @@ struct PathSample {
   std::uint64_t instructions = 0;  // over those evaluations
 };
 
-// What a film keeps beside radiance (32 bytes a pixel).
+// What a film keeps beside radiance (32 bytes a pixel). A second stage takes those of radiance, variance and halves
+// again.
 struct FilmLayers {
   bool first_hit = true;  // albedo, normal, depth: 56 bytes a pixel
   bool cost = false;      // evaluations, instructions: 16
@@ -44,7 +53,8 @@ struct FilmLayers {
 };
 inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 
-// Means over a pixel's samples; 0 for what the film does not keep.
+// Means over a pixel's samples; 0 for what the film does not keep. Of two stages `radiance`, `noisy` and `halves` are
+// w * (mean of stage 1) + (1 - w) * (mean of stage 2), the rest are means over the samples of both.
 struct PixelMeans {
   glm::dvec3 radiance{0};
   glm::dvec3 noisy{0};                                    // radiance before it was denoised; otherwise the same
@@ -76,6 +86,10 @@ class Film {
   int height() const { return area_.height(); }
   FilmLayers layers() const { return layers_; }
 
+  // What is added from now on is of stage 2, and stage 1 counts `first_share` of radiance, in [0,1]. Where stage 2
+  // has no samples stage 1 counts all. Once, and while no thread adds.
+  void begin_second_stage(double first_share);
+
   // (x, y) is a pixel of the whole picture, within area(). Not to be called for one pixel by two threads at once.
   // False when some sum is full.
   bool add(int x, int y, const PathSample& sample);
@@ -106,35 +120,47 @@ class Film {
   struct Position {
     std::int64_t sums[3] = {};
   };
+  // In 2^-64.
+  struct Squares {
+    WideSum sums[3] = {};
+  };
+  // The radiance of one stage, [y][x]; a layer that is not kept has none.
+  struct Stage {
+    std::vector<Pixel> pixels;
+    std::vector<Squares> squares;
+    std::vector<OddHalf> odd_halves;
+  };
+  // Of one stage; a half without samples has none.
+  struct StageMeans {
+    glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};
+    std::uint32_t samples = 0, half_samples[2] = {0, 0};
+  };
   // Of the sample `number`; all bits set when none hit.
   struct Ids {
     std::uint32_t number = ~0u, surface = ~0u, material = ~0u;
     auto operator<=>(const Ids&) const = default;
-  };
-  // In 2^-64.
-  struct Squares {
-    WideSum sums[3] = {};
   };
   // Plain sums: 64 bits of instructions take a pixel a lifetime.
   struct Cost {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
-  void read_halves(std::size_t at, PixelMeans& means) const;
-  bool add_squares(std::size_t at, glm::vec3 radiance);
+  Stage empty_stage() const;
+  bool add_squares(Squares& squares, glm::vec3 radiance);
   bool add_first_hit(std::size_t at, const PathSample& sample);
+  StageMeans stage_means(const Stage& stage, std::size_t at) const;
+  void read_radiance(std::size_t at, PixelMeans& means) const;
   void read_first_hit(std::size_t at, PixelMeans& means) const;
 
   PixelRect area_;
   FilmLayers layers_;
-  // [y][x]; a layer that is not kept has none.
-  std::vector<Pixel> pixels_;
+  std::vector<Stage> stages_;  // one or two
+  double first_share_ = 1;
+  // [y][x], of both stages; a layer that is not kept has none.
   std::vector<FirstHit> first_hits_;
   std::vector<Position> positions_;
   std::vector<Ids> ids_;
-  std::vector<Squares> squares_;
   std::vector<Cost> costs_;
-  std::vector<OddHalf> odd_halves_;
   std::vector<float> denoised_;  // [y][x][rgb]; empty until there is one
 };
 

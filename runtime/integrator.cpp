@@ -19,7 +19,7 @@ std::size_t under_way(const Marcher& marcher) {
 
 }  // namespace
 
-Integrator::Integrator(const World& world, Film& film) : world_(world), film_(film) {
+Integrator::Integrator(const World& world, const Pass& pass, Film& film) : world_(world), pass_(pass), film_(film) {
   marchers_.push_back(make_marcher(world.field, world.settings.marching));
   int paths = marchers_[0]->capacity();
   for (std::size_t i = 0; i < world.media.size(); ++i) {
@@ -76,7 +76,6 @@ bool Integrator::start_paths(const NextPaths& next) {
 // In steps of one kind each, so that the processor has several paths' in hand.
 void Integrator::start(std::span<const PathKey> keys) {
   const Settings& settings = world_.settings;
-  const SamplePlan plan{settings.sampler, settings.seed, settings.spp};
   std::array<Sampler, kStartBatch> samplers;
   std::array<CameraRay, kStartBatch> rays;
   std::array<float, kStartBatch> weights;
@@ -84,7 +83,7 @@ void Integrator::start(std::span<const PathKey> keys) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const PathKey& key = keys[i];
     const bool same = i > 0 && key.x == keys[i - 1].x && key.y == keys[i - 1].y;
-    if (!same) pixel = PixelKey(plan, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
+    if (!same) pixel = PixelKey(pass_.plan, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
     samplers[i] = Sampler(pixel, key.sample);
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -110,7 +109,7 @@ void Integrator::start(std::span<const PathKey> keys) {
     path.in_shadow_test = false;
     path.ends = false;
     path.result = {};
-    path.result.number = keys[i].sample;
+    path.result.number = pass_.first_number + keys[i].sample;
     Ray ray{rays[i].origin, rays[i].direction};
     ray.side = path.space.side;
     follow(id, ray);

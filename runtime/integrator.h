@@ -5,7 +5,7 @@
 // light is looked for in two ways, whose shares add up to 1 (multiple importance sampling): a light is chosen and a
 // shadow ray sent to it (shade.cpp), and the path's next ray may hit one.
 //
-//     Integrator integrator(world, film);
+//     Integrator integrator(world, {plan}, film);
 //     integrator.run([&](std::span<PathKey> keys) { fill keys; return how many; });
 //
 // Source: Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
@@ -32,6 +32,7 @@
 #include "runtime/media.h"
 #include "runtime/options.h"
 #include "runtime/path.h"
+#include "runtime/sampler.h"
 #include "runtime/stats.h"
 #include "runtime/surface.h"
 
@@ -50,13 +51,19 @@ struct World {
   Space camera_space;  // where the camera is
 };
 
+// Which numbers paths are drawn by, and where they stand among the samples of their pixel.
+struct Pass {
+  SamplePlan plan;
+  std::uint32_t first_number = 0;  // PathSample::number of the pass's sample 0
+};
+
 class Integrator {
  public:
   // Asked for the next paths: fills `keys` from the front and returns how many; fewer than asked for, and there are
   // no more.
   using NextPaths = std::function<std::size_t(std::span<PathKey> keys)>;
 
-  Integrator(const World& world, Film& film);
+  Integrator(const World& world, const Pass& pass, Film& film);
 
   // Follows all paths `next` gives to their end, and adds them to the film.
   void run(const NextPaths& next);
@@ -107,6 +114,7 @@ class Integrator {
   void go_on(std::uint32_t id);
 
   const World& world_;
+  const Pass pass_;
   Film& film_;
   std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]
   std::vector<Path> paths_;                         // [id]

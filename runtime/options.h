@@ -43,6 +43,9 @@ struct RenderOptions {
   std::optional<double> filter_width;  // pixels; not given beside `filter`: that filter's own
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
+  // More samples where the picture is noisy, `spp` on average (runtime/adaptive.h). Not for a crop: a pixel's samples
+  // depend on all others.
+  std::optional<bool> adaptive;
   LightSampling light_sampling = LightSampling::Both;
   // The most radiance that a path of two bounces or more may bring: less noise, but biased, for light is lost.
   std::optional<double> clamp;
@@ -74,6 +77,7 @@ struct Settings {
   std::optional<double> filter_width;
   std::optional<double> far;
   std::optional<int> cut_after;
+  bool adaptive;  // asked for, and spp suffices; layers.variance then is kept
   LightSampling light_sampling;
   std::optional<double> clamp;  // radiance
   Marching marching;

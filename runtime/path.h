@@ -14,7 +14,7 @@ namespace fathom::runtime {
 // One camera path to be followed.
 struct PathKey {
   int x, y;              // pixel
-  std::uint32_t sample;  // in [0, spp)
+  std::uint32_t sample;  // of the pixel's, in the plan that draws them
 };
 
 // What fills the space a ray travels through.
@@ -32,7 +32,7 @@ struct Path {
   glm::dvec3 direction;
   Space space;  // of the current ray
   glm::vec3 throughput;
-  float weight;  // of the path in its pixel, by the filter
+  float weight;     // of the path in its pixel, by the filter
   float eta_scale;  // product of eta^2 over the crossings: what refraction alone has done to the throughput
   int bounces;      // made so far
   // Where the current ray left a surface, and with which density per solid angle; 0: by a delta, or from the camera.

@@ -5,8 +5,10 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "runtime/adaptive.h"
 #include "runtime/integrator.h"
 #include "runtime/tiles.h"
 #include "vm/check.h"
@@ -40,11 +42,39 @@ class ProgressReport {
   std::uint64_t done_ = 0, rays_ = 0;
 };
 
+// How many samples a pass takes of each pixel: of all the plan's, or so many of each.
+class SampleCounts {
+ public:
+  explicit SampleCounts(int all) : all_(static_cast<std::uint32_t>(all)) {}
+  SampleCounts(PixelRect area, std::vector<int> each) : area_(area), each_(std::move(each)) {}
+
+  std::uint32_t at(int x, int y) const {
+    return each_.empty() ? all_ : static_cast<std::uint32_t>(each_[area_.index(x, y)]);
+  }
+
+ private:
+  std::uint32_t all_ = 0;
+  PixelRect area_;
+  std::vector<int> each_;  // [y][x]; empty: all_
+};
+
+// What the threads of one pass share.
+struct PassWork {
+  const World& world;
+  Pass pass;
+  SampleCounts counts;
+  Film& film;
+  ProgressReport& report;
+  const std::atomic<bool>* cancel;
+
+  bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
+};
+
 // One thread's work: the paths of one tile after another, pixel by pixel, sample by sample.
 class Worker {
  public:
-  Worker(const World& world, Tiles& tiles, Film& film, ProgressReport& report, const std::atomic<bool>* cancel)
-      : world_(world), tiles_(tiles), report_(report), cancel_(cancel), integrator_(world, film) {}
+  Worker(const PassWork& work, Tiles& tiles)
+      : work_(work), tiles_(tiles), integrator_(work.world, work.pass, work.film) {}
 
   void run() {
     integrator_.run([this](std::span<PathKey> keys) { return next(keys); });
@@ -53,27 +83,30 @@ class Worker {
 
  private:
   std::size_t next(std::span<PathKey> keys) {
-    const auto spp = static_cast<std::uint32_t>(world_.settings.spp);
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      if ((!tile_ || sample_ == spp) && !next_pixel()) return i;
+      while (!tile_ || sample_ == samples_) {
+        if (!next_pixel()) return i;
+      }
       keys[i] = {x_, y_, sample_++};
     }
     return keys.size();
   }
 
   bool next_pixel() {
-    sample_ = 0;
-    if (tile_ && ++x_ < tile_->x1) return true;
-    if (tile_ && ++y_ < tile_->y1) {
+    if (tile_ && ++x_ == tile_->x1) {
       x_ = tile_->x0;
-      return true;
+      ++y_;
     }
-    return next_tile();
+    if ((!tile_ || y_ == tile_->y1) && !next_tile()) return false;
+    sample_ = 0;
+    samples_ = work_.counts.at(x_, y_);
+    tile_paths_ += samples_;
+    return true;
   }
 
   bool next_tile() {
     if (tile_) report_tile();
-    tile_ = cancel_ && cancel_->load(std::memory_order_relaxed) ? std::nullopt : tiles_.take();
+    tile_ = work_.cancelled() ? std::nullopt : tiles_.take();
     if (!tile_) return false;
     x_ = tile_->x0;
     y_ = tile_->y0;
@@ -82,19 +115,18 @@ class Worker {
 
   void report_tile() {
     const std::uint64_t rays = integrator_.stats().march.rays;
-    report_.add(tile_->pixels() * static_cast<std::uint64_t>(world_.settings.spp), rays - reported_rays_);
+    work_.report.add(tile_paths_, rays - reported_rays_);
     reported_rays_ = rays;
+    tile_paths_ = 0;
   }
 
-  const World& world_;
+  const PassWork& work_;
   Tiles& tiles_;
-  ProgressReport& report_;
-  const std::atomic<bool>* cancel_;
   Integrator integrator_;
   std::optional<PixelRect> tile_;
   int x_ = 0, y_ = 0;
-  std::uint32_t sample_ = 0;
-  std::uint64_t reported_rays_ = 0;
+  std::uint32_t sample_ = 0, samples_ = 0;  // of the pixel
+  std::uint64_t tile_paths_ = 0, reported_rays_ = 0;
 };
 
 // What fills the place where the camera stands.
@@ -131,15 +163,14 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
   return world;
 }
 
-Stats render_tiles(const World& world, Film& film, const RenderOptions& options) {
-  const Settings& settings = world.settings;
+Stats render_pass(const PassWork& pass) {
+  const Settings& settings = pass.world.settings;
   const PixelRect crop = settings.crop;
   Tiles tiles(crop, tile_side(crop.width(), crop.height(), settings.tile, settings.threads));
-  ProgressReport report(options, world.settings);
   std::vector<Stats> stats(static_cast<std::size_t>(settings.threads));
   // Each thread makes its worker itself, so that what it writes to lies in memory of its own.
   const auto work = [&](Stats& counted) {
-    const auto worker = std::make_unique<Worker>(world, tiles, film, report, options.cancel);
+    const auto worker = std::make_unique<Worker>(pass, tiles);
     worker->run();
     counted = worker->stats();
   };
@@ -150,6 +181,23 @@ Stats render_tiles(const World& world, Film& film, const RenderOptions& options)
   Stats sum;
   for (const Stats& counted : stats) sum.merge(counted);
   return sum;
+}
+
+// All samples, in one pass, or in two of which the first says where the second is to look.
+Stats render_passes(const World& world, Film& film, const RenderOptions& options) {
+  const Settings& settings = world.settings;
+  ProgressReport report(options, settings);
+  const int first = settings.adaptive ? first_samples(settings.spp) : settings.spp;
+  const Pass pass{{settings.sampler, settings.seed, first}};
+  const PassWork work{world, pass, SampleCounts(first), film, report, options.cancel};
+  Stats stats = render_pass(work);
+  if (!settings.adaptive || work.cancelled()) return stats;
+  std::vector<int> more = second_samples(estimates_of(film), film.width(), film.height(), settings.spp);
+  film.begin_second_stage(first_share(settings.spp));
+  const Pass second{{settings.sampler, second_seed(settings.seed), settings.spp - first},
+                    static_cast<std::uint32_t>(first)};
+  stats.merge(render_pass({world, second, SampleCounts(film.area(), std::move(more)), film, report, options.cancel}));
+  return stats;
 }
 
 }  // namespace
@@ -168,12 +216,14 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.filter = options.filter.value_or(scene.film.filter);
   settings.filter_width = options.filter || options.filter_width ? options.filter_width : scene.film.filter_width;
   settings.cut_after = options.cut_after;
+  settings.adaptive = options.adaptive.value_or(scene.settings.adaptive) && settings.spp >= kLeastAdaptiveSpp;
   settings.light_sampling = options.light_sampling;
   settings.clamp = options.clamp;
   settings.marching = options.marching;
   settings.regions = options.regions;
   settings.region_memory = options.region_memory;
   settings.layers = options.layers;
+  settings.layers.variance |= settings.adaptive;
   settings.profile = options.profile;
   settings.far = options.far ? options.far : scene.settings.far;
   settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
@@ -186,9 +236,11 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
   const PixelRect crop = settings.crop;
   CHECK(crop.width() > 0 && crop.height() > 0 && settings.spp > 0 && settings.tile > 0, "nothing to render");
   CHECK(crop.x0 >= 0 && crop.y0 >= 0 && crop.x1 <= settings.width && crop.y1 <= settings.height, "a crop within");
+  CHECK(!settings.adaptive || crop == (PixelRect{0, 0, settings.width, settings.height}),
+        "samples shared out in a crop");
   const World world = make_world(scene, settings, options);
   RenderResult result{Film(crop, settings.layers), settings, {}};
-  result.stats = render_tiles(world, result.film, options);
+  result.stats = render_passes(world, result.film, options);
   if (world.field.regions) {
     result.stats.region_bytes = world.field.regions->facts().bytes;
     result.stats.region_seconds = world.field.regions->facts().seconds;

@@ -82,6 +82,7 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   go_with(vertex, next);
   if (!shadow) return go_on(arrival.id);
   path.in_shadow_test = true;
+  ++stats_.shadow_rays;
   marchers_[shadow->field]->add(arrival.id, shadow->ray);
 }
 
@@ -237,6 +238,7 @@ void Integrator::go_on(std::uint32_t id) {
   Path& path = paths_[id];
   if (path.ends) return ended_.push_back(id);
   path.space = path.next_space;
+  ++stats_.bounce_rays;
   follow(id, path.next);
 }
 

@@ -19,6 +19,8 @@ struct Row {
 constexpr Row kRows[] = {
     {"primary_rays", "camera rays", &Stats::primary_rays, nullptr},
     {"primary_hits", "camera rays that hit", &Stats::primary_hits, nullptr},
+    {"shadow_rays", "shadow rays", &Stats::shadow_rays, nullptr},
+    {"bounce_rays", "rays after a bounce", &Stats::bounce_rays, nullptr},
     {"rays", "rays", nullptr, &MarchCounters::rays},
     {"hits", "rays that hit", nullptr, &MarchCounters::hits},
     {"misses", "rays that missed", nullptr, &MarchCounters::misses},

@@ -36,6 +36,8 @@ struct Stats {
   MarchCounters march;
   std::uint64_t primary_rays = 0;      // camera rays
   std::uint64_t primary_hits = 0;      // those that met a surface
+  std::uint64_t shadow_rays = 0;       // towards lights that were looked for
+  std::uint64_t bounce_rays = 0;       // by which paths go on after a hit: all the others
   std::uint64_t dropped_samples = 0;   // paths whose radiance was not finite; they count as black
   std::uint64_t saturated = 0;         // paths that overfilled a pixel's sum
   std::optional<StageSeconds> stages;  // of all threads together; when asked for (RenderOptions::profile)
@@ -49,8 +51,8 @@ struct Stats {
   void merge(const Stats& other);  // the counts and stages; not memory, regions, seconds, threads
   double evaluations_per_ray() const;
   double instructions_per_evaluation() const;
-  // The share of the machine's lanes that held a ray, in [0,1]; 1 when none was taken. The search in double is no part
-  // of it.
+  // The share of the machine's lanes that held a ray, in [0,1]; 1 when none was taken. The search in double is no
+  // part of it.
   double utilisation() const;
   double rays_per_second() const;
 };

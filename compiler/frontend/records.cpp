@@ -167,6 +167,7 @@ const RecordSpec& render_record() {
        integer("tile", "pixels a side", 16, {1, kMaxTile}),
        integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
        choice("sampler", "where the random numbers come from", kSamplerNames),
+       other("adaptive", ValueType::Boolean, "whether noisy pixels get more of the samples (false)"),
        number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
   return record;
 }

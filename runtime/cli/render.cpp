@@ -197,6 +197,9 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
   }
+  if (request.options.clamp && !request.quiet) {
+    note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
+  }
 
   runtime::RenderResult result = render_with_progress(request, scene, streams, watching);
   if (result.stats.cancelled) return kDone;

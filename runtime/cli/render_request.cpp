@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/adaptive.h"
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/image_io.h"
@@ -92,6 +93,15 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request, bool& no
       one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
   arguments.option("--filter-width", "PIXELS", "Of the filter's support (box 1, tent 2, mitchell 4, the others 3)",
                    into(read_filter_width, options.filter_width));
+  arguments.flag("--adaptive",
+                 "Noisy pixels get more of the samples, --spp on average: 8 or more, and the whole picture",
+                 request.adaptive);
+  arguments.flag("--no-adaptive", "All pixels get as many, whatever the scene says", request.no_adaptive);
+  arguments.option(
+      "--clamp", "RADIANCE",
+      "The most that light by two bounces or more may bring: fewer bright specks, but biased, for what is "
+      "above is lost (off)",
+      into(read_positive, options.clamp));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
                    into(read_positive, options.far));
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
@@ -118,6 +128,14 @@ Verdict read_relaxation(std::string_view text, double& factor) {
     return Complaint{fmt::format("`{}` is not a number in [1, 2)", text), "1 is plain sphere tracing"};
   factor = *number;
   return std::nullopt;
+}
+
+void add_comparing_options(Arguments& arguments, RenderRequest& request) {
+  arguments.group("How light is found (to compare; the default is right for pictures)");
+  arguments.option(
+      "--light-sampling", "WAY",
+      "both (default): paths look for lights from where they are, and hit them; lights or hits: one alone",
+      one_of({runtime::kLightSamplingNames.begin(), runtime::kLightSamplingNames.end()}, request.light_sampling));
 }
 
 void add_marching_options(Arguments& arguments, RenderRequest& request) {
@@ -203,6 +221,24 @@ std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int wi
   return area;
 }
 
+// Of what shares samples out; a scene that asks for it and has too few samples goes without.
+std::optional<ExitCode> check_adaptive(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                       const Streams& streams) {
+  const int spp = request.options.spp.value_or(scene.settings.spp);
+  if (request.adaptive && spp < runtime::kLeastAdaptiveSpp) {
+    return fail(streams, kUsage,
+                fmt::format("--adaptive: {} a pixel are too few to share out",
+                            count_of(static_cast<std::size_t>(spp), "sample")),
+                {fmt::format("ask for --spp {} or more", runtime::kLeastAdaptiveSpp)});
+  }
+  if (!request.crop || !request.options.adaptive.value_or(scene.settings.adaptive)) return std::nullopt;
+  return fail(
+      streams, kUsage,
+      request.adaptive ? "--crop does not go with --adaptive: a pixel's samples depend on the whole picture"
+                       : "--crop: the scene's `adaptive` makes a pixel's samples depend on the whole picture",
+      {request.adaptive ? "leave out --adaptive, or render the whole" : "add --no-adaptive, or render the whole"});
+}
+
 }  // namespace
 
 bool holds_layers(const std::string& output) {
@@ -219,6 +255,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   add_output_options(arguments, request);
   bool no_denoise = false;
   add_renderer_options(arguments, request, no_denoise);
+  add_comparing_options(arguments, request);
   add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
 
@@ -239,6 +276,9 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
   }
   if (request.denoise && no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
+  if (request.adaptive && request.no_adaptive) {
+    return fail(streams, kUsage, "--adaptive does not go with --no-adaptive");
+  }
   if (request.preview) {
     request.denoise = !no_denoise;
     if (!request.options.spp) request.options.spp = kPreviewSpp;
@@ -250,6 +290,10 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   }
   if (request.denoise) request.options.layers.first_hit = request.options.layers.halves = true;
   request.options.threads = request.threads.value_or(0);
+  if (request.adaptive || request.no_adaptive) request.options.adaptive = request.adaptive;
+  if (request.light_sampling >= 0) {
+    request.options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
+  }
   if (request.sampler >= 0) request.options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
   if (request.filter >= 0) request.options.filter = static_cast<compiler::FilterKind>(request.filter);
   const auto marching = marching_of(request, streams);
@@ -296,6 +340,7 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
   scene.film.height = static_cast<int>(height);
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
+  if (const auto code = check_adaptive(request, scene, streams)) return code;
   if (!request.crop) return std::nullopt;
   const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
   if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;

@@ -36,6 +36,8 @@ struct RenderRequest {
   bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
+  int light_sampling = -1;  // a runtime::LightSampling; -1: not given
+  bool adaptive = false, no_adaptive = false;
   bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
   bool preview = false, watch = false;
   bool quiet = false;

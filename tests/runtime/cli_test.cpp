@@ -54,6 +54,11 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"render ball.json -f 45", "did you mean `45deg`?"},
       {"render ball.json -f 3.2", "did you mean `3.2deg`?"},
       {"render ball.json --sampler halton", "--sampler: `halton`"},
+      {"render ball.json --light-sampling some", "--light-sampling: `some` is not one of both, lights, hits"},
+      {"render ball.json --clamp 0", "--clamp: `0` is not a positive number"},
+      {"render ball.json --adaptive --no-adaptive", "--adaptive does not go with --no-adaptive"},
+      {"render ball.json -s 7 --adaptive", "--adaptive: 7 samples a pixel are too few to share out"},
+      {"render ball.json -s 16 --adaptive --crop 0,0,4,4", "--crop does not go with --adaptive"},
       {"render ball.json --filter sinc", "--filter: `sinc`"},
       {"render ball.json --filter-width 0", "--filter-width: `0` is not a number from 0.01 to 64"},
       {"render ball.json -f 0", "--fov: `0` is not between 0 and 180 degrees"},
@@ -312,6 +317,49 @@ TEST_CASE("cli: flags override the scene") {
     CAPTURE(std::string(other));
     CHECK(picture(other) != plain);
   }
+}
+
+TEST_CASE("cli: how samples and light are found, from the command line and the scene") {
+  const Folder folder;
+  const std::string scene = R"({"version": 1, "film": {"width": 16, "height": 12}, "render": {"spp": 8%},
+      "background": [0.1, 0.1, 0.1], "camera": {"position": [0, 1, 4]},
+      "materials": {"lamp": {"type": "emissive", "emission": [9, 9, 9]}, "mirror": {"type": "specular"}},
+      "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
+                  {"type": "sphere", "radius": 0.6, "material": "mirror"},
+                  {"type": "sphere", "radius": 0.4, "translate": [1, 2, 0], "material": "lamp"}]})";
+  const auto with = [&](const std::string& more) { return std::string(scene).replace(scene.find('%'), 1, more); };
+  folder.write("lit.json", with(""));
+  folder.write("shared.json", with(R"(, "adaptive": true)"));
+  const auto picture = [&](const std::string& flags) {
+    REQUIRE(folder.run("render " + flags + " -o a.png").code == 0);
+    return folder.read("a.png");
+  };
+  const auto numbers = [&](const std::string& flags) {
+    const Result result = folder.run("render " + flags + " -q --stats-json - -o a.png");
+    REQUIRE(result.code == 0);
+    CHECK(result.err == "");
+    return result.out;
+  };
+  const std::string plain = picture("lit.json"), shared = picture("lit.json --adaptive");
+  CHECK(plain != shared);
+  CHECK_THAT(numbers("lit.json --adaptive"), Contains("\"primary_rays\": 1536,"));
+  CHECK(picture("shared.json") == shared);
+  CHECK(picture("shared.json --no-adaptive") == plain);
+  CHECK(picture("shared.json -s 7") == picture("lit.json -s 7"));
+  CHECK_THAT(folder.run("render shared.json --crop 0,0,4,4 -o a.png").err,
+             Contains("--crop: the scene's `adaptive`") && Contains("add --no-adaptive"));
+  CHECK(folder.run("render shared.json --crop 0,0,4,4 -o a.png").code == 2);
+  CHECK(folder.run("render shared.json --crop 0,0,4,4 --no-adaptive -o a.png").code == 0);
+  CHECK_THAT(folder.run("render shared.json -v -o a.png").err, Contains(", adaptive"));
+
+  CHECK_THAT(numbers("lit.json --light-sampling hits"), Contains("\"shadow_rays\": 0,"));
+  CHECK_THAT(numbers("lit.json --light-sampling lights"), !Contains("\"shadow_rays\": 0,"));
+  CHECK(picture("lit.json --light-sampling both") == plain);
+
+  CHECK(picture("lit.json --clamp 1e6") == plain);
+  CHECK(picture("lit.json --clamp 0.01") != plain);
+  CHECK_THAT(folder.run("render lit.json --clamp 1 -o a.png").err, Contains("light is lost"));
+  CHECK(folder.run("render lit.json --clamp 1 -q -o a.png").err == "");
 }
 
 TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none") {

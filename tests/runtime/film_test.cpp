@@ -1,5 +1,6 @@
 #include "runtime/film.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -153,6 +154,62 @@ TEST_CASE("film: a full sum stays full and says so", "[runtime]") {
   CHECK(film.means(0, 0).radiance.x == Approx(0x1p31 / 2));
   CHECK_FALSE(film.add(0, 0, sample_of(1e30f, 0)));
   CHECK(film.means(0, 0).radiance.x == Approx(0x1p31 / 3));
+}
+
+// Red 1, 2, ..., n from number `first` on.
+void add_count(Film& film, std::uint32_t first, int n) {
+  for (int i = 1; i <= n; ++i) {
+    PathSample sample = sample_of(static_cast<float>(i), 3);
+    sample.number = first + static_cast<std::uint32_t>(i - 1);
+    sample.surface = sample.number;
+    film.add(0, 0, sample);
+  }
+}
+
+TEST_CASE("film: of two stages radiance is weighted, the rest is of all samples", "[runtime]") {
+  FilmLayers layers = kAllLayers;
+  layers.halves = true;
+  Film film(1, 1, layers);
+  add_count(film, 0, 4);
+  const PixelMeans first = film.means(0, 0);
+  film.begin_second_stage(0.25);
+  CHECK(film.means(0, 0).radiance == first.radiance);  // nothing in it yet
+  CHECK(film.means(0, 0).variance == first.variance);
+  add_count(film, 4, 9);
+  film.add(0, 0, {.number = 13});
+  const PixelMeans both = film.means(0, 0);
+  CHECK(both.radiance.x == Approx(0.25 * 2.5 + 0.75 * 4.5));
+  // s^2 / n of 1..n is (n + 1) / 12; of 0..9 it is that of 1..10.
+  CHECK(both.variance.x == Approx((0.0625 * 5 + 0.5625 * 11) / 12));
+  CHECK(both.halves[0].x == Approx(0.25 * 2 + 0.75 * 5));
+  CHECK(both.halves[1].x == Approx(0.25 * 3 + 0.75 * 4));
+  CHECK(both.samples == 14);
+  CHECK(both.hits == 13);
+  CHECK(both.depth == 3);
+  CHECK(both.albedo.x == Approx(0.5 * 13 / 14));
+  CHECK(both.surface_id == 1);
+}
+
+TEST_CASE("film: a half that one stage lacks is the other's", "[runtime]") {
+  Film film(1, 1, {.halves = true});
+  add_count(film, 0, 2);
+  film.begin_second_stage(0.5);
+  film.add(0, 0, sample_of(7, 0));
+  CHECK(film.means(0, 0).halves[0].x == 4);
+  CHECK(film.means(0, 0).halves[1].x == 2);
+}
+
+TEST_CASE("film: the order of samples within a stage leaves no trace, the stage does", "[runtime]") {
+  const auto film_of = [](std::array<std::uint32_t, 4> numbers) {
+    Film film(1, 1, kAllLayers);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (i == 2) film.begin_second_stage(0.5);
+      film.add(0, 0, numbered(numbers[i]));
+    }
+    return film.hash();
+  };
+  CHECK(film_of({1, 2, 3, 4}) == film_of({2, 1, 4, 3}));
+  CHECK(film_of({1, 2, 3, 4}) != film_of({1, 3, 2, 4}));
 }
 
 }  // namespace

@@ -170,6 +170,45 @@ TEST_CASE("render: threads and tiles leave no trace in the picture", "[render]")
   CHECK(render(scene, options).film.hash() != reference.film.hash());
 }
 
+TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[render]") {
+  const auto scene = scene_of(kVaried);
+  RenderOptions options = options_of(20, 12, 4);
+  const Stats both = render(scene, options).stats;
+  CHECK(both.primary_rays == 20 * 12 * 4);
+  CHECK(both.primary_rays + both.shadow_rays + both.bounce_rays == both.march.rays);
+  CHECK(both.shadow_rays > 0);
+  options.light_sampling = LightSampling::Hits;
+  const Stats hits = render(scene, options).stats;
+  CHECK(hits.shadow_rays == 0);
+  CHECK(hits.bounce_rays == both.bounce_rays);  // the same paths
+  options.cut_after = 0;
+  CHECK(render(scene, options).stats.bounce_rays == 0);
+}
+
+TEST_CASE("render: clamping takes light from long paths only, and never adds any", "[render]") {
+  const auto scene = scene_of(kVaried);
+  const auto film_of = [&](std::optional<int> cut_after, std::optional<double> clamp) {
+    RenderOptions options = options_of(20, 12, 16);
+    options.cut_after = cut_after;
+    options.clamp = clamp;
+    return render(scene, options).film;
+  };
+  CHECK(film_of(1, 0.01).hash() == film_of(1, std::nullopt).hash());
+  CHECK(film_of(std::nullopt, 1e9).hash() == film_of(std::nullopt, std::nullopt).hash());
+  const Film whole = film_of(std::nullopt, std::nullopt), clamped = film_of(std::nullopt, 0.05);
+  const Film two = film_of(1, std::nullopt);
+  double lost = 0;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      const double all = whole.means(x, y).radiance.y, rest = clamped.means(x, y).radiance.y;
+      CHECK(rest <= all + 1e-6);
+      lost += all - rest;
+    }
+  }
+  CHECK(lost > 0.1);
+  CHECK(estimate(clamped).mean > estimate(two).mean);
+}
+
 TEST_CASE("render: tiles take every pixel once, and a small picture has enough of them for all threads", "[render]") {
   CHECK(tile_side(640, 360, 16, 2) == 16);
   CHECK(tile_side(64, 36, 16, 2) < 16);

@@ -18,11 +18,16 @@ TEST_CASE("stats: counts add up and come out as JSON", "[runtime]") {
   b.march.rays = 1;
   b.march.evaluations = 10;
   b.dropped_samples = 1;
+  a.shadow_rays = 7;
+  b.shadow_rays = 2;
+  b.bounce_rays = 5;
   a.merge(b);
   a.seconds = 2;
   const auto json = nlohmann::json::parse(to_json(a));
   CHECK(json["primary_rays"] == 5);
   CHECK(json["rays"] == 5);
+  CHECK(json["shadow_rays"] == 9);
+  CHECK(json["bounce_rays"] == 5);
   CHECK(json["evaluations_per_ray"] == 10);
   CHECK(json["rays_per_second"] == 2.5);
   CHECK(json["dropped_samples"] == 1);
