@@ -62,7 +62,7 @@ Row render(std::span<const Lottery> pixels, int spp, std::uint64_t seed) {
 
 TEST_CASE("adaptive: two stages have the true mean, one mean over both has not") {
   const std::array<Lottery, 3> pixels = {{{0.5f}, {0.1f}, {0.3f}}};
-  const int repeats = fathom::test::few(100000);
+  const int repeats = 100000;
   std::array<Sum, 3> combined, pooled;
   for (int r = 0; r < repeats; ++r) {
     const Row one = render(pixels, 16, static_cast<std::uint64_t>(r));
@@ -84,7 +84,7 @@ TEST_CASE("adaptive: two stages have the true mean, one mean over both has not")
 TEST_CASE("adaptive: less error than evenly shared out where pixels differ") {
   std::vector<Lottery> pixels(64, {0.8f});
   for (std::size_t i = 24; i < 32; ++i) pixels[i].chance = 0.05f;
-  const int spp = 64, repeats = fathom::test::few(400);
+  const int spp = 64, repeats = 400;
   double adaptive = 0, even = 0;
   for (int r = 0; r < repeats; ++r) {
     const Row one = render(pixels, spp, static_cast<std::uint64_t>(r));

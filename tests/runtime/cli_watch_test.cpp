@@ -18,8 +18,9 @@ const char* const kNoisy = R"({
   "camera": {"position": [0, 1.5, 4], "target": [0, 0, 0]},
   "film": {"width": 64, "height": 48},
   "render": {"spp": 8},
-  "background": {"top": [3, 3, 3], "bottom": [0, 0, 0]},
-  "objects": [{"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]},
+  "materials": {"glow": {"type": "emissive", "emission": [20, 20, 20]}},
+  "objects": [{"type": "torus", "major_radius": 0.4, "minor_radius": 0.1, "translate": [0, 2, 0.5], "material": "glow"},
+              {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]},
               {"type": "box", "half_size": [4, 0.1, 4], "translate": [0, -0.1, 0]}]
 })";
 
@@ -32,7 +33,7 @@ double number_of(const Folder& folder, const std::string& arguments, const std::
 TEST_CASE("cli: --denoise takes noise out and keeps the noisy picture beside it") {
   const Folder folder;
   folder.write("noisy.json", kNoisy);
-  REQUIRE(folder.run("render noisy.json -s 512 --seed 3 -o truth.exr").code == 0);
+  REQUIRE(folder.run("render noisy.json -s 2048 --seed 3 -o truth.exr").code == 0);
   const Result result = folder.run("render noisy.json -o a.png -o a.exr --denoise");
   CHECK(result.code == 0);
   CHECK_THAT(result.err, Contains("wrote a.png (64x48)") && Contains("wrote a-noisy.png (64x48)"));

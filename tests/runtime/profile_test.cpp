@@ -72,7 +72,7 @@ TEST_CASE("profile: instructions are those of the program, and registers are fil
   const auto scene = scene_of(kScene);
   for (const Marching marching : {Marching{}, Marching{.method = Method::Sphere, .precision = Precision::Double},
                                   Marching{.method = Method::Certified}}) {
-    RenderOptions options = options_of(64, 36, 4);
+    RenderOptions options = options_of(96, 54, 4);
     options.marching = marching;
     const Stats stats = render(scene, options).stats;
     INFO(info(marching.method).name);

@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/support/effort.h"
 
 namespace fathom::runtime {
 namespace {
@@ -14,7 +13,7 @@ constexpr std::array<int, 9> kPowersOfTwo = {16, 32, 64, 128, 256, 512, 1024, 20
 
 double slope(SamplerKind kind, int integrand, int bounce) {
   const auto& f = square_integrands()[static_cast<std::size_t>(integrand)];
-  return error_slope(sampling_errors(kind, f, kPowersOfTwo, fathom::test::few(160), bounce));
+  return error_slope(sampling_errors(kind, f, kPowersOfTwo, 160, bounce));
 }
 
 TEST_CASE("sampling error: independent samples err with the root of their number") {
@@ -39,7 +38,7 @@ TEST_CASE("sampling error: numbers of samples that are no powers of two are good
   constexpr std::array<int, 6> kCounts = {12, 24, 48, 100, 200, 400};
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     for (const SquareIntegrand& f : square_integrands()) {
-      const int repeats = fathom::test::few(800);
+      const int repeats = 800;
       const auto stratified = sampling_errors(kind, f, kCounts, repeats, -1);
       const auto independent = sampling_errors(SamplerKind::Independent, f, kCounts, repeats, -1);
       for (std::size_t i = 0; i < kCounts.size(); ++i) {
@@ -51,7 +50,7 @@ TEST_CASE("sampling error: numbers of samples that are no powers of two are good
 }
 
 TEST_CASE("sampling error: of the kind blue little is left where pixels are seen together") {
-  const int side = 64, seeds = fathom::test::few(8);
+  const int side = 64, seeds = 8;
   for (const SquareIntegrand& f : square_integrands()) {
     for (const int spp : {1, 2, 4, 16}) {
       for (const int bounce : {-1, 5}) {
@@ -71,7 +70,7 @@ TEST_CASE("sampling error: a pixel by itself errs with the kind blue as with sob
     for (const int count : kCounts) {
       // As many samples as are planned, as in a render.
       const std::array<int, 1> counts = {count};
-      const int repeats = fathom::test::few(10000);
+      const int repeats = 10000;
       const double blue = sampling_errors(SamplerKind::Blue, f, counts, repeats, -1)[0].rmse;
       const double sobol = sampling_errors(SamplerKind::Sobol, f, counts, repeats, -1)[0].rmse;
       CAPTURE(std::string(f.name), count, blue, sobol);
