@@ -2,8 +2,10 @@
 //
 //     build/release/bench_light_bars           a few minutes on two cores
 //     build/release/bench_light_bars --full    half the errors, many more cases and pictures
+//     build/release/bench_light_bars B20 B21   these alone
 #include "bench/light_bars.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -50,17 +52,30 @@ void slope_bars(BarTable& table, const LightCounts& counts) {
 
 int main(int argc, char** argv) {
   using namespace fathom;
-  const bool full = argc == 2 && std::string_view(argv[1]) == "--full";
-  if (argc > 1 && !full) {
-    fmt::print(stderr, "bench_light_bars: does not know `{}`; the only option is --full\n", argv[argc - 1]);
-    return 2;
+  constexpr std::pair<std::string_view, void (*)(bench::BarTable&, const bench::LightCounts&)> kBars[] = {
+      {"B17", bench::furnace_bars},
+      {"B18", bench::material_bars},
+      {"B20", bench::density_bars},
+      {"B21", bench::picture_bars},
+      {"B22", bench::slope_bars}};
+  bool full = false;
+  std::vector<std::string_view> names;
+  for (const std::string_view word : std::vector<std::string_view>(argv + 1, argv + argc)) {
+    if (word == "--full") {
+      full = true;
+    } else if (std::any_of(std::begin(kBars), std::end(kBars), [&](const auto& bar) { return bar.first == word; })) {
+      names.push_back(word);
+    } else {
+      fmt::print(stderr,
+                 "bench_light_bars: does not know `{}`; there are --full, B17, B18 (and B19), B20, B21, B22\n", word);
+      return 2;
+    }
   }
   const auto start = std::chrono::steady_clock::now();
   const bench::LightCounts counts = full ? bench::kFullLight : bench::LightCounts{};
   bench::BarTable table;
-  for (const auto bars :
-       {bench::furnace_bars, bench::material_bars, bench::density_bars, bench::picture_bars, bench::slope_bars}) {
-    bars(table, counts);
+  for (const auto& [name, bars] : kBars) {
+    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) bars(table, counts);
   }
   fmt::print("{} in {:.0f} s\n", table.missed() ? fmt::format("{} missed", table.missed()) : "all hold",
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

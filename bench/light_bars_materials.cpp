@@ -31,8 +31,8 @@ double albedo(const MaterialCase& c, float cos, int rows) {
   const auto greatest = [](glm::vec3 v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
   double sum = test::sphere_integral(
       [&](glm::vec3 wi) { return greatest(bsdf.evaluate(wi).f) * (glm::dot(wi, test::kNormal) < 0 ? index2 : 1); },
-      test::kNormal, rows, 1e-7);
-  constexpr int kLobes = 1 << 16;
+      test::kNormal, rows, 1e-6);
+  constexpr int kLobes = 1 << 13;
   for (int i = 0; i < kLobes; ++i) {
     runtime::Sampler sampler(13, static_cast<std::uint32_t>(i), 0, 0);
     const float lobe = (static_cast<float>(i) + 0.5f) / kLobes;
@@ -116,8 +116,8 @@ void energy(BarTable& table, const LightCounts& counts) {
   const std::size_t cosines = std::size(test::kCosines);
   std::vector<double> found(cases.size() * cosines), apart(found.size());
   for_each_index(found.size(), [&](std::size_t i) {
-    const double coarse = albedo(cases[i / cosines], test::kCosines[i % cosines], 20);
-    found[i] = albedo(cases[i / cosines], test::kCosines[i % cosines], 30);
+    const double coarse = albedo(cases[i / cosines], test::kCosines[i % cosines], 16);
+    found[i] = albedo(cases[i / cosines], test::kCosines[i % cosines], 24);
     apart[i] = std::abs(found[i] - coarse);
   });
   const auto at = static_cast<std::size_t>(std::max_element(found.begin(), found.end()) - found.begin());
