@@ -350,7 +350,7 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
              Contains("--crop: the scene's `adaptive`") && Contains("add --no-adaptive"));
   CHECK(folder.run("render shared.json --crop 0,0,4,4 -o a.png").code == 2);
   CHECK(folder.run("render shared.json --crop 0,0,4,4 --no-adaptive -o a.png").code == 0);
-  CHECK_THAT(folder.run("render shared.json -v -o a.png").err, Contains(", adaptive"));
+  CHECK_THAT(folder.run("render shared.json -vvv -o a.png").err, Contains(", adaptive"));
 
   CHECK_THAT(numbers("lit.json --light-sampling hits"), Contains("\"shadow_rays\": 0,"));
   CHECK_THAT(numbers("lit.json --light-sampling lights"), !Contains("\"shadow_rays\": 0,"));
