@@ -47,7 +47,8 @@ struct RenderOptions {
   // depend on all others.
   std::optional<bool> adaptive;
   LightSampling light_sampling = LightSampling::Both;
-  // The most radiance that a path of two bounces or more may bring: less noise, but biased, for light is lost.
+  // The most radiance that a light found after two bounces or more may bring, each for itself: less noise, but
+  // biased, for light is lost.
   std::optional<double> clamp;
   Marching marching;
   bool regions = true;                    // build them where the scene gains by them (runtime/regions.h)
