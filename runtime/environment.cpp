@@ -132,7 +132,7 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
   return sum;
 }
 
-// A gradient is so even that directions chosen by the BSDF find its light with less noise (docs/BENCHMARKS.md).
+// A gradient is so even that directions chosen by the BSDF find its light with less noise (docs/LIGHT.md).
 float Environment::mean() const {
   return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
 }
