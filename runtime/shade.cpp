@@ -70,6 +70,8 @@ void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const Surface
   path.throughput *= transmittance(path.space, arrival.t);
   path.space.side = arrival.side;
   Vertex vertex{path, hit, point, material_at(path, hit, point), is_inside(path, hit, point), {}};
+  // What fills a body has no holes: a path that came in by one would leave by refraction, brighter than it came.
+  if (vertex.material.fills()) vertex.material.opacity = 1;
   vertex.beyond = beyond(vertex);
   if (path.bounces == 0) record_first_hit(vertex, arrival);
   add_emission(vertex, arrival);

@@ -51,7 +51,9 @@ TEST_CASE("light: closed rooms, however paths end", "[render][light]") {
 
 TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
   for (const char* material : {R"({"type": "diffuse", "color": [1, 1, 1]})", R"({"type": "specular"})",
-                               R"({"type": "transparent"})", R"({"type": "transparent", "ior": 2.4})"}) {
+                               R"({"type": "transparent"})", R"({"type": "transparent", "ior": 2.4})",
+                               // Once, paths that came in by a hole and left by refraction brought 3.5 % too much.
+                               R"({"type": "principled", "transmission": 1, "roughness": 0, "opacity": 0.5})"}) {
     for (const LightSampling way : kEveryWay) {
       RenderOptions options = square(16, test::few(64));
       options.light_sampling = way;
