@@ -8,6 +8,8 @@ namespace {
 
 // Arrivals are shaded when so many wait: enough for the machine's blocks, few enough to keep the stream full.
 constexpr std::size_t kShadeBatch = 64;
+// Vertices are shaded so many at once: they fit the processor's first cache.
+constexpr std::size_t kVertexBatch = 16;
 // Paths are started so many at once.
 constexpr std::size_t kStartBatch = 32;
 
@@ -27,6 +29,7 @@ Integrator::Integrator(const World& world, const Pass& pass, Film& film) : world
     paths = std::min(paths, marchers_.back()->capacity());
   }
   paths_.resize(static_cast<std::size_t>(paths));
+  vertices_.resize(kVertexBatch);
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
@@ -174,7 +177,11 @@ void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
   find_surfaces(world_.scene, field(number), std::span(hits).first(arrivals.size()), points,
                 marchers_[number]->workspace());
   clock.enter(Stage::Shading);
-  for (std::size_t i = 0; i < arrivals.size(); ++i) shade_one(arrivals[i], hits[i], points[i]);
+  for (std::size_t first = 0; first < arrivals.size(); first += vertices_.size()) {
+    const std::size_t count = std::min(vertices_.size(), arrivals.size() - first);
+    shade_vertices(arrivals.subspan(first, count), std::span(hits).subspan(first, count),
+                   std::span(points).subspan(first, count));
+  }
 }
 
 void Integrator::add_to_film(std::uint32_t id) {

@@ -70,14 +70,20 @@ class Integrator {
   Stats stats() const;
 
  private:
-  // A path at a place where it met a surface.
+  // A path at a place where it met a surface, and how it may go on from there.
   struct Vertex {
-    Path& path;
-    const Hit& hit;
-    const SurfacePoint& point;
-    MaterialPoint material;
+    std::uint32_t id;
+    Path* path;
+    const Hit* hit;
+    const SurfacePoint* point;
+    const MaterialPoint* material;  // `made`, or one that is the same everywhere
+    MaterialPoint made;
     bool inside;   // the path comes out of the solid whose surface this is
     Space beyond;  // what it gets into if it goes through
+    std::optional<Bsdf> bsdf;
+    BsdfSample next;
+    float roulette;  // a number in [0,1)
+    LightSample light;
   };
 
   bool start_paths(const NextPaths& next);
@@ -98,18 +104,24 @@ class Integrator {
     std::uint32_t field;
     Ray ray;
   };
-  void shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
-  MaterialPoint material_at(const Path& path, const Hit& hit, const SurfacePoint& point);
-  bool is_inside(const Path& path, const Hit& hit, const SurfacePoint& point) const;
+  void shade_vertices(std::span<const Arrival> arrivals, std::span<const Hit> hits,
+                      std::span<const SurfacePoint> points);
+  void meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
+  void find_material(Vertex& vertex);
+  MaterialPoint mix_of(const vm::SurfaceShares& shares, glm::dvec3 place);
+  bool is_inside(const Vertex& vertex) const;
+  void sample_bsdf(Vertex& vertex);
+  void sample_light(Vertex& vertex);
   Space beyond(const Vertex& vertex);
   Space no_medium(const Vertex& vertex, glm::dvec3 place);
   void record_first_hit(const Vertex& vertex, const Arrival& arrival);
   void add_emission(const Vertex& vertex, const Arrival& arrival);
   float hit_share(const Path& path, float light_pdf) const;
   void add_light(Path& path, glm::vec3 radiance, int bounces);
-  std::optional<ShadowRay> look_for_light(const Vertex& vertex, const Bsdf& bsdf);
-  void go_with(const Vertex& vertex, const BsdfSample& next);
-  bool survives_roulette(Path& path);
+  std::optional<ShadowRay> look_for_light(Vertex& vertex);
+  void go_with(const Vertex& vertex);
+  bool plays_roulette(int bounces) const;
+  bool survives(Path& path, float roulette) const;
   void end_shadow_test(const Arrival& arrival);
   void go_on(std::uint32_t id);
 
@@ -120,6 +132,7 @@ class Integrator {
   std::vector<Path> paths_;                         // [id]
   std::vector<std::uint32_t> free_ids_, ended_;
   std::vector<Arrival> settled_;  // scratch
+  std::vector<Vertex> vertices_;  // scratch
   RealScratch scratch_;
   Stats stats_;
 };

@@ -46,6 +46,7 @@ Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const Envir
   add_lamps(scene, bounds);
   for (const compiler::Light& light : scene.lights) add_delta(light, bounds);
   tree_ = LightTree(std::move(bounds));
+  all_near_ = directional_.empty() && !environment_.emits();
   find_touching();
 }
 
@@ -107,7 +108,9 @@ std::optional<std::uint32_t> Lights::lamp_at(glm::dvec3 place) const {
   return first;
 }
 
-bool Lights::empty() const { return tree_.empty() && directional_.empty() && !environment_.emits(); }
+bool Lights::empty() const { return tree_.empty() && all_near_; }
+
+bool Lights::has_choice() const { return !all_near_ || tree_.size() > 1; }
 
 float Lights::directional_estimate(const Delta& delta, const LightQuery& query) const {
   const float cosine = -glm::dot(query.normal, glm::vec3(delta.light.direction));
@@ -115,6 +118,7 @@ float Lights::directional_estimate(const Delta& delta, const LightQuery& query) 
 }
 
 Lights::Shares Lights::shares(const LightQuery& query) const {
+  if (all_near_) return {1, 0, 0};
   const float near = tree_.total(query), environment = environment_.estimate(query);
   float directional = 0;
   for (const Delta& delta : directional_) directional += directional_estimate(delta, query);

@@ -50,6 +50,10 @@ class Lights {
 
   // Whether there is nothing to sample.
   bool empty() const;
+  // Whether sample() makes use of `choice`.
+  bool has_choice() const;
+  // Whether some are not found by rays.
+  bool has_deltas() const { return !near_deltas_.empty() || !directional_.empty(); }
 
   // By three numbers in [0,1). `distance` ends on the lamp's surface, which the field holds, too: a shadow ray stops
   // short of it, at a slant by more (lamp_cosine).
@@ -96,6 +100,7 @@ class Lights {
   std::vector<Delta> near_deltas_;  // after the lamps in the tree's numbers
   std::vector<Delta> directional_;
   LightTree tree_;
+  bool all_near_ = false;  // no light comes from beyond the scene
 };
 
 }  // namespace fathom::runtime

@@ -9,7 +9,7 @@
 
 #include "runtime/lamp_parts.h"
 #include "runtime/round_lamps.h"
-#include "runtime/spherical_rectangle.h"
+#include "runtime/seen_rectangle.h"
 
 namespace fathom::runtime {
 namespace {
@@ -33,7 +33,7 @@ struct BoxFaces {
       parts.weights[static_cast<std::size_t>(i)] = 1 / (d2 * std::sqrt(d2) / flat + 1 / (2 * kPi));
     }
   }
-  static SphericalRectangle face(dvec3 from, dvec3 half, int axis) {
+  static SeenRectangle face(dvec3 from, dvec3 half, int axis) {
     const int j = (axis + 1) % 3, k = (axis + 2) % 3;
     return {-half[j] - from[j], half[j] - from[j], -half[k] - from[k], half[k] - from[k],
             std::abs(from[axis]) - half[axis]};
@@ -46,15 +46,13 @@ ShapeSample sample_box(dvec3 from, dvec3 half, dvec2 u) {
   if (!(faces.parts.sum() > 0)) return {};
   const std::size_t part = faces.parts.choose(u.x);
   const int axis = static_cast<int>(part), j = (axis + 1) % 3, k = (axis + 2) % 3;
-  const SphericalRectangle face = BoxFaces::face(from, half, axis);
-  const dvec2 place = face.sample(u);
+  const SeenRectangle::Place place = BoxFaces::face(from, half, axis).sample(u);
   ShapeSample out;
   out.normal[axis] = from[axis] > 0 ? 1 : -1;
   out.position[axis] = out.normal[axis] * half[axis];
-  out.position[j] = from[j] + place.x;
-  out.position[k] = from[k] + place.y;
-  const dvec3 way = out.position - from;
-  out.pdf = faces.parts.share(part) * face.pdf(glm::dot(way, way));
+  out.position[j] = from[j] + place.at.x;
+  out.position[k] = from[k] + place.at.y;
+  out.pdf = faces.parts.share(part) * place.pdf;
   return out;
 }
 
@@ -64,9 +62,9 @@ double box_pdf(dvec3 from, dvec3 half, dvec3 hit) {
     if (std::abs(hit[i]) - half[i] > std::abs(hit[axis]) - half[axis]) axis = i;
   }
   if (!(std::abs(from[axis]) > half[axis]) || (from[axis] > 0) != (hit[axis] > 0)) return 0;
-  const dvec3 way = hit - from;
+  const int across = (axis + 1) % 3;
   return BoxFaces(from, half).parts.share(static_cast<std::size_t>(axis)) *
-         BoxFaces::face(from, half, axis).pdf(glm::dot(way, way));
+         BoxFaces::face(from, half, axis).pdf(hit[across] - from[across]);
 }
 
 // --- quads
@@ -94,7 +92,7 @@ bool inside_quad(const Lamp& quad, dvec2 p) {
 }
 
 // The lamp's x axis lies along the first side.
-SphericalRectangle face_of(const Lamp& quad, dvec3 from) {
+SeenRectangle face_of(const Lamp& quad, dvec3 from) {
   const dvec2 lo = quad.corners[0], hi = quad.corners[2];
   return {lo.x - from.x, hi.x - from.x, lo.y - from.y, hi.y - from.y, std::abs(from.z) - quad.radius};
 }
@@ -104,12 +102,10 @@ ShapeSample sample_quad(const Lamp& quad, bool rectangle, dvec3 from, dvec2 u) {
   const double side = from.z > 0 ? 1 : -1;
   ShapeSample out{dvec3(0, 0, side * quad.radius), dvec3(0, 0, side)};
   if (rectangle) {
-    const SphericalRectangle face = face_of(quad, from);
-    const dvec2 place = face.sample(u);
-    out.position.x = from.x + place.x;
-    out.position.y = from.y + place.y;
-    const dvec3 way = out.position - from;
-    out.pdf = face.pdf(glm::dot(way, way));
+    const SeenRectangle::Place place = face_of(quad, from).sample(u);
+    out.position.x = from.x + place.at.x;
+    out.position.y = from.y + place.at.y;
+    out.pdf = place.pdf;
     return out;
   }
   const std::array<dvec2, 4>& c = quad.corners;
@@ -128,8 +124,7 @@ double quad_pdf(const Lamp& quad, bool rectangle, dvec3 from, dvec3 hit) {
   if (!(std::abs(from.z) > quad.radius) || (from.z > 0) != (hit.z > 0)) return 0;
   if (!inside_quad(quad, dvec2(hit))) return 0;
   if (!rectangle) return area_to_solid_angle({hit, dvec3(0, 0, from.z > 0 ? 1 : -1)}, from, quad_area(quad));
-  const dvec3 way = hit - from;
-  return face_of(quad, from).pdf(glm::dot(way, way));
+  return face_of(quad, from).pdf(hit.x - from.x);
 }
 
 double quad_distance(const Lamp& quad, dvec3 p) {

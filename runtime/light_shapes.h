@@ -3,8 +3,7 @@
 //
 //   sphere    the cone around it: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting
 //             Calculations", 1996
-//   box       the faces that face the place, each by solid angle: Urena, Fajardo, King, "An Area-Preserving
-//             Parametrization for Spherical Rectangles", 2013; by area where it is tiny
+//   box       the faces that face the place, each nearly by solid angle (seen_rectangle.h)
 //   quad      the face on the place's side: likewise when it is a rectangle, else by area. Its rounded edges are not
 //             sampled
 //   cylinder  the cap and the part of the side that face the place, by area

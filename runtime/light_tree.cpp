@@ -65,13 +65,14 @@ LightBounds merge(std::span<const std::uint32_t> members, const std::vector<Ligh
 }  // namespace
 
 float estimate(const LightBounds& light, const LightQuery& query) {
-  const glm::dvec3 way = light.centre - query.position;
-  const double d2 = glm::dot(way, way), r2 = light.radius * light.radius;
+  const glm::vec3 way(light.centre - query.position);
+  const auto radius = static_cast<float>(light.radius);
+  const float d2 = glm::dot(way, way), r2 = radius * radius;
   if (!(std::max(d2, r2) > 0)) return 0;
-  const float strength = light.intensity / static_cast<float>(std::max(d2, r2));
+  const float strength = light.intensity / std::max(d2, r2);
   if (d2 <= r2) return strength;
-  const glm::vec3 wi(way / std::sqrt(d2));
-  const auto cos_ball = static_cast<float>(std::sqrt(1 - r2 / d2));
+  const glm::vec3 wi = way / std::sqrt(d2);
+  const float cos_ball = std::sqrt(1 - r2 / d2);
   float arriving = glm::dot(query.normal, wi);
   if (query.both_sides) arriving = std::abs(arriving);
   arriving = cosine_of_difference(arriving, cos_ball);
@@ -130,16 +131,20 @@ std::optional<LightTree::Choice> LightTree::choose(const LightQuery& query, floa
     at = go_left ? at + 1 : nodes_[at].second;
   }
   const Node& leaf = nodes_[at];
-  const float all = total_of(leaf, query);
+  std::array<float, std::max(kFewLights, kLeafLights)> estimates;
+  float all = 0;
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    estimates[i] = estimate(lights_[order_[leaf.first + i]], query);
+    all += estimates[i];
+  }
   if (!(all > 0)) return std::nullopt;
   double sought = rest * static_cast<double>(all);
   std::optional<Choice> last;
-  for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-    const float own = estimate(lights_[order_[i]], query);
-    if (!(own > 0)) continue;
-    last = Choice{order_[i], probability * (own / all)};
-    if (sought < static_cast<double>(own)) break;
-    sought -= static_cast<double>(own);
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    if (!(estimates[i] > 0)) continue;
+    last = Choice{order_[leaf.first + i], probability * (estimates[i] / all)};
+    if (sought < static_cast<double>(estimates[i])) break;
+    sought -= static_cast<double>(estimates[i]);
   }
   return last;
 }

@@ -53,6 +53,7 @@ class LightTree {
   // About the irradiance of all lights together.
   float total(const LightQuery& query) const;
   bool empty() const { return lights_.empty(); }
+  std::size_t size() const { return lights_.size(); }
 
   // Calls `use` with every light whose ball is within `reach` of the place.
   template <class Use>

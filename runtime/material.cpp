@@ -34,6 +34,11 @@ void put_transmission(const MaterialNumbers& n, Type type, MaterialPoint& point)
   }
 }
 
+// What fills a body has no holes: a path that came in by one would leave by refraction, brighter than it came.
+void close(MaterialPoint& point) {
+  if (point.fills()) point.opacity = 1;
+}
+
 MaterialPoint to_point(const MaterialNumbers& n, Type type, bool thin_walled) {
   MaterialPoint point;
   point.type = type;
@@ -53,6 +58,7 @@ MaterialPoint to_point(const MaterialNumbers& n, Type type, bool thin_walled) {
   point.opacity = static_cast<float>(n.opacity);
   point.emission = glm::vec3(n.emission_luminance * n.emission);
   put_transmission(n, type, point);
+  close(point);
   return point;
 }
 
@@ -153,6 +159,7 @@ MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t) {
   m.opacity = between(a.opacity, b.opacity);
   m.emission = between(a.emission, b.emission);
   m.absorption = between(a.absorption, b.absorption);
+  close(m);
   return m;
 }
 

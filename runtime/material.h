@@ -53,7 +53,7 @@ struct MaterialPoint {
   glm::vec3 coat_color{1};
   float coat_roughness = 0, coat_ior = 1.6f;
   bool thin_walled = false;
-  float opacity = 1;        // geometry_opacity
+  float opacity = 1;        // geometry_opacity; 1 for what fills a body
   glm::vec3 emission{0};    // radiance
   glm::vec3 absorption{0};  // inside, per scene unit
 

@@ -142,8 +142,11 @@ class Sampler {
   Sampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y, std::uint32_t sample)
       : Sampler(PixelKey({SamplerKind::Independent, seed, 1}, x, y), sample) {}
 
-  // What is drawn next belongs to the bounce, counted from 0. Independent numbers have no need to know.
-  void start_bounce(int bounce) { pair_ = 2 + static_cast<std::uint32_t>(bounce) * kPairsPerBounce; }
+  // What is drawn next belongs to the bounce, counted from 0.
+  void start_bounce(int bounce) {
+    const std::uint32_t pairs = 2 + static_cast<std::uint32_t>(bounce) * kPairsPerBounce;
+    drawn_ = kind_ == SamplerKind::Independent ? 2 * pairs : pairs;
+  }
 
   // In [0,1): a multiple of 2^-24.
   float next() {
@@ -168,12 +171,11 @@ class Sampler {
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
   float next_independent() {
-    key_ += kGoldenGamma;
-    return static_cast<float>(mix64(key_) >> 40) * 0x1p-24f;
+    return static_cast<float>(mix64(key_ + kGoldenGamma * ++drawn_) >> 40) * 0x1p-24f;
   }
 
   // 64 random bits for the next pair, of which the seeds are made.
-  std::uint64_t pair_hash() { return mix64(key_ + kGoldenGamma * ++pair_); }
+  std::uint64_t pair_hash() { return mix64(key_ + kGoldenGamma * ++drawn_); }
   static std::uint32_t first_seed(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
   static std::uint32_t second_seed(std::uint64_t hash) {
     return static_cast<std::uint32_t>(hash * 0xd1342543de82ef95u >> 32);
@@ -203,7 +205,7 @@ class Sampler {
   SamplerKind kind_ = SamplerKind::Independent;
   std::uint8_t unused_bits_ = 0, pixel_bits_ = 0;
   std::uint32_t index_ = 0;  // of the sample in the sequence, written backwards
-  std::uint32_t pair_ = 0;
+  std::uint32_t drawn_ = 0;  // pairs; of independent numbers, numbers
   std::uint64_t key_ = 0;
 };
 

@@ -65,71 +65,108 @@ void Integrator::add_light(Path& path, glm::vec3 radiance, int bounces) {
   path.result.radiance += radiance;
 }
 
-void Integrator::shade_one(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
+// In steps of one kind each, so that the processor has several paths' in hand.
+void Integrator::shade_vertices(std::span<const Arrival> arrivals, std::span<const Hit> hits,
+                                std::span<const SurfacePoint> points) {
+  const std::span<Vertex> vertices = std::span(vertices_).first(arrivals.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) meet(vertices[i], arrivals[i], hits[i], points[i]);
+  for (Vertex& vertex : vertices) sample_bsdf(vertex);
+  for (Vertex& vertex : vertices) sample_light(vertex);
+  for (Vertex& vertex : vertices) {
+    const std::optional<ShadowRay> shadow = look_for_light(vertex);
+    go_with(vertex);
+    if (!shadow) {
+      go_on(vertex.id);
+      continue;
+    }
+    vertex.path->in_shadow_test = true;
+    ++stats_.shadow_rays;
+    marchers_[shadow->field]->add(vertex.id, shadow->ray);
+  }
+}
+
+void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
   Path& path = paths_[arrival.id];
   path.throughput *= transmittance(path.space, arrival.t);
   path.space.side = arrival.side;
-  Vertex vertex{path, hit, point, material_at(path, hit, point), is_inside(path, hit, point), {}};
-  // What fills a body has no holes: a path that came in by one would leave by refraction, brighter than it came.
-  if (vertex.material.fills()) vertex.material.opacity = 1;
+  vertex.id = arrival.id;
+  vertex.path = &path;
+  vertex.hit = &hit;
+  vertex.point = &point;
+  find_material(vertex);
+  vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
   if (path.bounces == 0) record_first_hit(vertex, arrival);
   add_emission(vertex, arrival);
-  path.sampler.start_bounce(path.bounces);
-  const Bsdf bsdf(vertex.material, point.normal, hit.wo, vertex.beyond.ior / path.space.ior, vertex.inside);
-  // The numbers that every hit needs are drawn first, so that they are the same dimensions in all samples.
-  const glm::vec2 place = path.sampler.next2();
-  const BsdfSample next = bsdf.sample(bsdf.has_lobes() ? path.sampler.next() : 0, place);
-  const std::optional<ShadowRay> shadow = look_for_light(vertex, bsdf);
-  go_with(vertex, next);
-  if (!shadow) return go_on(arrival.id);
-  path.in_shadow_test = true;
-  ++stats_.shadow_rays;
-  marchers_[shadow->field]->add(arrival.id, shadow->ray);
+  vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, vertex.beyond.ior / path.space.ior, vertex.inside);
+}
+
+// The numbers that every hit needs are drawn first, so that they are the same dimensions in all samples.
+void Integrator::sample_bsdf(Vertex& v) {
+  Sampler& sampler = v.path->sampler;
+  sampler.start_bounce(v.path->bounces);
+  const glm::vec2 place = sampler.next2();
+  v.next = v.bsdf->sample(v.bsdf->has_lobes() ? sampler.next() : 0, place);
+  v.roulette = plays_roulette(v.path->bounces + 1) ? sampler.next() : 0;
 }
 
 // Where a blend mixes materials each counts by its share.
-MaterialPoint Integrator::material_at(const Path& path, const Hit& hit, const SurfacePoint& point) {
+void Integrator::find_material(Vertex& v) {
+  const std::uint32_t number = v.point->material;
+  const glm::dvec3 place = v.hit->position;
+  if (world_.scene.mixes_materials) {
+    const vm::SurfaceShares shares = find_shares(field(v.path->space.field), place, scratch_);
+    if (shares.count > 1) {
+      v.made = mix_of(shares, place);
+      v.material = &v.made;
+      return;
+    }
+  }
+  v.material = &world_.materials.typical(number);
+  if (!world_.materials.varies(number)) return;
+  v.made = world_.materials.at(number, place, scratch_.workspace);
+  v.material = &v.made;
+}
+
+MaterialPoint Integrator::mix_of(const vm::SurfaceShares& shares, glm::dvec3 place) {
   const Materials& materials = world_.materials;
-  if (!world_.scene.mixes_materials) return materials.at(point.material, hit.position, scratch_.workspace);
-  const vm::SurfaceShares shares = find_shares(field(path.space.field), hit.position, scratch_);
-  if (shares.count < 2) return materials.at(point.material, hit.position, scratch_.workspace);
   const auto material = [&](int i) {
     return world_.scene.surfaces[shares.all[static_cast<std::size_t>(i)].surface].material;
   };
-  MaterialPoint mixed = materials.at(material(0), hit.position, scratch_.workspace);
+  MaterialPoint mixed = materials.at(material(0), place, scratch_.workspace);
   double weight = shares.all[0].weight;
   for (int i = 1; i < shares.count; ++i) {
     const double more = shares.all[static_cast<std::size_t>(i)].weight;
     weight += more;
     if (material(i) == material(0)) continue;
-    mixed = mix(mixed, materials.at(material(i), hit.position, scratch_.workspace), static_cast<float>(more / weight));
+    mixed = mix(mixed, materials.at(material(i), place, scratch_.workspace), static_cast<float>(more / weight));
   }
   return mixed;
 }
 
 // Whether the path comes out of the solid whose surface it met, or else out of the open or of another medium.
-bool Integrator::is_inside(const Path& path, const Hit& hit, const SurfacePoint& point) const {
-  if (path.space.field == 0) return hit.side < 0;
-  return world_.media.material(path.space.field - 1) == point.material;
+bool Integrator::is_inside(const Vertex& v) const {
+  if (v.path->space.field == 0) return v.hit->side < 0;
+  return world_.media.material(v.path->space.field - 1) == v.point->material;
 }
 
 // What a path gets into that goes through the surface. Of what is opaque only the index matters.
 Space Integrator::beyond(const Vertex& v) {
   const Media& media = world_.media;
-  Space space = v.path.space;
-  if (!v.material.transmits()) {
-    space.ior = v.material.ior;
+  Space space = v.path->space;
+  if (!v.material->transmits()) {
+    space.ior = v.material->ior;
     return space;
   }
-  const glm::dvec3 place = spawn(v.hit, v.point, true);
+  const glm::dvec3 place = spawn(*v.hit, *v.point, true);
   std::optional<std::uint32_t> medium;
   if (media.size() > 1 || !v.inside) medium = media.at(place, scratch_);
   if (!medium) return no_medium(v, place);
   space.field = *medium + 1;
   space.side = -1;
   const std::uint32_t material = media.material(*medium);
-  const MaterialPoint filling = material == v.point.material ? v.material : world_.materials.at(material, place, scratch_.workspace);
+  const MaterialPoint filling =
+      material == v.point->material ? *v.material : world_.materials.at(material, place, scratch_.workspace);
   if (filling.fills()) {
     space.ior = filling.ior;
     space.absorption = filling.absorption;
@@ -145,85 +182,100 @@ Space Integrator::no_medium(const Vertex& v, glm::dvec3 place) {
   std::uint64_t instructions = 0;
   if (world_.field.evaluate(place, scratch_, instructions) >= 0) return space;
   space.side = -1;
-  if (v.material.fills()) {
-    space.ior = v.material.ior;
-    space.absorption = v.material.absorption;
+  if (v.material->fills()) {
+    space.ior = v.material->ior;
+    space.absorption = v.material->absorption;
   }
   return space;
 }
 
 void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
   ++stats_.primary_hits;
-  PathSample& result = v.path.result;
+  PathSample& result = v.path->result;
   result.hit = true;
-  result.albedo = albedo_of(v.material);
-  result.normal = v.point.normal;
+  result.albedo = albedo_of(*v.material);
+  result.normal = v.point->normal;
   result.depth = arrival.t;
-  result.position = v.hit.position;
-  result.surface = v.point.surface;
-  result.material = v.point.material;
+  result.position = v.hit->position;
+  result.surface = v.point->surface;
+  result.material = v.point->material;
 }
 
 void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {
-  if (v.material.emission == glm::vec3(0)) return;
-  const Path& path = v.path;
+  if (v.material->emission == glm::vec3(0)) return;
+  const Path& path = *v.path;
   float light_pdf = 0;
   if (path.pdf > 0 && !world_.lights.empty()) {
-    light_pdf = world_.lights.pdf_of_hit(path.from, v.point.surface, v.hit.position, -v.hit.wo, arrival.t);
+    light_pdf = world_.lights.pdf_of_hit(path.from, v.point->surface, v.hit->position, -v.hit->wo, arrival.t);
   }
   const float share = hit_share(path, light_pdf);
-  if (share > 0) add_light(v.path, path.throughput * v.material.emission * share, path.bounces);
+  if (share > 0) add_light(*v.path, path.throughput * v.material->emission * share, path.bounces);
 }
 
-// A light is chosen and a place on it; what it would bring is kept until the shadow ray has told.
-std::optional<Integrator::ShadowRay> Integrator::look_for_light(const Vertex& v, const Bsdf& bsdf) {
-  Path& path = v.path;
+// A light is chosen and a place on it.
+void Integrator::sample_light(Vertex& v) {
+  v.light.pdf = 0;
+  if (world_.lights.empty()) return;
+  Path& path = *v.path;
   const Settings& settings = world_.settings;
-  if (world_.lights.empty()) return std::nullopt;
-  path.from = {spawn(v.hit, v.point, false), v.point.normal, v.material.transmits()};
-  if (bsdf.is_delta()) return std::nullopt;
-  if (settings.cut_after && path.bounces >= *settings.cut_after) return std::nullopt;
-  const float choice = path.sampler.next();
-  LightSample light = world_.lights.sample(path.from, choice, path.sampler.next2());
-  if (!(light.pdf > 0) || (!light.delta && settings.light_sampling == LightSampling::Hits)) return std::nullopt;
+  path.from = {spawn(*v.hit, *v.point, false), v.point->normal, v.material->transmits()};
+  if (v.bsdf->is_delta()) return;
+  if (settings.cut_after && path.bounces >= *settings.cut_after) return;
+  if (settings.light_sampling == LightSampling::Hits && !world_.lights.has_deltas()) return;
+  const float choice = world_.lights.has_choice() ? path.sampler.next() : 0;
+  v.light = world_.lights.sample(path.from, choice, path.sampler.next2());
+}
+
+// What the light would bring is kept until the shadow ray has told.
+std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
+  Path& path = *v.path;
+  LightSample& light = v.light;
+  const LightSampling way = world_.settings.light_sampling;
+  if (!(light.pdf > 0) || (!light.delta && way == LightSampling::Hits)) return std::nullopt;
   if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
     const glm::dvec3 lamp = path.from.position + light.distance * glm::dvec3(light.wi);
     light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emission;
   }
-  const BsdfValue value = bsdf.evaluate(light.wi);
-  const bool both = !light.delta && settings.light_sampling == LightSampling::Both;
+  const BsdfValue value = v.bsdf->evaluate(light.wi);
+  const bool both = !light.delta && way == LightSampling::Both;
   const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;
-  const bool through = glm::dot(light.wi, v.point.normal) < 0;
+  const bool through = glm::dot(light.wi, v.point->normal) < 0;
   const Space& space = through ? v.beyond : path.space;
   path.shadow_radiance =
       path.throughput * value.f * light.radiance * transmittance(space, light.distance) * (share / light.pdf);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
-  ShadowRay shadow{space.field, leave(v.hit, v.point, glm::dvec3(light.wi), through)};
+  ShadowRay shadow{space.field, leave(*v.hit, *v.point, glm::dvec3(light.wi), through)};
   shadow.ray.side = space.side;
-  shadow.ray.t_max = shadow_length(light, v.point);
+  shadow.ray.t_max = shadow_length(light, *v.point);
   return shadow;
 }
 
-void Integrator::go_with(const Vertex& v, const BsdfSample& next) {
-  Path& path = v.path;
+void Integrator::go_with(const Vertex& v) {
+  Path& path = *v.path;
+  const BsdfSample& next = v.next;
   path.throughput *= next.weight;
   path.eta_scale *= next.eta_scale;
   path.pdf = next.pdf;
   ++path.bounces;
-  path.ends = !(max_component(path.throughput) > 0) || !survives_roulette(path);
+  path.ends = !(max_component(path.throughput) > 0) || !survives(path, v.roulette);
   if (path.ends) return;
-  path.next = leave(v.hit, v.point, glm::dvec3(next.wi), next.through);
+  path.next = leave(*v.hit, *v.point, glm::dvec3(next.wi), next.through);
   path.next_space = next.through ? v.beyond : path.space;
   path.next.side = path.next_space.side;
 }
 
+// After so many bounces.
+bool Integrator::plays_roulette(int bounces) const {
+  return !world_.settings.cut_after && bounces >= world_.settings.bounces;
+}
+
 // Past the settled number of bounces a path survives with probability q and then counts 1/q times: the mean stays.
 // What refraction does to radiance is no reason to end a path, for it is undone where the path comes out again.
-bool Integrator::survives_roulette(Path& path) {
+bool Integrator::survives(Path& path, float roulette) const {
   if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
-  if (path.bounces < world_.settings.bounces) return true;
+  if (!plays_roulette(path.bounces)) return true;
   const float q = std::min(kMostSurvival, max_component(path.throughput) * path.eta_scale);
-  if (path.sampler.next() >= q) return false;
+  if (roulette >= q) return false;
   path.throughput /= q;
   return true;
 }

@@ -37,8 +37,8 @@ struct SurfacePoint {
 
 inline constexpr std::size_t kSurfaceBatch = 256;
 
-// points[i] describes hits[i] of `field`, the scene's or a medium's; at most kSurfaceBatch of them. Where the gradient is zero or not a number the normal
-// is wo.
+// points[i] describes hits[i] of `field`, the scene's or a medium's; at most kSurfaceBatch of them. Where the
+// gradient is zero or not a number the normal is wo.
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace);
 
