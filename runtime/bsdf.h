@@ -44,6 +44,8 @@ class Bsdf {
   BsdfValue evaluate(glm::vec3 wi) const;            // mirrors and clear panes count nothing
   bool is_delta() const;                             // evaluate() is black everywhere
   bool has_lobes() const;                            // sample() makes use of `lobe`
+  // The part of light that goes straight on in the medium it is in: by holes and through smooth thin walls.
+  glm::vec3 straight_through() const { return layers_ ? layers_->principled.straight_through() : glm::vec3(0); }
 
  private:
   struct Layers {

@@ -30,6 +30,7 @@ Integrator::Integrator(const World& world, const Pass& pass, Film& film) : world
   }
   paths_.resize(static_cast<std::size_t>(paths));
   vertices_.resize(kVertexBatch);
+  if (world.materials.pass_straight()) shadows_.resize(paths_.size());
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
@@ -137,15 +138,26 @@ void Integrator::settle_arrivals(std::size_t field) {
     }
   }
   clock.enter(Stage::Shading);
-  const auto tests_shadow = [&](const Arrival& arrival) { return paths_[arrival.id].in_shadow_test; };
   const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
-  const auto shadows_end = std::partition(settled_.begin(), settled_.end(), tests_shadow);
+  const auto tests_shadow = [&](const Arrival& arrival) { return paths_[arrival.id].in_shadow_test; };
+  // What stands in the way of light may let some of it straight through.
+  const auto ends_test = [&](const Arrival& arrival) {
+    return tests_shadow(arrival) && (shadows_.empty() || !is_hit(arrival));
+  };
+  const auto tests_end = std::partition(settled_.begin(), settled_.end(), ends_test);
+  const auto shadows_end = std::partition(tests_end, settled_.end(), tests_shadow);
   const auto hits_end = std::partition(shadows_end, settled_.end(), is_hit);
-  for (const Arrival& arrival : std::span(settled_.begin(), shadows_end)) end_shadow_test(arrival);
-  const std::span<const Arrival> hits(shadows_end, hits_end);
-  for (std::size_t first = 0; first < hits.size(); first += kSurfaceBatch) {
-    shade(field, hits.subspan(first, std::min(kSurfaceBatch, hits.size() - first)));
+  for (const Arrival& arrival : std::span(settled_.begin(), tests_end)) {
+    const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
+    end_shadow_test(arrival.id, free);
   }
+  const auto in_batches = [](std::span<const Arrival> arrivals, const auto& use) {
+    for (std::size_t first = 0; first < arrivals.size(); first += kSurfaceBatch) {
+      use(arrivals.subspan(first, std::min(kSurfaceBatch, arrivals.size() - first)));
+    }
+  };
+  in_batches({tests_end, shadows_end}, [&](std::span<const Arrival> some) { pass_shadows(field, some); });
+  in_batches({shadows_end, hits_end}, [&](std::span<const Arrival> some) { shade(field, some); });
   for (const Arrival& arrival : std::span(hits_end, settled_.end())) leave_scene(arrival);
   clock.enter(Stage::Film);
   for (const std::uint32_t id : ended_) add_to_film(id);
@@ -164,24 +176,36 @@ void Integrator::leave_scene(const Arrival& arrival) {
   ended_.push_back(arrival.id);
 }
 
-void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
+// The places that rays of path or shadow met; `ray_of` gives an arrival's origin and direction.
+template <class RayOf>
+void Integrator::find_places(std::size_t number, std::span<const Arrival> arrivals, Places& places,
+                             const RayOf& ray_of) {
   StageClock& clock = marchers_[0]->clock();
   clock.enter(Stage::Normals);
-  std::array<Hit, kSurfaceBatch> hits;
-  std::array<SurfacePoint, kSurfaceBatch> points;
   for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    const Path& path = paths_[arrivals[i].id];
-    hits[i] = {path.origin + arrivals[i].t * path.direction, glm::vec3(-path.direction), arrivals[i].side,
-               arrivals[i].width};
+    const auto& ray = ray_of(arrivals[i].id);
+    places.hits[i] = {ray.origin + arrivals[i].t * ray.direction, glm::vec3(-ray.direction), arrivals[i].side,
+                      arrivals[i].width};
   }
-  find_surfaces(world_.scene, field(number), std::span(hits).first(arrivals.size()), points,
+  find_surfaces(world_.scene, field(number), std::span(places.hits).first(arrivals.size()), places.points,
                 marchers_[number]->workspace());
   clock.enter(Stage::Shading);
+}
+
+void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
+  Places places;
+  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Path& { return paths_[id]; });
   for (std::size_t first = 0; first < arrivals.size(); first += vertices_.size()) {
     const std::size_t count = std::min(vertices_.size(), arrivals.size() - first);
-    shade_vertices(arrivals.subspan(first, count), std::span(hits).subspan(first, count),
-                   std::span(points).subspan(first, count));
+    shade_vertices(arrivals.subspan(first, count), std::span(places.hits).subspan(first, count),
+                   std::span(places.points).subspan(first, count));
   }
+}
+
+void Integrator::pass_shadows(std::size_t number, std::span<const Arrival> arrivals) {
+  Places places;
+  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Ray& { return shadows_[id].ray; });
+  for (std::size_t i = 0; i < arrivals.size(); ++i) pass_shadow(arrivals[i], places.hits[i], places.points[i]);
 }
 
 void Integrator::add_to_film(std::uint32_t id) {

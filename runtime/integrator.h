@@ -76,11 +76,13 @@ class Integrator {
     Path* path;
     const Hit* hit;
     const SurfacePoint* point;
+    Space space;                    // that the ray came through
     const MaterialPoint* material;  // `made`, or one that is the same everywhere
     MaterialPoint made;
     bool inside;   // the path comes out of the solid whose surface this is
     Space beyond;  // what it gets into if it goes through
     std::optional<Bsdf> bsdf;
+    LightQuery query;
     BsdfSample next;
     float roulette;  // a number in [0,1)
     LightSample light;
@@ -92,7 +94,14 @@ class Integrator {
   bool due(std::size_t field) const;
   void advance(std::size_t field);
   void settle_arrivals(std::size_t field);
+  struct Places {
+    std::array<Hit, kSurfaceBatch> hits;
+    std::array<SurfacePoint, kSurfaceBatch> points;
+  };
+  template <class RayOf>
+  void find_places(std::size_t field, std::span<const Arrival> arrivals, Places& places, const RayOf& ray_of);
   void shade(std::size_t field, std::span<const Arrival> arrivals);
+  void pass_shadows(std::size_t field, std::span<const Arrival> arrivals);
   void follow(std::uint32_t id, const Ray& ray);
   void leave_scene(const Arrival& arrival);
   void add_to_film(std::uint32_t id);  // and frees the id
@@ -101,9 +110,11 @@ class Integrator {
 
   // shade.cpp
   struct ShadowRay {
-    std::uint32_t field;
+    Space space;
     Ray ray;
   };
+  void look_along(std::uint32_t id, const ShadowRay& shadow);
+  void pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
   void shade_vertices(std::span<const Arrival> arrivals, std::span<const Hit> hits,
                       std::span<const SurfacePoint> points);
   void meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
@@ -112,6 +123,7 @@ class Integrator {
   bool is_inside(const Vertex& vertex) const;
   void sample_bsdf(Vertex& vertex);
   void sample_light(Vertex& vertex);
+  float relative_index(const Vertex& vertex) const;
   Space beyond(const Vertex& vertex);
   Space no_medium(const Vertex& vertex, glm::dvec3 place);
   void record_first_hit(const Vertex& vertex, const Arrival& arrival);
@@ -122,7 +134,7 @@ class Integrator {
   void go_with(const Vertex& vertex);
   bool plays_roulette(int bounces) const;
   bool survives(Path& path, float roulette) const;
-  void end_shadow_test(const Arrival& arrival);
+  void end_shadow_test(std::uint32_t id, bool free);
   void go_on(std::uint32_t id);
 
   const World& world_;
@@ -130,6 +142,7 @@ class Integrator {
   Film& film_;
   std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]
   std::vector<Path> paths_;                         // [id]
+  std::vector<ShadowRay> shadows_;                  // [id], where surfaces may let light straight through
   std::vector<std::uint32_t> free_ids_, ended_;
   std::vector<Arrival> settled_;  // scratch
   std::vector<Vertex> vertices_;  // scratch

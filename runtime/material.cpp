@@ -81,7 +81,10 @@ constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 }  // namespace
 
 Materials::Materials(const compiler::CompiledScene& scene) : scene_(&scene) {
-  for (const compiler::Material& m : scene.materials) points_.push_back(to_point(m, m.type, m.thin_walled));
+  for (const compiler::Material& m : scene.materials) {
+    points_.push_back(to_point(m, m.type, m.thin_walled));
+    pass_straight_ |= points_.back().passes_straight() || !m.textured.empty();  // a texture may make holes
+  }
 }
 
 MaterialPoint Materials::at(std::uint32_t material, glm::dvec3 position, vm::Workspace& workspace) const {

@@ -60,6 +60,8 @@ struct MaterialPoint {
   // Whether a path may get through the surface, and whether it then is in a medium of this index.
   bool transmits() const { return passes_light() || opacity < 1; }
   bool fills() const { return passes_light() && !thin_walled; }
+  // Whether light may go straight on through it (Bsdf::straight_through).
+  bool passes_straight() const { return opacity < 1 || (passes_light() && thin_walled); }
 
  private:
   bool passes_light() const { return type == Material::Type::Transparent || transmission > 0; }
@@ -90,6 +92,8 @@ class Materials {
   bool varies(std::uint32_t material) const { return !scene_->materials[material].textured.empty(); }
   // Whether light may come from it at some place.
   bool emits(std::uint32_t material) const { return compiler::emits(scene_->materials[material]); }
+  // Whether light may go straight on through any of them.
+  bool pass_straight() const { return pass_straight_; }
   // Of solids at the same place, the medium is that of the highest.
   int priority(std::uint32_t material) const { return scene_->materials[material].priority; }
 
@@ -98,6 +102,7 @@ class Materials {
 
   const compiler::CompiledScene* scene_;
   std::vector<MaterialPoint> points_;  // [material]
+  bool pass_straight_ = false;
 };
 
 // What the albedo picture shows: the colour, and for lamps the light's, clamped to white.

@@ -55,6 +55,7 @@ class Principled {
   Draw draw(float lobe, glm::vec2 u) const;
   BsdfValue evaluate(glm::vec3 wi) const;
   bool is_delta() const;
+  glm::vec3 straight_through() const;  // as Bsdf's
   float eta() const { return eta_; }  // that light is bent by
 
  private:

@@ -80,8 +80,7 @@ void Integrator::shade_vertices(std::span<const Arrival> arrivals, std::span<con
       continue;
     }
     vertex.path->in_shadow_test = true;
-    ++stats_.shadow_rays;
-    marchers_[shadow->field]->add(vertex.id, shadow->ray);
+    look_along(vertex.id, *shadow);
   }
 }
 
@@ -93,12 +92,13 @@ void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, co
   vertex.path = &path;
   vertex.hit = &hit;
   vertex.point = &point;
+  vertex.space = path.space;
   find_material(vertex);
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
   if (path.bounces == 0) record_first_hit(vertex, arrival);
   add_emission(vertex, arrival);
-  vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, vertex.beyond.ior / path.space.ior, vertex.inside);
+  vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
 }
 
 // The numbers that every hit needs are drawn first, so that they are the same dimensions in all samples.
@@ -115,7 +115,7 @@ void Integrator::find_material(Vertex& v) {
   const std::uint32_t number = v.point->material;
   const glm::dvec3 place = v.hit->position;
   if (world_.scene.mixes_materials) {
-    const vm::SurfaceShares shares = find_shares(field(v.path->space.field), place, scratch_);
+    const vm::SurfaceShares shares = find_shares(field(v.space.field), place, scratch_);
     if (shares.count > 1) {
       v.made = mix_of(shares, place);
       v.material = &v.made;
@@ -146,18 +146,21 @@ MaterialPoint Integrator::mix_of(const vm::SurfaceShares& shares, glm::dvec3 pla
 
 // Whether the path comes out of the solid whose surface it met, or else out of the open or of another medium.
 bool Integrator::is_inside(const Vertex& v) const {
-  if (v.path->space.field == 0) return v.hit->side < 0;
-  return world_.media.material(v.path->space.field - 1) == v.point->material;
+  if (v.space.field == 0) return v.hit->side < 0;
+  return world_.media.material(v.space.field - 1) == v.point->material;
 }
 
-// What a path gets into that goes through the surface. Of what is opaque only the index matters.
+// Of what is beyond the surface, relative to where the path is. What does not fill a body bends light at its surface
+// all the same.
+float Integrator::relative_index(const Vertex& v) const {
+  return (v.material->fills() ? v.beyond.ior : v.material->ior) / v.space.ior;
+}
+
+// What a path gets into that goes through the surface.
 Space Integrator::beyond(const Vertex& v) {
+  if (!v.material->transmits()) return v.space;
   const Media& media = world_.media;
-  Space space = v.path->space;
-  if (!v.material->transmits()) {
-    space.ior = v.material->ior;
-    return space;
-  }
+  Space space = v.space;
   const glm::dvec3 place = spawn(*v.hit, *v.point, true);
   std::optional<std::uint32_t> medium;
   if (media.size() > 1 || !v.inside) medium = media.at(place, scratch_);
@@ -218,12 +221,12 @@ void Integrator::sample_light(Vertex& v) {
   if (world_.lights.empty()) return;
   Path& path = *v.path;
   const Settings& settings = world_.settings;
-  path.from = {spawn(*v.hit, *v.point, false), v.point->normal, v.material->transmits()};
+  v.query = {spawn(*v.hit, *v.point, false), v.point->normal, v.material->transmits()};
   if (v.bsdf->is_delta()) return;
   if (settings.cut_after && path.bounces >= *settings.cut_after) return;
   if (settings.light_sampling == LightSampling::Hits && !world_.lights.has_deltas()) return;
   const float choice = world_.lights.has_choice() ? path.sampler.next() : 0;
-  v.light = world_.lights.sample(path.from, choice, path.sampler.next2());
+  v.light = world_.lights.sample(v.query, choice, path.sampler.next2());
 }
 
 // What the light would bring is kept until the shadow ray has told.
@@ -233,18 +236,18 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   const LightSampling way = world_.settings.light_sampling;
   if (!(light.pdf > 0) || (!light.delta && way == LightSampling::Hits)) return std::nullopt;
   if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
-    const glm::dvec3 lamp = path.from.position + light.distance * glm::dvec3(light.wi);
+    const glm::dvec3 lamp = v.query.position + light.distance * glm::dvec3(light.wi);
     light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emission;
   }
   const BsdfValue value = v.bsdf->evaluate(light.wi);
   const bool both = !light.delta && way == LightSampling::Both;
   const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;
   const bool through = glm::dot(light.wi, v.point->normal) < 0;
-  const Space& space = through ? v.beyond : path.space;
+  const Space& space = through ? v.beyond : v.space;
   path.shadow_radiance =
       path.throughput * value.f * light.radiance * transmittance(space, light.distance) * (share / light.pdf);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
-  ShadowRay shadow{space.field, leave(*v.hit, *v.point, glm::dvec3(light.wi), through)};
+  ShadowRay shadow{space, leave(*v.hit, *v.point, glm::dvec3(light.wi), through)};
   shadow.ray.side = space.side;
   shadow.ray.t_max = shadow_length(light, *v.point);
   return shadow;
@@ -255,7 +258,11 @@ void Integrator::go_with(const Vertex& v) {
   const BsdfSample& next = v.next;
   path.throughput *= next.weight;
   path.eta_scale *= next.eta_scale;
-  path.pdf = next.pdf;
+  // What goes straight through has not left the place where light was looked for.
+  if (!next.straight || next.pdf > 0) {
+    path.from = v.query;
+    path.pdf = next.pdf;
+  }
   ++path.bounces;
   path.ends = !(max_component(path.throughput) > 0) || !survives(path, v.roulette);
   if (path.ends) return;
@@ -280,12 +287,38 @@ bool Integrator::survives(Path& path, float roulette) const {
   return true;
 }
 
-void Integrator::end_shadow_test(const Arrival& arrival) {
+void Integrator::look_along(std::uint32_t id, const ShadowRay& shadow) {
+  ++stats_.shadow_rays;
+  if (!shadows_.empty()) shadows_[id] = shadow;
+  marchers_[shadow.space.field]->add(id, shadow.ray);
+}
+
+void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
+  const ShadowRay& shadow = shadows_[arrival.id];
   Path& path = paths_[arrival.id];
+  Vertex& vertex = vertices_[0];
+  vertex.hit = &hit;
+  vertex.point = &point;
+  vertex.space = shadow.space;
+  vertex.space.side = arrival.side;
+  find_material(vertex);
+  if (!vertex.material->passes_straight()) return end_shadow_test(arrival.id, false);
+  vertex.inside = is_inside(vertex);
+  vertex.beyond = beyond(vertex);
+  const Bsdf bsdf(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
+  path.shadow_radiance *= bsdf.straight_through();
+  if (!(max_component(path.shadow_radiance) > 0)) return end_shadow_test(arrival.id, false);
+  ShadowRay rest{vertex.beyond, leave(hit, point, shadow.ray.direction, true)};
+  rest.ray.side = rest.space.side;
+  rest.ray.t_max = shadow.ray.t_max - arrival.t;
+  look_along(arrival.id, rest);
+}
+
+void Integrator::end_shadow_test(std::uint32_t id, bool free) {
+  Path& path = paths_[id];
   path.in_shadow_test = false;
-  const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
   if (free) add_light(path, path.shadow_radiance, path.bounces);
-  go_on(arrival.id);
+  go_on(id);
 }
 
 void Integrator::go_on(std::uint32_t id) {

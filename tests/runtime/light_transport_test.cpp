@@ -76,6 +76,29 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
   }
 }
 
+// Once, whatever stood before a light hid it: a ball's light was noisier, a point's was lost.
+TEST_CASE("light: holes and panes let light through to where it is looked for", "[render][light]") {
+  for (const tests::Veil& veil : {tests::kGauze, tests::kPane}) {
+    INFO(veil.material);
+    RenderOptions options = square(16, test::few(64));
+    options.cut_after = 1;  // a pane lights the floor with what the floor has sent up
+    expect(tests::veiled_point(veil), options, 1e-3);
+  }
+  for (const LightSampling way : kEveryWay) {
+    INFO("way " << static_cast<int>(way));
+    RenderOptions options = square(32, test::few(way == LightSampling::Hits ? 256 : 64));
+    options.light_sampling = way;
+    expect(tests::veiled_ball(tests::kGauze), options, way == LightSampling::Hits ? 3e-2 : 5e-3);
+  }
+}
+
+// Once, what does not fill a body had the index of what is around it, and reflected nothing.
+TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
+  LightScene scene = tests::smooth_gauze();
+  RenderOptions options = square(16, test::few(256));
+  expect(scene, options, 1e-1);
+}
+
 TEST_CASE("light: a cavity gathers light by many bounces", "[render][light]") {
   for (const double albedo : {0.5, 0.9}) expect(tests::cavity(albedo, 40), square(24, test::few(128)), 3e-2);
 }

@@ -43,11 +43,13 @@ inline LightScene in_even_light(const std::string& material,
 }
 
 // A floor of albedo 1/2 round the origin, of which only a spot is seen that is too small for its light to vary.
-inline std::string floor_spot(const std::string& lights, const std::string& objects) {
+inline std::string floor_spot(const std::string& lights, const std::string& objects,
+                              const std::string& materials = "") {
   return R"("camera": {"type": "orthographic", "position": [3, 0.4, 0.2], "target": [0, 0, 0], "width": 0.002},
             "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
-                          "lamp": {"type": "emissive", "emission": [8, 8, 8]}}, )" +
-         lights + R"("objects": [{"type": "plane", "normal": [0, 1, 0], "material": "floor"})" + objects + "]";
+                          "lamp": {"type": "emissive", "emission": [8, 8, 8]})" +
+         materials + "}, " + lights + R"("objects": [{"type": "plane", "normal": [0, 1, 0], "material": "floor"})" +
+         objects + "]";
 }
 
 // P3: irradiance pi L (R/d)^2 cos of a ball that is all above the horizon.
@@ -57,6 +59,48 @@ inline LightScene under_ball(double radius, double x, double y) {
           floor_spot("", R"(, {"type": "sphere", "radius": )" + std::to_string(radius) + R"(, "translate": [0, )" +
                              std::to_string(y) + ", " + std::to_string(x) + R"(], "material": "lamp"})"),
           0.5 * 8 * radius * radius / squared * y / std::sqrt(squared)};
+}
+
+// Something flat between the floor's spot and what is above it, and the part of light its two walls let through.
+struct Veil {
+  const char* material;
+  double passes;
+};
+inline std::string veiled_spot(const Veil& veil, const std::string& lights, const std::string& objects) {
+  return floor_spot(
+      lights,
+      objects + R"(, {"type": "box", "half_size": [0.5, 0.01, 0.5], "translate": [0, 0.5, 0], "material": "veil"})",
+      R"(, "veil": )" + std::string(veil.material));
+}
+// Black, with holes that let three fifths through.
+inline constexpr Veil kGauze{R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
+                             0.36};
+// A slab met head-on passes (1 - R) / (1 + R), R = .04.
+inline constexpr Veil kPane{R"({"type": "principled", "transmission": 1, "roughness": 0, "thin_walled": true})",
+                            (0.96 / 1.04) * (0.96 / 1.04)};
+
+inline LightScene veiled_ball(const Veil& veil) {
+  LightScene scene = under_ball(0.3, 0, 1.4);
+  return {
+      "a ball behind a veil",
+      veiled_spot(veil, "", R"(, {"type": "sphere", "radius": 0.3, "translate": [0, 1.4, 0], "material": "lamp"})"),
+      scene.radiance * veil.passes};
+}
+
+// Gauze that is smooth reflects R = .04 where it is no hole; from within it does not.
+inline LightScene smooth_gauze() {
+  LightScene scene = in_even_light(R"({"type": "principled", "color": [0, 0, 0], "roughness": 0, "opacity": 0.4})",
+                                   R"("type": "box", "half_size": [3, 3, 0.1])");
+  scene.radiance = 0.4 * 0.04 + kGauze.passes;
+  return scene;
+}
+
+// Irradiance I / d^2 of a point light straight above, of 3 at 1.
+inline LightScene veiled_point(const Veil& veil) {
+  return {"a point light behind a veil",
+          veiled_spot(
+              veil, R"("lights": {"bulb": {"type": "point", "position": [0, 1, 0], "intensity": [3, 3, 3]}}, )", ""),
+          0.5 * 3 / std::numbers::pi * veil.passes};
 }
 
 // P4: pi L R^2 / (R^2 + h^2) of a disc straight above.
