@@ -244,7 +244,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     lint(elaborated->scene, *elaborated, whole->surface, diagnostics);
     lint_places(elaborated->scene, origin, diagnostics);
   }
-  const bool mixes = mixes_materials(elaborated->scene, elaborated->surfaces);
+  mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
   std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(*whole),
@@ -252,7 +252,6 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        origin,
                        std::move(media),
                        std::move(lamps),
-                       mixes,
                        std::move(*formulas),
                        count_nodes(field),
                        ""};

@@ -29,6 +29,7 @@ inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
 struct Surface {
   std::string name;        // of the object it belongs to
   std::uint32_t material;  // index into CompiledScene::materials
+  bool mixed = false;      // part of a blend of several materials: its points can have shares of them all
 };
 
 struct Camera {
@@ -178,10 +179,9 @@ struct Medium : CompiledField {
 // has no need to know.
 struct CompiledScene : SceneTables, CompiledField {
   Source source;
-  glm::dvec3 origin{0};          // where the programs' zero is in the scene, scene units (compiler/origin.h)
-  std::vector<Medium> media;     // of the transparent materials, in their order
-  std::vector<Lamp> lamps;       // in file order; of those that coincide the first alone
-  bool mixes_materials = false;  // whether points can have shares of several (vm::evaluate_shares)
+  glm::dvec3 origin{0};       // where the programs' zero is in the scene, scene units (compiler/origin.h)
+  std::vector<Medium> media;  // of the transparent materials, in their order
+  std::vector<Lamp> lamps;    // in file order; of those that coincide the first alone
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates
   std::size_t node_count = 0;                 // distinct nodes after the passes
   // In the scene's coordinates: "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".

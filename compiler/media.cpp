@@ -19,23 +19,38 @@ struct Painted {
   std::uint32_t one = kNone;          // a material found there
   std::uint32_t transparent = kNone;  // the first of those that transmit
   bool several = false;
+  bool bare = false;  // some leaf has none, and will get that of the next Paint above
 };
 
 Painted join(const Painted& a, const Painted& b) {
-  if (a.one == kNone) return b;
-  if (b.one == kNone) return a;
-  return {a.one, std::min(a.transparent, b.transparent), a.several || b.several || a.one != b.one};
+  const bool bare = a.bare || b.bare;
+  if (a.one == kNone || b.one == kNone) {
+    Painted some = a.one == kNone ? b : a;
+    some.bare = bare;
+    return some;
+  }
+  return {a.one, std::min(a.transparent, b.transparent), a.several || b.several || a.one != b.one, bare};
 }
+
+// A Paint node gives its material to what has none.
+Painted paint(Painted below, std::uint32_t material, std::span<const Material> materials) {
+  if (!below.bare) return below;
+  below.bare = false;
+  return join(below, {material, transmits(materials[material]) ? material : kNone});
+}
+
+std::size_t surface_of(const Graph& graph, NodeId paint) { return static_cast<std::size_t>(graph.params(paint)[0]); }
 
 // [node]
 std::vector<Painted> painted_below(const Scene& scene, std::span<const Surface> surfaces,
                                    std::span<const Material> materials) {
   std::vector<Painted> below(scene.root + 1);
   for (NodeId id = 0; id <= scene.root; ++id) {
-    for (const NodeId child : scene.graph.children(id)) below[id] = join(below[id], below[child]);
+    const std::span<const NodeId> children = scene.graph.children(id);
+    below[id].bare = children.empty();
+    for (const NodeId child : children) below[id] = join(below[id], below[child]);
     if (scene.graph.kind(id) != Kind::Paint) continue;
-    const std::uint32_t material = surfaces[static_cast<std::size_t>(scene.graph.params(id)[0])].material;
-    below[id] = join(below[id], {material, transmits(materials[material]) ? material : kNone, false});
+    below[id] = paint(below[id], surfaces[surface_of(scene.graph, id)].material, materials);
   }
   return below;
 }
@@ -50,7 +65,9 @@ struct Body {
 // Takes the union apart; the bodies are added to `graph`, a copy of the scene's.
 class Bodies {
  public:
-  Bodies(const std::vector<Painted>& below, Graph& graph) : below_(below), graph_(graph) {}
+  Bodies(const std::vector<Painted>& below, std::span<const Surface> surfaces, std::span<const Material> materials,
+         Graph& graph)
+      : below_(below), surfaces_(surfaces), materials_(materials), graph_(graph) {}
 
   std::vector<Body> of(NodeId root) {
     pending_ = {{root, {}}};
@@ -87,7 +104,9 @@ class Bodies {
     NodeId node = part.node;
     for (std::size_t i = part.around.size(); i-- > 0;) {
       const NodeId outer = part.around[i];
-      if (painted.one == kNone) painted = below_[outer];
+      if (graph_.kind(outer) == Kind::Paint) {
+        painted = paint(painted, surfaces_[surface_of(graph_, outer)].material, materials_);
+      }
       const std::vector<double> params(graph_.params(outer).begin(), graph_.params(outer).end());
       const Origin origin = graph_.origin(outer);
       node = graph_.add(graph_.kind(outer), params, std::span(&node, 1), origin);
@@ -97,6 +116,8 @@ class Bodies {
   }
 
   const std::vector<Painted>& below_;
+  std::span<const Surface> surfaces_;
+  std::span<const Material> materials_;
   Graph& graph_;
   std::vector<Part> pending_;
   std::vector<Body> bodies_;
@@ -144,7 +165,7 @@ std::vector<MediumScene> media_of(const Scene& scene, std::span<const Surface> s
   std::vector<MediumScene> media;
   if (below[scene.root].transparent == kNone) return media;
   Graph graph = scene.graph;
-  const std::vector<Body> bodies = Bodies(below, graph).of(scene.root);
+  const std::vector<Body> bodies = Bodies(below, surfaces, materials, graph).of(scene.root);
   const std::vector<Knowledge> known = analyse(graph);
   for (std::uint32_t material = 0; material < materials.size(); ++material) {
     const auto is_its = [&](const Body& body) { return body.transparent && body.material == material; };
@@ -154,20 +175,32 @@ std::vector<MediumScene> media_of(const Scene& scene, std::span<const Surface> s
   return media;
 }
 
-bool mixes_materials(const Scene& scene, std::span<const Surface> surfaces) {
+void mark_mixed(const Scene& scene, std::span<const Material> materials, std::span<Surface> surfaces) {
+  const Graph& graph = scene.graph;
   const std::vector<bool> reached = reachable(scene);
-  std::vector<Painted> below(scene.root + 1);
+  const std::vector<Painted> below = painted_below(scene, surfaces, materials);
+  const auto mixes = [&](NodeId id) {
+    const bool several = below[id].several || (below[id].bare && below[id].one != kNone);
+    return several && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
+  };
+  const auto mark = [&](NodeId paint) { surfaces[surface_of(graph, paint)].mixed = true; };
+  // Upwards: what is bare in such a blend is of the next Paint above it.
+  std::vector<bool> bare_in_mix(scene.root + 1);
   for (NodeId id = 0; id <= scene.root; ++id) {
     if (!reached[id]) continue;
-    for (const NodeId child : scene.graph.children(id)) below[id] = join(below[id], below[child]);
-    const Kind kind = scene.graph.kind(id);
-    if (kind == Kind::Paint) {
-      const std::uint32_t material = surfaces[static_cast<std::size_t>(scene.graph.params(id)[0])].material;
-      below[id] = join(below[id], {material, kNone, false});
-    }
-    if (below[id].several && (is_blend(kind) || kind == Kind::Morph)) return true;
+    bool some = mixes(id) && below[id].bare;
+    for (const NodeId child : graph.children(id)) some = some || bare_in_mix[child];
+    const bool paints = graph.kind(id) == Kind::Paint;
+    if (some && paints) mark(id);
+    bare_in_mix[id] = some && !paints;
   }
-  return false;
+  // Downwards: all that is painted within one.
+  std::vector<bool> within(scene.root + 1);
+  for (NodeId id = scene.root + 1; id-- > 0;) {
+    if (!reached[id]) continue;
+    if (within[id] && graph.kind(id) == Kind::Paint) mark(id);
+    for (const NodeId child : graph.children(id)) within[child] = within[child] || within[id] || mixes(id);
+  }
 }
 
 }  // namespace fathom::compiler

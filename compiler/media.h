@@ -26,7 +26,7 @@ struct MediumScene {
 std::vector<MediumScene> media_of(const Scene& scene, std::span<const Surface> surfaces,
                                   std::span<const Material> materials);
 
-// Whether a blend has parts of different materials, so that a point can have shares of several.
-bool mixes_materials(const Scene& scene, std::span<const Surface> surfaces);
+// Sets Surface::mixed.
+void mark_mixed(const Scene& scene, std::span<const Material> materials, std::span<Surface> surfaces);
 
 }  // namespace fathom::compiler

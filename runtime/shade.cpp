@@ -114,7 +114,7 @@ void Integrator::sample_bsdf(Vertex& v) {
 void Integrator::find_material(Vertex& v) {
   const std::uint32_t number = v.point->material;
   const glm::dvec3 place = v.hit->position;
-  if (world_.scene.mixes_materials) {
+  if (world_.scene.surfaces[v.point->surface].mixed) {
     const vm::SurfaceShares shares = find_shares(field(v.space.field), place, scratch_);
     if (shares.count > 1) {
       v.made = mix_of(shares, place);

@@ -68,5 +68,15 @@ TEST_CASE("media: bodies are told apart within moved groups", "[compiler]") {
   CHECK(value(scene.media[0], {0, 0.5, 0}) > 0);
 }
 
+// Once, the part without a material of its own was taken for its neighbour's.
+TEST_CASE("media: a body that has its material from above", "[compiler]") {
+  const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "material": "glass", "of": [
+      {"type": "sphere", "radius": 1},
+      {"type": "sphere", "radius": 1, "translate": [5, 0, 0], "material": "table"}]})");
+  REQUIRE(scene.media.size() == 1);
+  CHECK(value(scene.media[0], {0, 0, 0}) < 0);
+  CHECK(value(scene.media[0], {5, 0, 0}) > 0);
+}
+
 }  // namespace
 }  // namespace fathom::compiler

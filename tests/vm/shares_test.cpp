@@ -18,6 +18,13 @@ compiler::CompiledScene blend_of(const std::string& combinator) {
         {"type": "sphere", "radius": 1, "translate": [9, 0, 0], "material": "c"}]})");
 }
 
+// A digit for each surface.
+std::string mixed(const compiler::CompiledScene& scene) {
+  std::string digits;
+  for (const compiler::Surface& surface : scene.surfaces) digits += surface.mixed ? '1' : '0';
+  return digits;
+}
+
 double share_of(const compiler::CompiledScene& scene, const char* material, glm::dvec3 place) {
   Workspace workspace;
   const SurfaceShares shares = evaluate_shares(scene.surface, place, workspace);
@@ -33,7 +40,7 @@ double share_of(const compiler::CompiledScene& scene, const char* material, glm:
 
 TEST_CASE("shares: along a smooth blend they are Quilez's mix factor", "[vm]") {
   const auto scene = blend_of(R"("type": "smooth_union", "k": 0.6)");
-  CHECK(scene.mixes_materials);
+  CHECK(mixed(scene) == "110");
   for (double x = -1.5; x < 3; x += 0.0625) {
     const glm::dvec3 p(x, 0.9, 0.1);
     const double a = std::sqrt(x * x + 0.82) - 1, b = std::sqrt((x - 1.5) * (x - 1.5) + 0.82) - 1;
@@ -53,12 +60,23 @@ TEST_CASE("shares: far from a blend, and in a plain union, one surface has all",
     CHECK(share_of(scene, "b", {2.5, 0, 0}) == 1);
     CHECK(share_of(scene, "c", {8, 0, 0}) == 1);
   }
-  CHECK_FALSE(blend_of(R"("type": "union")").mixes_materials);
+  CHECK(mixed(blend_of(R"("type": "union")")) == "000");
+}
+
+TEST_CASE("shares: what a blend mixes is known, also where a part has its material from above", "[vm]") {
+  const auto scene = tests::compiled(R"({"version": 1,
+      "materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}},
+      "objects": [{"type": "smooth_union", "k": 0.5, "material": "a", "of": [{"type": "sphere", "radius": 1},
+          {"type": "sphere", "radius": 1, "translate": [1.5, 0, 0], "material": "b"}]},
+        {"type": "smooth_union", "k": 0.5, "material": "a", "of": [{"type": "sphere", "radius": 1, "translate": [5, 0, 0]},
+          {"type": "sphere", "radius": 1, "translate": [6, 0, 0], "material": "a"}]}]})");
+  CHECK(mixed(scene) == "110");
+  CHECK(share_of(scene, "b", {0.75, 0.9, 0}) == Approx(0.5));
 }
 
 TEST_CASE("shares: halfway between two of one shape each has half, whatever joins them", "[vm]") {
-  for (const char* combinator : {R"("type": "smooth_union", "k": 0.5)",
-                                 R"("type": "round_union", "radius": 0.5)", R"("type": "morph", "t": 0.5)"}) {
+  for (const char* combinator : {R"("type": "smooth_union", "k": 0.5)", R"("type": "round_union", "radius": 0.5)",
+                                 R"("type": "morph", "t": 0.5)"}) {
     INFO(combinator);
     const auto scene = blend_of(combinator);
     CHECK(share_of(scene, "a", {0.75, 0.7, 0}) == Approx(0.5).epsilon(1e-9));
