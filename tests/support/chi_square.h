@@ -2,7 +2,9 @@
 //
 // The sphere is cut into cells of polar angle and azimuth; the density is integrated over each (adaptive Gauss rule,
 // in double) and held against what fell into it. Cells that expect fewer than 5 go together, and what was not drawn
-// at all is one more cell: a density may integrate to less than 1. As in Wenzel Jakob's chi2 tests of Nori, Mitsuba
+// at all is one more cell: a density may integrate to less than 1. A step of the density must run along sides of
+// cells: of what it cuts off a corner the rule may see nothing, and stop (a disc's rim across cells of 4.5 degrees
+// cost 4e-5 of its integral, which a million samples show). As in Wenzel Jakob's chi2 tests of Nori, Mitsuba
 // and pbrt (2012-2024), after Press et al., "Numerical Recipes".
 #pragma once
 
