@@ -43,9 +43,16 @@ ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, co
 // What fell into cells against what was expected to.
 ChiSquare pearson(std::span<const double> counts, std::span<const double> expected);
 
-// Of a function of the direction over the sphere, by as many adaptive rules as there are cells of `rows` x 2 `rows`;
-// a cell is halved both ways until it changes by `tolerance` or less.
-double sphere_integral(const DirectionPdf& f, glm::vec3 pole, int rows, double tolerance);
+struct SphereRule {
+  glm::vec3 pole{0, 0, 1};
+  int rows = 12;  // of twice as many cells
+  double tolerance = 1e-6;
+  std::optional<double> step;         // polar angle at which the function may jump: a side of cells, too
+  std::span<const glm::vec3> guides;  // directions drawn about as the function is large
+};
+// Of a function of the direction over the sphere, by adaptive rules: a cell is halved both ways until few guides are
+// in it, so that no peak hides between the points of a rule, and then until it changes by `tolerance` or less.
+double sphere_integral(const DirectionPdf& f, const SphereRule& rule);
 
 // The level that each of `tests` independent tests is held to so that all together have the level alpha (Sidak 1967).
 double sidak(double alpha, int tests);
