@@ -262,6 +262,13 @@ glm::vec3 Principled::pass_boundary(glm::vec3 m) const {
   return below(reflect_about(wo_, m));
 }
 
+glm::vec3 Principled::straight_through() const {
+  const glm::vec3 holes(1 - opacity_);
+  if (!thin_ || !smooth_boundary_) return holes;
+  const float cos = std::min(wo_.z, 1.0f), coat = inside_ ? coat_passes(cos) : coat_passes_o_;
+  return holes + boundary_passes(1 - fresnel(cos, eta_)) * (opacity_ * coat);
+}
+
 BsdfValue Principled::evaluate(glm::vec3 wi) const {
   BsdfValue value;
   if (wi.z > 0) {
