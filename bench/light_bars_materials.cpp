@@ -27,19 +27,24 @@ constexpr GgxRow kGgx[] = {{0.1f, {0.98830, 0.98456, 0.96921, 0.9046}},
 // integrated, and that of what mirrors and clear panes give.
 double albedo(const MaterialCase& c, float cos, int rows) {
   const runtime::Bsdf bsdf = c.bsdf(test::towards(cos, 0.2f));
-  const double index2 = static_cast<double>(c.bending() * c.bending());
+  const double index = static_cast<double>(c.bending());
   const auto greatest = [](glm::vec3 v) { return static_cast<double>(std::max({v.x, v.y, v.z})); };
-  double sum = test::sphere_integral(
-      [&](glm::vec3 wi) { return greatest(bsdf.evaluate(wi).f) * (glm::dot(wi, test::kNormal) < 0 ? index2 : 1); },
-      test::kNormal, rows, 1e-6);
-  constexpr int kLobes = 1 << 13;
+  constexpr int kLobes = 1 << 13, kLobesPerGuide = 8;
+  double sum = 0;
+  std::vector<glm::vec3> guides;
   for (int i = 0; i < kLobes; ++i) {
     runtime::Sampler sampler(13, static_cast<std::uint32_t>(i), 0, 0);
     const float lobe = (static_cast<float>(i) + 0.5f) / kLobes;
     const runtime::BsdfSample s = bsdf.sample(lobe, sampler.next2());
     if (s.pdf == 0) sum += greatest(s.weight) * static_cast<double>(s.eta_scale) / kLobes;
+    if (s.pdf > 0 && i % kLobesPerGuide == 0) guides.push_back(s.wi);
   }
-  return sum;
+  const auto f = [&](glm::vec3 wi) {
+    return greatest(bsdf.evaluate(wi).f) * (glm::dot(wi, test::kNormal) < 0 ? index * index : 1);
+  };
+  // Facets that refract lie beyond the horizon from where wo + eta wi does, and GGX has some that lie at it.
+  const double step = std::acos(-std::min(static_cast<double>(cos) / index, 1.0));
+  return sum + test::sphere_integral(f, {test::kNormal, rows, 1e-6, step, guides});
 }
 
 void ggx_table(BarTable& table) {
@@ -50,7 +55,7 @@ void ggx_table(BarTable& table) {
       const double found = 1 - static_cast<double>(lost.at(kGgxCosines[i]));
       worst = std::max(worst, std::abs(found - row.albedo[i]));
       compensated =
-          std::max(compensated, std::abs(albedo({"metal", test::metal(row.alpha)}, kGgxCosines[i], 40) - 1));
+          std::max(compensated, std::abs(albedo({"metal", test::metal(row.alpha)}, kGgxCosines[i], 20) - 1));
     }
   }
   table.at_most("B18", "P9: the table of a GGX mirror's albedo against two other quadratures, largest error", 2e-3,
@@ -116,16 +121,16 @@ void energy(BarTable& table, const LightCounts& counts) {
   const std::size_t cosines = std::size(test::kCosines);
   std::vector<double> found(cases.size() * cosines), apart(found.size());
   for_each_index(found.size(), [&](std::size_t i) {
-    const double coarse = albedo(cases[i / cosines], test::kCosines[i % cosines], 16);
-    found[i] = albedo(cases[i / cosines], test::kCosines[i % cosines], 24);
+    const double coarse = albedo(cases[i / cosines], test::kCosines[i % cosines], 20);
+    found[i] = albedo(cases[i / cosines], test::kCosines[i % cosines], 30);
     apart[i] = std::abs(found[i] - coarse);
   });
   const auto at = static_cast<std::size_t>(std::max_element(found.begin(), found.end()) - found.begin());
   const double unsure = *std::max_element(apart.begin(), apart.end());
-  table.at_most("B19",
-                fmt::format("energy: {} materials from {} directions, the most that is given back of 1 ({}, cos {})",
-                            cases.size(), cosines, cases[at / cosines].name, test::kCosines[at % cosines]),
-                1 + 1e-3, found[at]);
+  table.row("B19",
+            fmt::format("energy: {} materials from {} directions, the most that is given back of 1 ({}, cos {})",
+                        cases.size(), cosines, cases[at / cosines].name, test::kCosines[at % cosines]),
+            "<= 1.001", fmt::format("{:.5f}", found[at]), found[at] <= 1 + 1e-3);
   table.at_most("B19", "energy: two grids of the quadrature differ by at most", 1e-4, unsure);
 }
 

@@ -54,7 +54,8 @@ BsdfSample Bsdf::sample_transparent(float lobe) const {
 
 BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
   const Principled::Draw draw = layers_->principled.draw(lobe, u);
-  BsdfSample sample{.wi = layers_->frame.to_world(draw.wi), .through = draw.through, .straight = draw.straight};
+  BsdfSample sample{
+      .wi = layers_->frame.to_world(draw.wi), .through = draw.through, .straight = draw.straight && draw.delta};
   if (draw.through && !draw.straight) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
   if (draw.delta) {
     if (draw.straight) sample.wi = -wo_;  // bit for bit
@@ -70,6 +71,8 @@ BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
   }
   return sample;
 }
+
+glm::vec3 Bsdf::straight_through() const { return layers_ ? layers_->principled.straight_through() : glm::vec3(0); }
 
 BsdfValue Bsdf::evaluate(glm::vec3 wi) const {
   if (layers_) return layers_->principled.evaluate(layers_->frame.to_local(wi));

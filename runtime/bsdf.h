@@ -30,7 +30,7 @@ struct BsdfSample {
   glm::vec3 weight{0};    // f |cos| / pdf; black: absorbed
   float pdf = 0;          // per solid angle, of this wi over all lobes; 0 for a mirror's or a clear pane's
   bool through = false;   // wi is on the other side of the surface
-  bool straight = false;  // through, but the medium stays what it was: a hole by opacity, or a thin wall
+  bool straight = false;  // through as if nothing were there but a tint: a hole by opacity, or a smooth thin wall
   float eta_scale = 1;    // weight * eta_scale is without the scaling of radiance
 };
 
@@ -42,10 +42,11 @@ class Bsdf {
 
   BsdfSample sample(float lobe, glm::vec2 u) const;  // three uniform numbers in [0,1)
   BsdfValue evaluate(glm::vec3 wi) const;            // mirrors and clear panes count nothing
-  bool is_delta() const;                             // evaluate() is black everywhere
-  bool has_lobes() const;                            // sample() makes use of `lobe`
-  // The part of light that goes straight on in the medium it is in: by holes and through smooth thin walls.
-  glm::vec3 straight_through() const { return layers_ ? layers_->principled.straight_through() : glm::vec3(0); }
+  // What of the light from -wo goes straight on to wo: the mean of sample()'s weights where it is straight. A ray
+  // towards a light may go on behind the surface and bring so much of it.
+  glm::vec3 straight_through() const;
+  bool is_delta() const;   // evaluate() is black everywhere
+  bool has_lobes() const;  // sample() makes use of `lobe`
 
  private:
   struct Layers {

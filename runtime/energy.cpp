@@ -11,9 +11,9 @@ namespace fathom::runtime {
 namespace {
 
 constexpr int kNodes = AlbedoRow::kNodes;
-// What the tables are made with: integrals that err by less than 1e-3, from the denser side 3e-3, where total
-// reflection breaks the integrand.
-constexpr Lattice kOutside{377, 233}, kInside{1597, 987};
+// What the tables are made with: integrals that err by less than 1e-3, from the denser side, where total reflection
+// breaks the integrand, with more points.
+constexpr Lattice kOutside{377, 233}, kInside{2584, 1597};
 constexpr float kLeastAlpha = 1e-4f;
 
 // Four neighbours of a place among nodes 0, 1 ... and what each of them counts: Lagrange's cubic.

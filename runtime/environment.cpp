@@ -15,6 +15,8 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr double kDegree = std::numbers::pi / 180;
+// How far rounding to floats moves a unit vector, at most: half of 2^-24 along each axis.
+constexpr double kRounding = 0x1p-24;
 
 // Counter-clockwise about y, seen from above.
 glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
@@ -92,14 +94,15 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
 void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
   const double sine = vm::real::sin(degrees * kDegree), sin2 = sine * sine;
   if (!(luminance(irradiance) > 0)) return;
-  discs_.push_back({direction, sin2 / (1 + std::sqrt(1 - sin2)),
+  const double height = sin2 / (1 + std::sqrt(1 - sin2));
+  discs_.push_back({direction, height, std::sqrt(2 * height) + kRounding,
                     irradiance / static_cast<float>(std::numbers::pi * sin2), luminance(irradiance)});
 }
 
-// By the chord, whose square is twice the height: the cosine of a small angle has few digits.
+// By the chord: the cosine of a small angle has few digits.
 bool Environment::Disc::holds(glm::vec3 w) const {
   const glm::dvec3 chord = glm::normalize(glm::dvec3(w)) - direction;
-  return glm::dot(chord, chord) <= 2 * height;
+  return glm::dot(chord, chord) <= rim * rim;
 }
 
 glm::vec3 Environment::pixel(glm::vec3 direction) const {
@@ -162,8 +165,8 @@ glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u
   if (chosen == nullptr) return turned(table_.sample(u), turn_sine_, turn_cosine_);
   const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
   const SinCos turn = sincos_turn(u.y);
-  return to_frame(glm::vec3(chosen->direction),
-                  {sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
+  const FrameOf<double> frame(chosen->direction);
+  return frame.to_world({sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
 }
 
 float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {

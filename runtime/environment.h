@@ -37,6 +37,7 @@ class Environment {
   struct Disc {
     glm::dvec3 direction;  // towards its middle
     double height;         // 1 - cos of its angle
+    double rim;            // chord from its middle to its rim, and as much more as rounding may move what was drawn
     glm::vec3 radiance;
     float irradiance;  // luminance, of what faces it
 

@@ -1,10 +1,10 @@
 // Non-local means of a picture that is there twice, with independent noise.
 //
-// A pixel becomes the mean of a window around it. A neighbour counts as much as the patch around it is like the patch
-// around the pixel (Buades, Coll, Morel, "A Non-Local Algorithm for Image Denoising", CVPR 2005), the noise that is
-// to be expected between them taken off (Rousselle, Knaus, Zwicker, "Adaptive Rendering with Non-Local Means
-// Filtering", SIGGRAPH Asia 2012, section 3), and as what is seen there is alike (Rousselle, Manzi, Zwicker 2013).
-// Each copy's weights come from the other copy.
+// A pixel becomes the mean of a round window that fades out. A neighbour counts as much as the patch around it is
+// like the patch around the pixel (Buades, Coll, Morel, "A Non-Local Algorithm for Image Denoising", CVPR 2005), the
+// noise that is to be expected between them taken off (Rousselle, Knaus, Zwicker, "Adaptive Rendering with Non-Local
+// Means Filtering", SIGGRAPH Asia 2012, section 3), and as what is seen there is alike (Rousselle, Manzi, Zwicker
+// 2013). Each copy's weights come from the other copy.
 //
 // Since weights do not depend on the noise they weigh, Stein's unbiased risk estimate is short: a mean F of y with
 // the share s for the pixel itself has the expected squared error E |F - y|^2 + (2 s - 1) var y. Three sets of

@@ -186,13 +186,6 @@ bool Principled::is_delta() const {
   return !rough && chance_[kPigment] + chance_[kLost] + chance_[kLostThrough] == 0;
 }
 
-glm::vec3 Principled::straight_through() const {
-  glm::vec3 passes(1 - opacity_);
-  if (!thin_ || !smooth_boundary_ || !(glass_ > 0)) return passes;
-  const float cos = std::clamp(wo_.z, 0.0f, 1.0f), seen = inside_ ? coat_passes(cos) : 1;
-  return passes + boundary_passes(1 - fresnel(cos, eta_)) * (opacity_ * coat_passes_o_ * seen);
-}
-
 float Principled::coat_passes(float cos) const { return coat_weight_ > 0 ? 1 - coat_weight_ * coat_row_.at(cos) : 1; }
 
 // `row`, of directions outside, times what the coat lets through of them.
@@ -267,6 +260,13 @@ Principled::Draw Principled::draw_boundary(float lobe, glm::vec2 u) const {
 glm::vec3 Principled::pass_boundary(glm::vec3 m) const {
   if (!thin_) return refract_through(wo_, m, eta_);
   return below(reflect_about(wo_, m));
+}
+
+glm::vec3 Principled::straight_through() const {
+  const glm::vec3 holes(1 - opacity_);
+  if (!thin_ || !smooth_boundary_) return holes;
+  const float cos = std::min(wo_.z, 1.0f), coat = inside_ ? coat_passes(cos) : coat_passes_o_;
+  return holes + boundary_passes(1 - fresnel(cos, eta_)) * (opacity_ * coat);
 }
 
 BsdfValue Principled::evaluate(glm::vec3 wi) const {

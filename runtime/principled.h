@@ -54,8 +54,8 @@ class Principled {
   Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool inside);
   Draw draw(float lobe, glm::vec2 u) const;
   BsdfValue evaluate(glm::vec3 wi) const;
+  glm::vec3 straight_through() const;  // of the light from -wo; by holes and, where smooth, a thin wall
   bool is_delta() const;
-  glm::vec3 straight_through() const;  // as Bsdf's
   float eta() const { return eta_; }  // that light is bent by
 
  private:

@@ -259,7 +259,7 @@ void Integrator::go_with(const Vertex& v) {
   path.throughput *= next.weight;
   path.eta_scale *= next.eta_scale;
   // What goes straight through has not left the place where light was looked for.
-  if (!next.straight || next.pdf > 0) {
+  if (!next.straight) {
     path.from = v.query;
     path.pdf = next.pdf;
   }

@@ -23,19 +23,22 @@ inline float square_to_cosine_hemisphere_pdf(glm::vec3 w) { return w.z > 0 ? w.z
 
 // Axes of unit length about the unit vector z; all directions are unit vectors.
 // Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017, listing 3.
-struct Frame {
-  glm::vec3 x, y, z;
+template <class T>
+struct FrameOf {
+  using Vec = glm::vec<3, T>;
+  Vec x, y, z;
 
-  explicit Frame(glm::vec3 n) : z(n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1 / (sign + n.z);
-    const float b = n.x * n.y * a;
-    x = glm::vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    y = glm::vec3(b, sign + n.y * n.y * a, -n.y);
+  explicit FrameOf(Vec n) : z(n) {
+    const T sign = std::copysign(T{1}, n.z);
+    const T a = -1 / (sign + n.z);
+    const T b = n.x * n.y * a;
+    x = Vec(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    y = Vec(b, sign + n.y * n.y * a, -n.y);
   }
-  glm::vec3 to_world(glm::vec3 local) const { return x * local.x + y * local.y + z * local.z; }
-  glm::vec3 to_local(glm::vec3 world) const { return {glm::dot(world, x), glm::dot(world, y), glm::dot(world, z)}; }
+  Vec to_world(Vec local) const { return x * local.x + y * local.y + z * local.z; }
+  Vec to_local(Vec world) const { return {glm::dot(world, x), glm::dot(world, y), glm::dot(world, z)}; }
 };
+using Frame = FrameOf<float>;
 
 // `local` in the frame whose z axis is n.
 inline glm::vec3 to_frame(glm::vec3 n, glm::vec3 local) { return Frame(n).to_world(local); }

@@ -266,6 +266,60 @@ TEST_CASE("bsdf: what is not opaque has holes", "[runtime]") {
   CHECK(albedo({"hole", m}, 0.4f, 20000).mean == Approx(1).margin(1e-2));
 }
 
+TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[runtime]") {
+  MaterialPoint pane = glass(0, true), hole = principled(0.5f), mirror;
+  pane.transmission_color = {0.9f, 0.5f, 0.3f};
+  pane.transmission = 0.8f;
+  pane.coat_weight = 0.7f;
+  pane.coat_color = {0.5f, 0.9f, 0.7f};
+  pane.metalness = 0.25f;
+  pane.opacity = 0.6f;
+  hole.opacity = 0.25f;
+  mirror.type = Material::Type::Specular;
+  const Case cases[] = {{"pane", pane},
+                        {"pane from inside", pane, true},
+                        {"hole", hole},
+                        {"clear pane", glass(0, true)},
+                        {"rough pane", glass(0.2f, true)},
+                        {"glass", glass(0)},
+                        {"mix", test::mix()},
+                        {"mirror", mirror},
+                        {"diffuse", {}}};
+  for (const Case& c : cases) {
+    for (float cos : kCosines) {
+      CAPTURE(c.name, cos);
+      const glm::vec3 wo = towards(cos, 0.2f);
+      const Bsdf bsdf = c.bsdf(wo);
+      glm::dvec3 mean(0);
+      constexpr int kDraws = 20000;
+      for (int i = 0; i < kDraws; ++i) {
+        const BsdfSample s = bsdf.sample((static_cast<float>(i) + 0.5f) / kDraws, {0.3f, 0.6f});
+        if (!s.straight) continue;
+        if (s.wi != -wo || s.pdf != 0 || !s.through || s.eta_scale != 1) FAIL("not straight");
+        mean += glm::dvec3(s.weight) / static_cast<double>(kDraws);
+      }
+      for (int i = 0; i < 3; ++i) CHECK(bsdf.straight_through()[i] == Approx(mean[i]).margin(2e-4));
+    }
+  }
+  const auto facing = [](const MaterialPoint& m) {
+    return Bsdf(m, kNormal, kNormal, m.ior, false).straight_through();
+  };
+  CHECK(facing(hole) == glm::vec3(0.75f));
+  CHECK(facing(glass(0, true)).x == Approx(0.96 / 1.04).epsilon(1e-5));
+  CHECK(facing(glass(0.2f, true)) == glm::vec3(0));
+}
+
+TEST_CASE("bsdf: light goes straight through either way alike", "[runtime]") {
+  MaterialPoint pane = glass(0, true);
+  pane.coat_weight = 0.7f;
+  pane.opacity = 0.6f;
+  for (float cos : kCosines) {
+    const glm::vec3 wo = towards(cos, 0.2f);
+    const Bsdf here(pane, kNormal, wo, 1.5f, false), there(pane, -kNormal, -wo, 1 / 1.5f, true);
+    CHECK(glm::length(here.straight_through() - there.straight_through()) < 1e-6f);
+  }
+}
+
 TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[runtime]") {
   const auto is_delta = [](const MaterialPoint& m) { return Bsdf(m, kNormal, kNormal, 1.5f, false).is_delta(); };
   MaterialPoint mirror;

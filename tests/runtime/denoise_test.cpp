@@ -177,6 +177,36 @@ TEST_CASE("denoise: a firefly goes down and its light stays near", "[runtime]") 
   for (const float value : result) REQUIRE((value >= 0 && std::isfinite(value)));
 }
 
+TEST_CASE("denoise: a firefly has no edge where the window ends", "[runtime]") {
+  Scene scene = draw(
+      64, 64,
+      [](int, int) {
+        return Surface{{1, 1, 1}, {0, 0, 1}, 2, 1};
+      },
+      exponential(64));
+  for (std::size_t c = 0; c < 3; ++c) scene.first[3 * scene.at(32, 32) + c] = 1e4f;
+  const Pixels result = denoise(scene.input(), 1);
+  // The mean of what it adds so many pixels away.
+  const auto added = [&](double from, double to) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const double away = std::hypot(x - 32, y - 32);
+        if (away < from || away >= to) continue;
+        sum += static_cast<double>(result[3 * scene.at(x, y)]) - 1;
+        ++count;
+      }
+    }
+    return sum / count;
+  };
+  const double near = added(0, 4);
+  CHECK(near > 5);
+  CHECK(added(4, 6) < 0.9 * near);
+  CHECK(added(7.5, 8.5) < 0.3 * near);  // where the window ends
+  CHECK(added(9, 12) < 0.02 * near);    // the corners of the square around it
+}
+
 TEST_CASE("denoise: scales with the light", "[runtime]") {
   const Scene scene = draw(48, 40, room, exponential(2));
   Scene bright = scene;

@@ -64,6 +64,17 @@ TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the me
   }
 }
 
+// So that materials give back at most a thousandth more than they get.
+TEST_CASE("energy: what glass loses on leaving it is known to 5e-4", "[runtime]") {
+  for (const float alpha : {0.1f, 0.25f, 0.5f, 0.8f}) {
+    for (const float cos : {0.05f, 0.2f, 0.5f}) {
+      CAPTURE(alpha, cos);
+      CHECK(dielectric_loss(alpha, 1 / 1.5f).at(cos) ==
+            Approx(integrate_dielectric(cos, alpha, 1 / 1.5f, kFine).lost).margin(5e-4));
+    }
+  }
+}
+
 TEST_CASE("energy: a row's average is that of the function it gives", "[runtime]") {
   for (const AlbedoRow& row :
        {smooth_albedo(1.5f), conductor_loss(0.05f), conductor_loss(0.01f), dielectric_loss(0.6f, 1 / 1.5f)}) {

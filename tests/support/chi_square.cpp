@@ -14,10 +14,21 @@ namespace {
 // Gauss's rule of 3 points on [-1,1].
 constexpr std::array<double, 3> kPlaces{-0.7745966692414834, 0, 0.7745966692414834};
 constexpr std::array<double, 3> kWeights{5.0 / 9, 8.0 / 9, 5.0 / 9};
-constexpr int kMostDepth = 7;
+constexpr int kMostDepth = 7, kMostGuidedDepth = 12;
+constexpr std::size_t kGuides = 8;  // in a cell, at most
+
+// Polar angle and azimuth, in [-pi,pi].
+struct Place {
+  double theta, phi;
+};
+Place place_of(glm::vec3 local) {
+  const glm::dvec3 w(local);
+  return {std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z), std::atan2(w.y, w.x)};
+}
 
 struct Cell {
   double theta0, theta1, phi0, phi1;
+  bool holds(Place p) const { return p.theta >= theta0 && p.theta < theta1 && p.phi >= phi0 && p.phi < phi1; }
 };
 
 // [row * columns + column]
@@ -41,6 +52,15 @@ class Integral {
   double over(const Cell& c) const {
     double sum = 0;
     for (const Cell& part : quarters(c)) sum += refine(part, rule(part), kMostDepth);
+    return sum;
+  }
+
+  double guided(const Cell& c, std::span<const Place> guides, int depth) const {
+    std::vector<Place> within;
+    std::copy_if(guides.begin(), guides.end(), std::back_inserter(within), [&](Place p) { return c.holds(p); });
+    if (within.size() <= kGuides || depth == 0) return over(c);
+    double sum = 0;
+    for (const Cell& part : quarters(c)) sum += guided(part, within, depth - 1);
     return sum;
   }
 
@@ -111,10 +131,10 @@ std::vector<double> count(const DirectionSampler& sample, const runtime::Frame& 
       ++counts.back();
       continue;
     }
-    const glm::dvec3 w(frame.to_local(*drawn));
-    const double theta = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z), phi = std::atan2(w.y, w.x) + M_PI;
-    const int row = std::clamp(static_cast<int>(theta / M_PI * setup.rows), 0, setup.rows - 1);
-    const int column = std::clamp(static_cast<int>(phi / (2 * M_PI) * setup.columns), 0, setup.columns - 1);
+    const Place place = place_of(frame.to_local(*drawn));
+    const int row = std::clamp(static_cast<int>(place.theta / M_PI * setup.rows), 0, setup.rows - 1);
+    const double turn = (place.phi + M_PI) / (2 * M_PI);
+    const int column = std::clamp(static_cast<int>(turn * setup.columns), 0, setup.columns - 1);
     ++counts[static_cast<std::size_t>(row * setup.columns + column)];
   }
   return counts;
@@ -176,10 +196,19 @@ ChiSquare chi_square(const DirectionSampler& sample, const DirectionPdf& pdf, co
   return result;
 }
 
-double sphere_integral(const DirectionPdf& f, glm::vec3 pole, int rows, double tolerance) {
-  const Integral integral(f, runtime::Frame(pole), tolerance);
+double sphere_integral(const DirectionPdf& f, const SphereRule& rule) {
+  const runtime::Frame frame(rule.pole);
+  const Integral integral(f, frame, rule.tolerance);
+  std::vector<Place> places;
+  for (const glm::vec3 guide : rule.guides) places.push_back(place_of(frame.to_local(guide)));
   double sum = 0;
-  for (const Cell& cell : cells(rows, 2 * rows)) sum += integral.over(cell);
+  for (const Cell& cell : cells(rule.rows, 2 * rule.rows)) {
+    Cell above = cell, below = cell;
+    above.theta1 = below.theta0 = std::clamp(rule.step.value_or(0), cell.theta0, cell.theta1);
+    for (const Cell& part : {above, below}) {
+      if (part.theta0 < part.theta1) sum += integral.guided(part, places, kMostGuidedDepth);
+    }
+  }
   return sum;
 }
 
