@@ -200,7 +200,7 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
     const auto scene = scene_of("\"objects\": [" + plate + "]");
     Random random(6);
     std::vector<Ray> rays;
-    while (static_cast<int>(rays.size()) < test::few(5000)) {
+    while (static_cast<int>(rays.size()) < test::few(2400)) {
       const glm::dvec3 d = random.direction(), through(random.uniform(-0.7, 0.7), 0, random.uniform(-0.7, 0.7));
       if (std::abs(d.y) > 0.1) rays.push_back({to_float(through - 5.0 * d), to_float(d)});
     }

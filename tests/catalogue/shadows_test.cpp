@@ -144,7 +144,7 @@ double light_beside_the_ball(double x, double z) {
 // The camera looks down at 2 degrees, under the ball: the first row of floor is 0.01 from the touch.
 TEST_CASE("S3: the shadow beside a ball that all but touches a floor", "[catalogue]") {
   constexpr int kWidth = 48, kHeight = 12;
-  const int samples = test::few(256);
+  const int samples = test::few(128);
   const double sine = std::sin(M_PI / 90), pixel = 0.02 / kWidth, row = pixel / sine,
                middle = 0.01 + kHeight / 2 * row;
   const RenderResult result =

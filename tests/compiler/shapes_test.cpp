@@ -102,7 +102,7 @@ TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judg
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const auto truth = brute_force(row, s.params);
-      for (int i = 0; i < 15; ++i) {
+      for (int i = 0; i < 10; ++i) {
         const dvec3 p = random_point(random);
         const double judged = judge_distance(s.scene.graph, s.scene.root, p), found = truth(p);
         INFO(s.name << ", seed " << seed << ", at " << place(p));

@@ -99,7 +99,7 @@ TEST_CASE("regions: the field cut off at the leaf's limit, bit for bit", "[regio
       RegionScratch scratch;
       RealScratch real_scratch;
       std::size_t equal = 0, limited = 0, far = 0;
-      for (int seed = 0; seed < test::few(60); ++seed) {
+      for (int seed = 0; seed < test::few(24); ++seed) {
         // Within, about, and far outside.
         const Sample at = sample(kMostPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
         std::vector<float> whole(kMostPoints), cut(kMostPoints);
