@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "runtime/cli/cost_map.h"
-#include "runtime/cli/file_watch.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/progress.h"
@@ -20,6 +19,7 @@
 #include "runtime/cli/verbosity.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise.h"
+#include "runtime/file_watch.h"
 #include "runtime/film_channels.h"
 #include "runtime/image_exr.h"
 #include "runtime/image_io.h"
@@ -106,7 +106,7 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
 
 // For --watch: the scene's file, and whether the render under way is no longer of it.
 struct Watching {
-  FileWatch files;
+  runtime::FileWatch files;
   std::atomic<bool> changed = false;
 };
 
@@ -210,15 +210,17 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
 
 // Until a signal ends the program: files are written whole or not at all, so any moment will do.
 [[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
-  Watching watching{FileWatch({request.scene.path})};
+  Watching watching{runtime::FileWatch({request.scene.path})};
   while (true) {
     watching.changed = false;
     render_once(request, streams, &watching);
-    if (watching.changed) continue;
-    if (!request.quiet) note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
+    if (!watching.changed && !request.quiet) {
+      note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
+    }
     streams.err.flush();
     streams.out.flush();
-    while (!watching.files.changed()) std::this_thread::sleep_for(kWatchInterval);
+    do std::this_thread::sleep_for(runtime::kWatchInterval);
+    while (!watching.files.settled());
   }
 }
 

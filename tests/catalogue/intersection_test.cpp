@@ -8,6 +8,7 @@
 
 #include "runtime/certify.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/effort.h"
 
 namespace fathom::catalogue {
 namespace {
@@ -199,7 +200,7 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
     const auto scene = scene_of("\"objects\": [" + plate + "]");
     Random random(6);
     std::vector<Ray> rays;
-    while (rays.size() < 5000) {
+    while (static_cast<int>(rays.size()) < test::few(2400)) {
       const glm::dvec3 d = random.direction(), through(random.uniform(-0.7, 0.7), 0, random.uniform(-0.7, 0.7));
       if (std::abs(d.y) > 0.1) rays.push_back({to_float(through - 5.0 * d), to_float(d)});
     }
@@ -227,7 +228,7 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
 TEST_CASE("I8: a sphere from a hundred thousand units away", "[catalogue]") {
   const auto scene = scene_of(kSphere);
   const Field field = make_field(scene);
-  const std::vector<Ray> near = rays_at_sphere(20000, 5), far = rays_at_sphere(20000, 1e5);
+  const std::vector<Ray> near = rays_at_sphere(test::few(20000), 5), far = rays_at_sphere(test::few(20000), 1e5);
   const Judgement here = judge(march(field, near), near, sphere_distance);
   const Judgement there = judge(march(field, far), far, sphere_distance);
   CHECK(there.wrong() == 0);

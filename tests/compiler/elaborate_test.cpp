@@ -13,6 +13,7 @@
 #include "compiler/frontend/placement.h"
 #include "compiler/frontend/records.h"
 #include "tests/compiler/elaborated.h"
+#include "tests/support/effort.h"
 
 namespace {
 
@@ -299,7 +300,7 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
   CHECK(of_objects(nested(4000, R"({"type": "onion", "thickness": 1, "of": )", "}")).scene.graph.size() == 4002);
 
   std::string chain = R"("a0": {"type": "sphere", "radius": 1, "material": "red"})";
-  const int length = 100000;
+  const int length = few(100000);
   for (int i = 1; i <= length; ++i) chain += fmt::format(R"(, "a{}": {{"use": "a{}"}})", i, i - 1);
   const Elaborated e =
       of_objects(fmt::format(R"({{"use": "a{}"}})", length), kRedBlue + R"(, "nodes": {)" + chain + "}");
@@ -308,7 +309,7 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
 
 TEST_CASE("a long cycle is found without deep recursion", "[elaborate]") {
   std::string text = R"({"version": 1, "objects": [{"use": "a0"}], "nodes": {)";
-  const int length = 100000;
+  const int length = few(100000);
   for (int i = 0; i < length; ++i)
     text += fmt::format(R"({}"a{}": {{"use": "a{}"}})", i ? "," : "", i, (i + 1) % length);
   const Source source("scene.json", text + "}}");
@@ -343,8 +344,8 @@ TEST_CASE("every synonym leads to the right word", "[elaborate]") {
 }
 
 TEST_CASE("records name every property once", "[elaborate]") {
-  std::vector<const RecordSpec*> records = {&scene_record(),    &film_record(),     &render_record(),
-                                            &rotation_record(), &use_record(),      &parameter_record()};
+  std::vector<const RecordSpec*> records = {&scene_record(),    &film_record(), &render_record(),
+                                            &rotation_record(), &use_record(),  &parameter_record()};
   for (const RecordSpec& r : light_records()) records.push_back(&r);
   for (const RecordSpec& r : background_records()) records.push_back(&r);
   for (const RecordSpec& r : camera_records()) records.push_back(&r);

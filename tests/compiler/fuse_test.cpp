@@ -6,6 +6,7 @@
 #include <string>
 
 #include "compiler/lower.h"
+#include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "tests/vm/formula.h"
@@ -142,7 +143,7 @@ TEST_CASE("functions take coordinates, constants and locals for operands", "[fus
 }
 
 TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < few(400); ++seed) {
     Random random(seed);
     GraphOptions options;
     options.depth = 2 + static_cast<int>(seed % 4);
@@ -158,7 +159,7 @@ TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
     // Every instruction keeps the place it comes from.
     REQUIRE(once.debug.size() == verified(once).instructions());
   }
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+  for (int seed = 0; seed < few(1000); ++seed) {
     const vm::VerifiedProgram plain = formula(random_formula(seed));
     Random random(seed);
     INFO("formula, seed " << seed);

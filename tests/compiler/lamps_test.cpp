@@ -105,7 +105,7 @@ TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[lamp
 
 TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]") {
   std::string nodes = R"("n0": {"type": "sphere", "radius": 0.1})";
-  for (int i = 1; i <= 20; ++i) {
+  for (int i = 1; i <= 17; ++i) {
     nodes += fmt::format(
         R"(, "n{0}": {{"type": "union", "of": [{{"use": "n{1}"}}, {{"use": "n{1}", "translate": [{2}, 0, 0]}}]}})", i,
         i - 1, 1 << (i - 1));
@@ -120,7 +120,7 @@ TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]
     const Surface surface{"all", 0};
     found = find_lamps(scene, std::span(&surface, 1), std::span(&glow, 1)).size();
   };
-  const Source source("scene.json", R"({"version": 1, "nodes": {)" + nodes + R"(}, "objects": [{"use": "n20"}]})");
+  const Source source("scene.json", R"({"version": 1, "nodes": {)" + nodes + R"(}, "objects": [{"use": "n17"}]})");
   Diagnostics diagnostics;
   compile(source, diagnostics, options);  // it needs too many instructions
   CHECK(found == kMaxLamps);

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/golden.h"
 #include "vm/evaluate.h"
 
@@ -144,7 +145,7 @@ TEST_CASE("colours are materials", "[import]") {
 }
 
 TEST_CASE("the molecule is what its file says", "[import]") {
-  CHECK(farthest(molecule(), 200) < 1e-6);  // chains of 1000 blends: the reference adds in another form
+  CHECK(farthest(molecule(), test::few(200)) < 1e-6);  // chains of 1000 blends: the reference adds in another form
   const CompiledScene scene = compiled(molecule());
   CHECK(scene.surfaces.size() == 1);
   CHECK(scene.lipschitz < 1.001);

@@ -12,6 +12,7 @@
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
@@ -64,7 +65,7 @@ dvec3 origin_of(const std::string& objects, const std::string& camera = "[0, 0, 
 }  // namespace
 
 TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[origin]") {
-  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+  for (int seed = 0; seed < few(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, seed % 2 ? 3 : 30);
@@ -83,7 +84,7 @@ TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[ori
 }
 
 TEST_CASE("origin: a scene moved far off and back is as it was, to what a double holds there", "[origin]") {
-  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+  for (int seed = 0; seed < few(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e6);
@@ -103,7 +104,7 @@ TEST_CASE("origin: a scene moved far off and back is as it was, to what a double
 TEST_CASE("origin: float errors of a scene brought back from far are within the bound", "[origin][bounds]") {
   vm::Workspace workspace;
   int fine = 0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < few(400); ++seed) {
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e5);
     const Scene scene = optimised(compiler::moved(compiler::moved(scene_of(seed), -origin), origin));
@@ -128,7 +129,7 @@ TEST_CASE("origin: float errors of a scene brought back from far are within the 
     }
   }
   INFO(fine << " of 400 are as exact as near zero");
-  CHECK(fine > 300);
+  CHECK(fine > few(300));
 }
 
 TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {

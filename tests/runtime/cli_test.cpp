@@ -209,7 +209,7 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   CHECK(folder.run("check bad.json --error-format json").err.front() == '{');
 }
 
-TEST_CASE("cli: the scenes that come with the program have no errors and no warnings") {
+TEST_CASE("cli: the scenes that come with the program have no errors and no warnings", "[heavy]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;

@@ -11,6 +11,7 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/catalogue/departures.h"
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/random_scene.h"
 
 namespace {
@@ -72,7 +73,7 @@ TEST_CASE("convex fields: rays end where the search in double ends them, sooner"
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const compiler::CompiledScene compiled = tests::compiled(scene(seed));
     Field field = make_field(compiled);
-    for (const RaySet& set : make_ray_sets(compiled, field, 1500, seed)) {
+    for (const RaySet& set : make_ray_sets(compiled, field, test::few(240), seed)) {
       const std::vector<Arrival> exact = march(field, set.rays, {.method = Method::Certified}).arrivals;
       field.convex = true;
       compare(march(field, set.rays).arrivals, exact, led);
@@ -81,7 +82,7 @@ TEST_CASE("convex fields: rays end where the search in double ends them, sooner"
     }
   }
   CAPTURE(led.rays, led.wrong, plain.wrong, led.off, plain.off, led.evaluations, plain.evaluations);
-  CHECK(led.rays > 40000);
+  CHECK(led.rays > test::few(6000));
   CHECK(led.wrong <= plain.wrong);
   CHECK(led.off <= plain.off);
   CHECK(led.evaluations < 0.85 * static_cast<double>(plain.evaluations));
@@ -93,7 +94,8 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const compiler::CompiledScene compiled = tests::compiled(scene(seed));
     const Field field = make_field(compiled);
-    const catalogue::Places places = catalogue::places(compiled, make_ray_sets(compiled, field, 3000, seed)[0].rays);
+    const catalogue::Places places =
+        catalogue::places(compiled, make_ray_sets(compiled, field, test::few(480), seed)[0].rays);
     test::Random random(seed);
     std::vector<Ray> rays, without;
     for (std::size_t i = 0; i < places.hits.size(); ++i) {

@@ -7,7 +7,9 @@
 #include <functional>
 
 #include "runtime/image_diff.h"
+#include "runtime/render.h"
 #include "runtime/sampler.h"
+#include "tests/runtime/scenes.h"
 
 namespace fathom::runtime {
 namespace {
@@ -215,6 +217,39 @@ TEST_CASE("denoise: scales with the light", "[runtime]") {
   }
   const Pixels result = denoise(scene.input(), 1), scaled = denoise(bright.input(), 1);
   for (std::size_t i = 0; i < result.size(); ++i) REQUIRE(scaled[i] == Approx(result[i] * 0x1p20f).epsilon(1e-3));
+}
+
+// A ball on a floor under a ring of light.
+TEST_CASE("denoise: a rendered picture has less than half the error", "[runtime][heavy]") {
+  const auto scene = scene_of(R"("camera": {"position": [0, 1.5, 4], "target": [0, 0, 0]},
+      "materials": {"glow": {"type": "emissive", "emission": [20, 20, 20]}},
+      "objects": [{"type": "torus", "major_radius": 0.4, "minor_radius": 0.1, "translate": [0, 2, 0.5], "material": "glow"},
+                  {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]},
+                  {"type": "box", "half_size": [4, 0.1, 4], "translate": [0, -0.1, 0]}])");
+  constexpr int kWidth = 64, kHeight = 48;
+  RenderOptions options;
+  options.width = kWidth, options.height = kHeight, options.spp = 8;
+  options.layers = {.first_hit = true, .halves = true};
+  const auto radiance = [&](const Film& film) {
+    Pixels pixels;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        for (int c = 0; c < 3; ++c) pixels.push_back(static_cast<float>(film.means(x, y).radiance[c]));
+      }
+    }
+    return pixels;
+  };
+  Film film = render(scene, options).film;
+  const Pixels noisy = radiance(film);
+  denoise(film, 2);
+  const Pixels denoised = radiance(film);
+  options.spp = 512, options.seed = 3;
+  const Pixels truth = radiance(render(scene, options).film);
+  const auto error = [&](const Pixels& pixels) {
+    return compare({kWidth, kHeight, pixels}, {kWidth, kHeight, truth}).relmse;
+  };
+  CAPTURE(error(noisy), error(denoised));
+  CHECK(error(denoised) < error(noisy) / 2);
 }
 
 TEST_CASE("denoise: any number of threads gives the same bits", "[runtime]") {

@@ -9,6 +9,7 @@
 
 #include "runtime/fresnel.h"
 #include "runtime/sampler.h"
+#include "tests/support/effort.h"
 
 namespace fathom::runtime {
 namespace {
@@ -39,7 +40,7 @@ TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[
 }
 
 TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the mean", "[runtime]") {
-  const int n = 100;
+  const int n = test::few(100);
   std::array<double, 4> worst{}, squares{};
   Sampler sampler(5, 0, 0, 0);
   for (int i = 0; i < n; ++i) {

@@ -151,9 +151,9 @@ Cells cells_of(const compiler::CompiledScene& scene, LightSampling way, int spp,
 
 TEST_CASE("light: looking for lights, hitting them and both give one picture", "[render][light][heavy]") {
   const auto scene = scene_of(tests::kLampRoom);
-  const Cells both = cells_of(scene, LightSampling::Both, 64, 0);
+  const Cells both = cells_of(scene, LightSampling::Both, 32, 0);
   for (const LightSampling way : {LightSampling::Lights, LightSampling::Hits}) {
-    const Cells other = cells_of(scene, way, way == LightSampling::Hits ? 256 : 64, 1000);
+    const Cells other = cells_of(scene, way, way == LightSampling::Hits ? 128 : 32, 1000);
     double worst = 0, all = 0;
     for (std::size_t i = 0; i < both.mean.size(); ++i) {
       const double t = (other.mean[i] - both.mean[i]) / std::sqrt(both.variance[i] + other.variance[i]);

@@ -219,7 +219,7 @@ int count_differences(const std::vector<Arrival>& a, const std::vector<Arrival>&
 TEST_CASE("method: the same bits on every instruction set", "[march]") {
   const auto scene = scene_of(kMixed);
   const Field field = make_field(scene);
-  const std::vector<Ray> rays = camera_rays(scene, 40);
+  const std::vector<Ray> rays = camera_rays(scene, 24);
   const test::IsaGuard guard;
   for (const MethodInfo& method : kMethods) {
     REQUIRE(vm::force_isa("scalar"));
@@ -235,7 +235,7 @@ TEST_CASE("method: the same bits on every instruction set", "[march]") {
 TEST_CASE("method: an arrival does not depend on the other rays or their order", "[march]") {
   const auto scene = scene_of(kMixed);
   const Field field = make_field(scene);
-  const std::vector<Ray> rays = camera_rays(scene, 30);
+  const std::vector<Ray> rays = camera_rays(scene, 16);
   std::vector<std::size_t> order(rays.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::shuffle(order.begin(), order.end(), std::mt19937(24));

@@ -9,6 +9,7 @@
 
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/effort.h"
 #include "vm/evaluate.h"
 
 namespace fathom::runtime {
@@ -51,20 +52,25 @@ TEST_CASE("profile: the same picture and counts with and without", "[render]") {
 TEST_CASE("profile: every stage takes time, and all of them a thread's", "[render]") {
   const auto scene = scene_of(kScene);
   for (const int threads : {1, 2}) {
-    RenderOptions options = options_of(160, 90, 16);
+    RenderOptions options = options_of(160, 90, test::few(16));
     options.threads = threads;
     options.profile = true;
-    const Stats stats = render(scene, options).stats;
-    REQUIRE(stats.stages);
-    for (std::size_t i = 0; i < stats.stages->size(); ++i) {
-      INFO(kStages[i]);
-      CHECK((*stats.stages)[i] > 0);
+    // What no stage has is memory for the film and the start and end of threads. A busy machine may draw these out,
+    // but not every time.
+    bool most = false;
+    for (int attempt = 0; attempt < 20 && !most; ++attempt) {
+      const Stats stats = render(scene, options).stats;
+      REQUIRE(stats.stages);
+      for (std::size_t i = 0; i < stats.stages->size(); ++i) {
+        INFO(kStages[i]);
+        CHECK((*stats.stages)[i] > 0);
+      }
+      const double sum = std::accumulate(stats.stages->begin(), stats.stages->end(), 0.0);
+      INFO(threads << " threads, " << stats.seconds << " s, of which in stages " << sum);
+      CHECK(sum <= threads * stats.seconds);
+      most = sum >= 0.5 * stats.seconds;
     }
-    const double sum = std::accumulate(stats.stages->begin(), stats.stages->end(), 0.0);
-    INFO(threads << " threads, " << stats.seconds << " s, of which in stages " << sum);
-    CHECK(sum <= threads * stats.seconds);
-    // The rest is memory for the film and the start and end of threads, which a busy machine may draw out.
-    CHECK(sum >= 0.5 * stats.seconds);
+    CHECK(most);
   }
 }
 

@@ -30,8 +30,11 @@ struct Context {
 // Whether the keyword's `rule` holds. Rules about objects hold for what is none, and so on.
 using Keyword = std::function<bool(const Context&, const Json& rule)>;
 
+// The first keyword of the schema that does not hold, or none.
+const std::string* broken_keyword(const Json& value, const Json& schema, const Json& whole);
+
 bool fits(const Json& value, const Json& schema, const Json& whole) {
-  return schema_problem(value, schema, whole).empty();
+  return broken_keyword(value, schema, whole) == nullptr;
 }
 
 std::size_t count_fitting(const Context& at, const Json& schemas) {
@@ -122,16 +125,21 @@ const std::map<std::string, Keyword>& keywords() {
   return table;
 }
 
+const std::string* broken_keyword(const Json& value, const Json& schema, const Json& whole) {
+  for (auto item = schema.begin(); item != schema.end(); ++item) {
+    const auto found = keywords().find(item.key());
+    if (found == keywords().end()) throw std::runtime_error("unknown keyword " + item.key());
+    if (!found->second({value, schema, whole}, item.value())) return &found->first;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::string schema_problem(const Json& value, const Json& schema, const Json& whole) {
-  for (const auto& [keyword, rule] : schema.items()) {
-    const auto found = keywords().find(keyword);
-    if (found == keywords().end()) throw std::runtime_error("unknown keyword " + keyword);
-    if (found->second({value, schema, whole}, rule)) continue;
-    return keyword + " " + rule.dump().substr(0, 80) + " does not hold for " + value.dump().substr(0, 80);
-  }
-  return "";
+  const std::string* keyword = broken_keyword(value, schema, whole);
+  if (!keyword) return "";
+  return *keyword + " " + schema[*keyword].dump().substr(0, 80) + " does not hold for " + value.dump().substr(0, 80);
 }
 
 }  // namespace fathom::tests

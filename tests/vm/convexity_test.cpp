@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/bounds.h"
+#include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "tests/vm/float_bits.h"
@@ -64,7 +65,7 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
 TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
   vm::Workspace workspace;
   int far_reaching = 0, tried = 0;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < few(400); ++seed) {
     Random random(seed);
     GraphOptions options;
     options.depth = 3;
@@ -94,8 +95,8 @@ TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
       CHECK(f[1] <= chord + 1e-8);
     }
   }
-  CHECK(tried > 4000);
-  CHECK(far_reaching > 2000);
+  CHECK(tried > few(4000));
+  CHECK(far_reaching > few(2000));
 }
 
 TEST_CASE("convexity: distances beside it have the same bits, and it has them on every instruction set",

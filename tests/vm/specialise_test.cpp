@@ -10,6 +10,7 @@
 
 #include "compiler/fuse.h"
 #include "tests/support/compiled.h"
+#include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "tests/vm/formula.h"
@@ -185,7 +186,7 @@ void random_range(Random& random, float& lo, float& hi) {
 
 TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
   Tally tally;
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < few(200); ++seed) {
     Random random(seed);
     const vm::VerifiedProgram plain = plain_lowering(random_scene(random));
     auto fused = vm::verify(compiler::fuse(plain.program()));
@@ -196,8 +197,8 @@ TEST_CASE("specialise: parts of random scenes give the whole programs' bits in t
     cut(std::get<vm::VerifiedProgram>(fused), random, tally);
     CHECK(tally.wrong == before);
   }
-  CHECK(tally.compared > 500'000);
-  CHECK(tally.cut > 10'000);
+  CHECK(tally.compared > static_cast<std::size_t>(few(250'000)));
+  CHECK(tally.cut > static_cast<std::size_t>(few(5'000)));
 }
 
 TEST_CASE("specialise: parts by bounds of the exact function equal it, in double and in float",

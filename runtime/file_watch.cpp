@@ -1,8 +1,8 @@
-#include "runtime/cli/file_watch.h"
+#include "runtime/file_watch.h"
 
 #include <system_error>
 
-namespace fathom::cli {
+namespace fathom::runtime {
 
 FileWatch::FileWatch(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) files_.push_back({path, stamp_of(path)});
@@ -15,15 +15,29 @@ std::optional<FileWatch::Stamp> FileWatch::stamp_of(const std::string& path) {
   return stamp;
 }
 
-bool FileWatch::changed() {
-  bool any = false;
+FileWatch::Look FileWatch::look() {
+  Look result;
   for (Watched& file : files_) {
     const std::optional<Stamp> now = stamp_of(file.path);
+    result.away |= !now;
     if (!now || now == file.seen) continue;
     file.seen = now;
-    any = true;
+    result.other = true;
   }
-  return any;
+  changed_ |= result.other;
+  return result;
 }
 
-}  // namespace fathom::cli
+bool FileWatch::changed() {
+  look();
+  return changed_;
+}
+
+bool FileWatch::settled() {
+  const Look now = look();
+  if (!changed_ || now.other || now.away) return false;
+  changed_ = false;
+  return true;
+}
+
+}  // namespace fathom::runtime
