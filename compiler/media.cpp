@@ -20,6 +20,8 @@ struct Painted {
   std::uint32_t transparent = kNone;  // the first of those that transmit
   bool several = false;
   bool bare = false;  // some leaf has none, and will get that of the next Paint above
+
+  bool uneven() const { return several || (bare && one != kNone); }
 };
 
 Painted join(const Painted& a, const Painted& b) {
@@ -74,7 +76,7 @@ class Bodies {
     while (!pending_.empty()) {
       const Part part = std::move(pending_.back());
       pending_.pop_back();
-      if (below_[part.node].several && divides(graph_.kind(part.node))) {
+      if (below_[part.node].uneven() && divides(graph_.kind(part.node))) {
         descend(part);
       } else {
         add(part);
@@ -180,8 +182,7 @@ void mark_mixed(const Scene& scene, std::span<const Material> materials, std::sp
   const std::vector<bool> reached = reachable(scene);
   const std::vector<Painted> below = painted_below(scene, surfaces, materials);
   const auto mixes = [&](NodeId id) {
-    const bool several = below[id].several || (below[id].bare && below[id].one != kNone);
-    return several && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
+    return below[id].uneven() && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
   };
   const auto mark = [&](NodeId paint) { surfaces[surface_of(graph, paint)].mixed = true; };
   // Upwards: what is bare in such a blend is of the next Paint above it.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
@@ -9,8 +10,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
+// Shapes are of this surface until a tag claims them.
+constexpr std::uint32_t kUnclaimed = std::numeric_limits<std::uint32_t>::max();
+
 // A number and by how much it grows when one of the surfaces it was made from moves in: the derivative, of which only
-// the largest parts are kept. Shapes have no surface until a tag claims them.
+// the largest parts are kept.
 struct Shared {
   using Constant = Real;
   Real v;
@@ -43,7 +47,9 @@ struct ValueTraits<Shared> {
   using Point = Real;
   using D = Dual<Real>;
   static constexpr bool kConvex = false;
-  static HWY_INLINE Shared lift(const Point& value, bool = false) { return {value, {}}; }
+  static HWY_INLINE Shared lift(const Point& value, bool = false) {
+    return {value, {{SurfaceShare{kUnclaimed, 1}}, 1}};
+  }
   template <class Op>
   static HWY_INLINE Shared apply(const Shared& a, const Real* k) {
     return {Op::template apply<Real>(a.v, k), a.shares};
@@ -59,9 +65,13 @@ struct ValueTraits<Shared> {
     return out;
   }
   static HWY_INLINE void tag(Shared& value, std::uint32_t surface) {
-    if (value.shares.count > 0) return;
-    value.shares.count = 1;
-    value.shares.all[0] = {surface, 1};
+    SurfaceShares claimed;
+    for (int i = 0; i < value.shares.count; ++i) {
+      SurfaceShare share = value.shares.all[i];
+      if (share.surface == kUnclaimed) share.surface = surface;
+      add_shares(claimed, {{share}, 1}, 1);
+    }
+    value.shares = claimed;
   }
 };
 
@@ -75,6 +85,9 @@ SurfaceShares shares(const Code& program, glm::dvec3 p, Workspace& workspace) {
   *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
   machine.interpret();
   SurfaceShares result = machine.result()->shares;
+  const auto unclaimed = [](const SurfaceShare& share) { return share.surface == kUnclaimed; };
+  const auto end = std::remove_if(result.all.begin(), result.all.begin() + result.count, unclaimed);
+  result.count = static_cast<int>(end - result.all.begin());
   double sum = 0;
   for (int i = 0; i < result.count; ++i) sum += result.all[i].weight;
   for (int i = 0; i < result.count; ++i) result.all[i].weight /= sum;
