@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
@@ -43,54 +44,56 @@ std::string indent(std::string_view lines) {
 }  // namespace
 
 Arguments::Arguments(const std::string& verb, const std::string& description, const std::string& examples)
-    : app_(description, "fathom " + verb), verb_(verb), group_("Options") {
-  app_.allow_extras();
-  app_.set_help_flag("-h,--help", "Print this help and exit");
-  app_.footer("Examples:\n" + indent(examples));
-  app_.get_formatter()->column_width(32);
-  app_.get_formatter()->label("REQUIRED", "");
+    : app_(std::make_unique<CLI::App>(description, "fathom " + verb)), verb_(verb), group_("Options") {
+  app_->allow_extras();
+  app_->set_help_flag("-h,--help", "Print this help and exit");
+  app_->footer("Examples:\n" + indent(examples));
+  app_->get_formatter()->column_width(32);
+  app_->get_formatter()->label("REQUIRED", "");
 }
+
+Arguments::~Arguments() = default;
 
 void Arguments::positional(const std::string& name, const std::string& doc, std::string& target, bool required,
                            const std::string& value) {
-  app_.add_option(name, target, doc)->required(required)->type_name(value);
+  app_->add_option(name, target, doc)->required(required)->type_name(value);
 }
 
 void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {
-  app_.add_flag_callback(
+  app_->add_flag_callback(
           names, [&target] { target = true; }, doc)
       ->group(group_);
 }
 
 void Arguments::counter(const std::string& names, const std::string& doc, int& target) {
-  app_.add_flag_function(
+  app_->add_flag_function(
           names, [&target](std::int64_t count) { target = static_cast<int>(count); }, doc)
       ->group(group_);
 }
 
 void Arguments::option(const std::string& names, const std::string& value, const std::string& doc, Setter setter) {
   Option& option = options_.emplace_back(Option{nullptr, {}, std::move(setter)});
-  option.option = app_.add_option(names, option.texts, doc);
+  option.option = app_->add_option(names, option.texts, doc);
   option.option->type_name(value)->type_size(1)->expected(1)->group(group_);
   option.option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
 }
 
 std::optional<int> Arguments::parse(std::span<const std::string> args, const Streams& streams) {
   try {
-    app_.parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
+    app_->parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
   } catch (const CLI::CallForHelp&) {
-    streams.out << without_double_blanks(app_.help());
+    streams.out << without_double_blanks(app_->help());
     return kDone;
   } catch (const CLI::ParseError& error) {
-    const auto remaining = app_.remaining();
+    const auto remaining = app_->remaining();
     if (!remaining.empty()) return report_unknown(remaining, streams);
     return report_usage(streams, explain(error));
   }
-  const auto remaining = app_.remaining();
+  const auto remaining = app_->remaining();
   if (!remaining.empty()) return report_unknown(remaining, streams);
   for (const Option& option : options_) {
     for (const std::string& text : option.texts) {
-      const bool swallowed = text.starts_with("--") && app_.get_option_no_throw(text) != nullptr;
+      const bool swallowed = text.starts_with("--") && app_->get_option_no_throw(text) != nullptr;
       const Verdict verdict = swallowed ? Complaint{"its value is missing", ""} : option.setter(text);
       if (!verdict) continue;
       return report_usage(streams, longest_name(*option.option) + ": " + verdict->problem,
@@ -109,7 +112,7 @@ int Arguments::report_unknown(const std::vector<std::string>& remaining, const S
   }
   const std::string word = unknown->substr(0, unknown->find('='));
   std::vector<std::string> names;
-  for (const CLI::Option* option : app_.get_options()) {
+  for (const CLI::Option* option : app_->get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   const std::string_view near = compiler::nearest(word, {names.begin(), names.end()});

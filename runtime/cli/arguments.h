@@ -6,11 +6,11 @@
 //     if (auto code = arguments.parse(args, streams)) return *code;
 //
 // An option that is given twice calls its setter twice: a plain one keeps the last value, a list grows.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli_usage_test.cpp, tests/runtime/cli_test.cpp
 #pragma once
 
-#include <CLI/App.hpp>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,11 +19,18 @@
 #include "runtime/cli/streams.h"
 #include "runtime/cli/values.h"
 
+// Known by name alone: CLI11 takes seconds to compile.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace fathom::cli {
 
 class Arguments {
  public:
   Arguments(const std::string& verb, const std::string& description, const std::string& examples);
+  ~Arguments();
 
   // The heading in --help of what is added after it.
   void group(std::string heading) { group_ = std::move(heading); }
@@ -47,7 +54,7 @@ class Arguments {
   int report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const;
   int report_usage(const Streams& streams, const std::string& message, Help help = {}) const;
 
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
   std::string verb_, group_;
   std::deque<Option> options_;  // addresses are stable
 };
