@@ -13,6 +13,7 @@
 #include "bench/compiled_scenes.h"
 #include "runtime/camera.h"
 #include "runtime/march.h"
+#include "runtime/sampler.h"
 #include "runtime/surface.h"
 #include "runtime/warp.h"
 

@@ -109,6 +109,7 @@ void Integrator::start(std::span<const PathKey> keys) {
     path.weight = weights[i];
     path.eta_scale = 1;
     path.bounces = 0;
+    path.crossings = 0;
     path.pdf = 0;
     path.in_shadow_test = false;
     path.ends = false;

@@ -35,6 +35,7 @@ struct Path {
   float weight;     // of the path in its pixel, by the filter
   float eta_scale;  // product of eta^2 over the crossings: what refraction alone has done to the throughput
   int bounces;      // made so far
+  int crossings;    // of holes and thin walls, straight on: no bounces
   // Where the current ray left a surface, and with which density per solid angle; 0: by a delta, or from the camera.
   LightQuery from;
   float pdf;
@@ -42,6 +43,7 @@ struct Path {
   bool in_shadow_test;
   bool ends;
   glm::vec3 shadow_radiance;
+  int shadow_bounces;  // of the path that it would end
   Ray next;
   Space next_space;
   PathSample result;

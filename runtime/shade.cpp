@@ -96,7 +96,7 @@ void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, co
   find_material(vertex);
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
-  if (path.bounces == 0) record_first_hit(vertex, arrival);
+  if (path.bounces + path.crossings == 0) record_first_hit(vertex, arrival);
   add_emission(vertex, arrival);
   vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
 }
@@ -104,7 +104,7 @@ void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, co
 // The numbers that every hit needs are drawn first, so that they are the same dimensions in all samples.
 void Integrator::sample_bsdf(Vertex& v) {
   Sampler& sampler = v.path->sampler;
-  sampler.start_bounce(v.path->bounces);
+  sampler.start_bounce(v.path->bounces + v.path->crossings);
   const glm::vec2 place = sampler.next2();
   v.next = v.bsdf->sample(v.bsdf->has_lobes() ? sampler.next() : 0, place);
   v.roulette = plays_roulette(v.path->bounces + 1) ? sampler.next() : 0;
@@ -247,6 +247,7 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   path.shadow_radiance =
       path.throughput * value.f * light.radiance * transmittance(space, light.distance) * (share / light.pdf);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
+  path.shadow_bounces = path.bounces + 1;
   ShadowRay shadow{space, leave(*v.hit, *v.point, glm::dvec3(light.wi), through)};
   shadow.ray.side = space.side;
   shadow.ray.t_max = shadow_length(light, *v.point);
@@ -258,13 +259,15 @@ void Integrator::go_with(const Vertex& v) {
   const BsdfSample& next = v.next;
   path.throughput *= next.weight;
   path.eta_scale *= next.eta_scale;
-  // What goes straight through has not left the place where light was looked for.
-  if (!next.straight) {
+  path.ends = !(max_component(path.throughput) > 0);
+  if (next.straight) {  // light was looked for at the place before, through here, too
+    ++path.crossings;
+  } else {
     path.from = v.query;
     path.pdf = next.pdf;
+    ++path.bounces;
+    path.ends = path.ends || !survives(path, v.roulette);
   }
-  ++path.bounces;
-  path.ends = !(max_component(path.throughput) > 0) || !survives(path, v.roulette);
   if (path.ends) return;
   path.next = leave(*v.hit, *v.point, glm::dvec3(next.wi), next.through);
   path.next_space = next.through ? v.beyond : path.space;
@@ -317,7 +320,7 @@ void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const Surfa
 void Integrator::end_shadow_test(std::uint32_t id, bool free) {
   Path& path = paths_[id];
   path.in_shadow_test = false;
-  if (free) add_light(path, path.shadow_radiance, path.bounces);
+  if (free) add_light(path, path.shadow_radiance, path.shadow_bounces);
   go_on(id);
 }
 

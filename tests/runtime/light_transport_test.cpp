@@ -92,6 +92,17 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
   }
 }
 
+// What goes straight on is not scattered: however few bounces a path may make, it sees what lies behind a hole.
+TEST_CASE("light: holes are no bounces", "[render][light]") {
+  LightScene scene = tests::in_even_light(
+      R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
+      R"("type": "box", "half_size": [3, 3, 0.1])");
+  scene.radiance = tests::kGauze.passes;
+  RenderOptions options = square(16, test::few(256));
+  options.cut_after = 0;
+  expect(scene, options, 1e-1);
+}
+
 // Once, what does not fill a body had the index of what is around it, and reflected nothing.
 TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
   LightScene scene = tests::smooth_gauze();
