@@ -19,7 +19,7 @@ struct LightCounts {
   int reciprocal_pairs = 20000;  // of directions, for each material
   int random_materials = 300;
   int chi_square_samples = 1000000;
-  int pictures = 96;  // of each way and scene
+  int pictures = 256;  // of each way and scene
   int slope_repeats = 400;
 };
 inline constexpr LightCounts kFullLight{.relative_sigma = 5e-4,
