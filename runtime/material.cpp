@@ -75,6 +75,12 @@ void put(MaterialNumbers& numbers, const compiler::TexturedParameter& row, glm::
   }
 }
 
+// Whether what a texture makes of the parameter may let light straight through.
+bool may_open(const compiler::TexturedParameter& row) {
+  const auto* number = std::get_if<compiler::MaterialNumber>(&row.parameter);
+  return number && (*number == &MaterialNumbers::opacity || *number == &MaterialNumbers::transmission);
+}
+
 // (1 - 1/7)^5: what Schlick's approximation adds of the rest at F82's angle.
 constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 
@@ -83,7 +89,8 @@ constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 Materials::Materials(const compiler::CompiledScene& scene) : scene_(&scene) {
   for (const compiler::Material& m : scene.materials) {
     points_.push_back(to_point(m, m.type, m.thin_walled));
-    pass_straight_ |= points_.back().passes_straight() || !m.textured.empty();  // a texture may make holes
+    pass_straight_ |= m.thin_walled || points_.back().passes_straight() ||
+                      std::any_of(m.textured.begin(), m.textured.end(), may_open);
   }
 }
 

@@ -9,7 +9,6 @@
 #include "compiler/frontend/material_presets.h"
 #include "compiler/frontend/record_family.h"
 #include "compiler/frontend/record_reader.h"
-#include "compiler/frontend/suggest.h"
 #include "compiler/frontend/textures.h"
 #include "compiler/frontend/written_numbers.h"
 
@@ -123,18 +122,15 @@ class MaterialReader {
     if (texture->index) material.textured.push_back(textured(place, *texture->index, row));
   }
 
-  const MaterialPreset* find_preset(const RecordReader& reader) {
+  // Nothing, too, where the reader has complained of the name.
+  static const MaterialPreset* find_preset(const RecordReader& reader) {
     const syntax::Value* value = reader.value("preset");
     if (value == nullptr) return nullptr;
     const auto& name = std::get<std::string>(value->data);
-    std::vector<std::string_view> known;
-    for (const MaterialPreset& preset : material_presets()) {
-      if (preset.name == name) return &preset;
-      known.push_back(preset.name);
-    }
-    diagnostics_.error("E0108", value->span, fmt::format("unknown preset `{}`", name), "",
-                       {did_you_mean(name, known)});
-    return nullptr;
+    const auto presets = material_presets();
+    const auto found =
+        std::find_if(presets.begin(), presets.end(), [&](const auto& row) { return row.name == name; });
+    return found == presets.end() ? nullptr : &*found;
   }
 
   static const glm::dvec3* find(const MaterialPreset* preset, std::string_view property) {
