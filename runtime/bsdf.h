@@ -36,8 +36,8 @@ struct BsdfSample {
 
 class Bsdf {
  public:
-  // eta: refractive index of the space beyond the surface relative to that on wo's side; beyond a thin wall, of the
-  // wall (or its inverse, for a wall is taken as denser than what is around it). inside: wo lies within the solid.
+  // eta: refractive index of the space beyond the surface relative to that on wo's side; of what does
+  // not fill a body, of its material, from either side. inside: wo lies within the solid.
   Bsdf(const MaterialPoint& m, glm::vec3 normal, glm::vec3 wo, float eta, bool inside);
 
   BsdfSample sample(float lobe, glm::vec2 u) const;  // three uniform numbers in [0,1)

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -112,6 +113,8 @@ class Integrator {
   struct ShadowRay {
     Space space;
     Ray ray;
+    double length;      // to the light, a little more than ray.t_max
+    int crossings = 0;  // made before
   };
   void look_along(std::uint32_t id, const ShadowRay& shadow);
   void pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);

@@ -174,7 +174,7 @@ double LampShape::pdf(dvec3 from, dvec3 hit) const {
   const dvec3 p = to_local(from), q = to_local(hit);
   switch (lamp_.shape) {
     case Lamp::Shape::Sphere:
-      return ball_pdf(p, dvec3(0), lamp_.radius);
+      return glm::dot(q, p - q) > 0 ? ball_pdf(p, dvec3(0), lamp_.radius) : 0;
     case Lamp::Shape::Box:
       return box_pdf(p, lamp_.half_size, q);
     case Lamp::Shape::Cylinder:

@@ -36,7 +36,8 @@ struct Path {
   float eta_scale;  // product of eta^2 over the crossings: what refraction alone has done to the throughput
   int bounces;      // made so far
   int crossings;    // of holes and thin walls, straight on: no bounces
-  // Where the current ray left a surface, and with which density per solid angle; 0: by a delta, or from the camera.
+  // Where the path was last scattered, and with which density per solid angle it left there; 0: by a delta, or from
+  // the camera. What it crossed since, straight on, does not count.
   LightQuery from;
   float pdf;
   // While a shadow ray is under way: what it brings if nothing is in its way, and how the path goes on then.

@@ -75,7 +75,7 @@ Principled::Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool ins
 // As in OpenPBR the ratio of indices is turned over where the coat is the thinner medium: it has a base to shine on,
 // so total reflection would be wrong.
 void Principled::add_coat(const MaterialPoint& m, float eta) {
-  const float around = inside_ ? m.ior * eta : m.ior / eta;
+  const float around = inside_ && m.fills() ? m.ior * eta : m.ior / eta;
   const float ratio = m.coat_ior / around;
   coat_eta_ = std::clamp(std::max(ratio, 1 / ratio), 1.0f, kMostEta);
   coat_weight_ = m.coat_weight;

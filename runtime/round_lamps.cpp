@@ -187,6 +187,7 @@ double capsule_pdf(const Lamp& lamp, dvec3 from, dvec3 hit) {
   if (!(parts.sum() > 0)) return 0;
   if (std::abs(hit.y) <= lamp.half_height) return parts.share(2) * side.pdf(from, hit);
   const bool upper = hit.y > 0;
+  if (!(glm::dot(hit - ball_of(lamp, upper), from - hit) > 0)) return 0;
   return parts.share(upper) * ball_pdf(from, ball_of(lamp, upper), lamp.radius);
 }
 

@@ -17,13 +17,19 @@ constexpr float kMostSurvival = 0.95f;
 // its way off.
 constexpr double kShadowOffsets = 4, kMostShortened = 0.1;
 
+// Crossings of holes and thin walls that no roulette is played for, and after how many a shadow ray is given up: a
+// path that makes so many has long ended by chance.
+constexpr int kFreeCrossings = 64, kMostCrossings = 1024;
+// Farther than this all is as far: none of 0 absorption times the distance is no number.
+constexpr double kFarthest = 1e30;
+
 float max_component(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
 // Beer-Lambert law.
 inline glm::vec3 transmittance(const Space& space, double distance) {
   if (space.absorption == glm::vec3(0)) [[likely]]
     return glm::vec3(1);
-  return exp(-space.absorption * static_cast<float>(distance));
+  return exp(-space.absorption * static_cast<float>(std::min(distance, kFarthest)));
 }
 
 // The power heuristic: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 9.2.
@@ -107,7 +113,8 @@ void Integrator::sample_bsdf(Vertex& v) {
   sampler.start_bounce(v.path->bounces + v.path->crossings);
   const glm::vec2 place = sampler.next2();
   v.next = v.bsdf->sample(v.bsdf->has_lobes() ? sampler.next() : 0, place);
-  v.roulette = plays_roulette(v.path->bounces + 1) ? sampler.next() : 0;
+  const bool plays = plays_roulette(v.path->bounces + 1) || v.path->crossings >= kFreeCrossings;
+  v.roulette = plays ? sampler.next() : 0;
 }
 
 // Where a blend mixes materials each counts by its share.
@@ -244,11 +251,11 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;
   const bool through = glm::dot(light.wi, v.point->normal) < 0;
   const Space& space = through ? v.beyond : v.space;
-  path.shadow_radiance =
-      path.throughput * value.f * light.radiance * transmittance(space, light.distance) * (share / light.pdf);
+  path.shadow_radiance = path.throughput * value.f * light.radiance * (share / light.pdf);
+  if (shadows_.empty()) path.shadow_radiance *= transmittance(space, light.distance);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
   path.shadow_bounces = path.bounces + 1;
-  ShadowRay shadow{space, leave(*v.hit, *v.point, glm::dvec3(light.wi), through)};
+  ShadowRay shadow{space, leave(*v.hit, *v.point, glm::dvec3(light.wi), through), light.distance};
   shadow.ray.side = space.side;
   shadow.ray.t_max = shadow_length(light, *v.point);
   return shadow;
@@ -261,7 +268,10 @@ void Integrator::go_with(const Vertex& v) {
   path.eta_scale *= next.eta_scale;
   path.ends = !(max_component(path.throughput) > 0);
   if (next.straight) {  // light was looked for at the place before, through here, too
-    ++path.crossings;
+    if (++path.crossings > kFreeCrossings) {
+      path.ends = path.ends || v.roulette >= kMostSurvival;
+      path.throughput /= kMostSurvival;
+    }
   } else {
     path.from = v.query;
     path.pdf = next.pdf;
@@ -296,6 +306,7 @@ void Integrator::look_along(std::uint32_t id, const ShadowRay& shadow) {
   marchers_[shadow.space.field]->add(id, shadow.ray);
 }
 
+// Where a shadow ray met a surface; of the vertex only what concerns the surface is made.
 void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
   const ShadowRay& shadow = shadows_[arrival.id];
   Path& path = paths_[arrival.id];
@@ -305,21 +316,27 @@ void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const Surfa
   vertex.space = shadow.space;
   vertex.space.side = arrival.side;
   find_material(vertex);
-  if (!vertex.material->passes_straight()) return end_shadow_test(arrival.id, false);
+  const bool passes = vertex.material->passes_straight() && shadow.crossings < kMostCrossings;
+  if (!passes) return end_shadow_test(arrival.id, false);
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
   const Bsdf bsdf(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
-  path.shadow_radiance *= bsdf.straight_through();
+  path.shadow_radiance *= bsdf.straight_through() * transmittance(shadow.space, arrival.t);
   if (!(max_component(path.shadow_radiance) > 0)) return end_shadow_test(arrival.id, false);
-  ShadowRay rest{vertex.beyond, leave(hit, point, shadow.ray.direction, true)};
-  rest.ray.side = rest.space.side;
-  rest.ray.t_max = shadow.ray.t_max - arrival.t;
-  look_along(arrival.id, rest);
+  Ray ray = leave(hit, point, shadow.ray.direction, true);
+  ray.side = vertex.beyond.side;
+  // It starts behind the surface, and must end before the lamp all the same.
+  const double gone = glm::dot(ray.origin - shadow.ray.origin, shadow.ray.direction);
+  ray.t_max = shadow.ray.t_max - gone;
+  look_along(arrival.id, {vertex.beyond, ray, shadow.length - gone, shadow.crossings + 1});
 }
 
 void Integrator::end_shadow_test(std::uint32_t id, bool free) {
   Path& path = paths_[id];
   path.in_shadow_test = false;
+  if (free && !shadows_.empty()) {
+    path.shadow_radiance *= transmittance(shadows_[id].space, std::max(0.0, shadows_[id].length));
+  }
   if (free) add_light(path, path.shadow_radiance, path.shadow_bounces);
   go_on(id);
 }

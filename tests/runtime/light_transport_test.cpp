@@ -92,11 +92,27 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
   }
 }
 
+// Once, each crossing brought a shadow ray nearer to the lamp than it should end, and two walls hid it.
+TEST_CASE("light: many veils", "[render][light]") {
+  for (const LightSampling way : {LightSampling::Both, LightSampling::Lights}) {
+    RenderOptions options = square(32, test::few(64));
+    options.light_sampling = way;
+    expect(tests::many_veils(), options, 2e-2);
+  }
+}
+
+// Once, the way through a liquid between two veils cost nothing: absorption was that of where the shadow ray began.
+TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
+  RenderOptions options = square(16, test::few(64));
+  options.cut_after = 1;
+  expect(tests::veiled_drink(), options, 1e-3);
+}
+
 // What goes straight on is not scattered: however few bounces a path may make, it sees what lies behind a hole.
 TEST_CASE("light: holes are no bounces", "[render][light]") {
-  LightScene scene = tests::in_even_light(
-      R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
-      R"("type": "box", "half_size": [3, 3, 0.1])");
+  LightScene scene =
+      tests::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
+                           R"("type": "box", "half_size": [3, 3, 0.1])");
   scene.radiance = tests::kGauze.passes;
   RenderOptions options = square(16, test::few(256));
   options.cut_after = 0;

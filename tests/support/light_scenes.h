@@ -95,6 +95,34 @@ inline LightScene smooth_gauze() {
   return scene;
 }
 
+inline std::string gauze_at(double y) {
+  return R"(, {"type": "box", "half_size": [0.5, 0.01, 0.5], "translate": [0, )" + std::to_string(y) +
+         R"(, 0], "material": "veil"})";
+}
+
+inline LightScene many_veils() {
+  return {"a ball behind four veils",
+          floor_spot("",
+                     R"(, {"type": "sphere", "radius": 0.3, "translate": [0, 1.4, 0], "material": "lamp"})" +
+                         gauze_at(0.45) + gauze_at(0.55) + gauze_at(0.65) + gauze_at(0.75),
+                     R"(, "veil": )" + std::string(kGauze.material)),
+          under_ball(0.3, 0, 1.4).radiance * std::pow(kGauze.passes, 4)};
+}
+
+// A drink that absorbs 0.5 per unit between two veils, which outrank it, under a point light of 3 straight above. It
+// fills the 0.08 between them and the 0.02 of the second: what has no filling of its own is full of what is before
+// it.
+inline LightScene veiled_drink() {
+  return {"a drink between veils",
+          floor_spot(R"("lights": {"bulb": {"type": "point", "position": [0, 1, 0], "intensity": [3, 3, 3]}}, )",
+                     gauze_at(0.45) + gauze_at(0.55) +
+                         R"(, {"type": "box", "half_size": [0.45, 0.05, 0.45], "translate": [0, 0.5, 0],
+                              "material": "drink"})",
+                     R"(, "veil": )" + std::string(kGauze.material) +
+                         R"(, "drink": {"type": "transparent", "ior": 1, "absorption": [0.5, 0.5, 0.5]})"),
+          0.5 * 3 / std::numbers::pi * kGauze.passes * kGauze.passes * std::exp(-0.5 * 0.1)};
+}
+
 // Irradiance I / d^2 of a point light straight above, of 3 at 1.
 inline LightScene veiled_point(const Veil& veil) {
   return {"a point light behind a veil",
