@@ -55,10 +55,10 @@ BsdfSample Bsdf::sample_transparent(float lobe) const {
 BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
   const Principled::Draw draw = layers_->principled.draw(lobe, u);
   BsdfSample sample{
-      .wi = layers_->frame.to_world(draw.wi), .through = draw.through, .straight = draw.straight && draw.delta};
-  if (draw.through && !draw.straight) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
+      .wi = layers_->frame.to_world(draw.wi), .through = draw.through, .straight = draw.same_medium && draw.delta};
+  if (draw.through && !draw.same_medium) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
   if (draw.delta) {
-    if (draw.straight) sample.wi = -wo_;  // bit for bit
+    if (draw.same_medium) sample.wi = -wo_;  // bit for bit
     sample.weight = draw.weight;
     return sample;
   }

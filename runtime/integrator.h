@@ -130,7 +130,7 @@ class Integrator {
   Space beyond(const Vertex& vertex);
   Space no_medium(const Vertex& vertex, glm::dvec3 place);
   void record_first_hit(const Vertex& vertex, const Arrival& arrival);
-  void add_emission(const Vertex& vertex, const Arrival& arrival);
+  void add_emission(const Vertex& vertex);
   float hit_share(const Path& path, float light_pdf) const;
   void add_light(Path& path, glm::vec3 radiance, int bounces);
   std::optional<ShadowRay> look_for_light(Vertex& vertex);
@@ -149,6 +149,7 @@ class Integrator {
   std::vector<std::uint32_t> free_ids_, ended_;
   std::vector<Arrival> settled_;  // scratch
   std::vector<Vertex> vertices_;  // scratch
+  Vertex passed_;                 // scratch: what a shadow ray goes through
   RealScratch scratch_;
   Stats stats_;
 };

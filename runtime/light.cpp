@@ -208,7 +208,7 @@ LightSample Lights::sample_directional(const LightQuery& query, float choice) co
   return out;
 }
 
-float Lights::pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit, glm::vec3, double) const {
+float Lights::pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit) const {
   if (surface >= has_lamps_.size() || !has_lamps_[surface]) return 0;
   const std::optional<std::uint32_t> lamp = lamp_at(hit);
   if (!lamp || lamps_[*lamp].shape.lamp().surface != surface) return 0;

@@ -59,10 +59,9 @@ class Lights {
   // short of it, at a slant by more (lamp_cosine).
   LightSample sample(const LightQuery& query, float choice, glm::vec2 u) const;
 
-  // The density with which sample() gives the way to `hit`, a point on surface number `surface` that a ray in the
-  // direction `wi` found from `query`; 0 when that is no lamp, or a part that is not sampled.
-  float pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit, glm::vec3 wi,
-                   double distance) const;
+  // The density with which sample() gives the way to `hit`, a point on surface number `surface` that a ray from
+  // `query` found; 0 when that is no lamp, or a part that is not sampled.
+  float pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit) const;
 
   glm::vec3 background(glm::vec3 direction) const { return environment_.radiance(direction); }
   float pdf_of_background(const LightQuery& query, glm::vec3 direction) const;

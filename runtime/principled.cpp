@@ -233,7 +233,7 @@ Principled::Draw Principled::draw(float lobe, glm::vec2 u) const {
     case kLost:
       return {.wi = even_over_hemisphere(u)};
     case kLostThrough:
-      return {.wi = below(even_over_hemisphere(u)), .through = true, .straight = thin_};
+      return {.wi = below(even_over_hemisphere(u)), .through = true, .same_medium = thin_};
     default:
       return {};
   }
@@ -250,7 +250,7 @@ Principled::Draw Principled::draw_boundary(float lobe, glm::vec2 u) const {
     draw.weight = coat_tint_ * boundary_reflects(reflected) * (part / chance);
     return draw;
   }
-  Draw draw{.wi = pass_boundary(m), .delta = smooth_boundary_, .through = true, .straight = thin_};
+  Draw draw{.wi = pass_boundary(m), .delta = smooth_boundary_, .through = true, .same_medium = thin_};
   const float seen = inside_ ? coat_passes(std::min(std::abs(draw.wi.z), 1.0f)) : 1;
   draw.weight = boundary_passes(1 - reflected) * (seen * part / ((1 - chance) * (thin_ ? 1 : eta_ * eta_)));
   return draw;

@@ -47,7 +47,7 @@ class Principled {
     glm::vec3 weight{0};
     bool delta = false;
     bool through = false;
-    bool straight = false;  // on in the same medium
+    bool same_medium = false;  // through a thin wall, on in the medium before it
   };
 
   // As Bsdf's.

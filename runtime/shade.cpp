@@ -103,7 +103,7 @@ void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, co
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
   if (path.bounces + path.crossings == 0) record_first_hit(vertex, arrival);
-  add_emission(vertex, arrival);
+  add_emission(vertex);
   vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
 }
 
@@ -211,12 +211,12 @@ void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
   result.material = v.point->material;
 }
 
-void Integrator::add_emission(const Vertex& v, const Arrival& arrival) {
+void Integrator::add_emission(const Vertex& v) {
   if (v.material->emission == glm::vec3(0)) return;
   const Path& path = *v.path;
   float light_pdf = 0;
   if (path.pdf > 0 && !world_.lights.empty()) {
-    light_pdf = world_.lights.pdf_of_hit(path.from, v.point->surface, v.hit->position, -v.hit->wo, arrival.t);
+    light_pdf = world_.lights.pdf_of_hit(path.from, v.point->surface, v.hit->position);
   }
   const float share = hit_share(path, light_pdf);
   if (share > 0) add_light(*v.path, path.throughput * v.material->emission * share, path.bounces);
@@ -310,7 +310,7 @@ void Integrator::look_along(std::uint32_t id, const ShadowRay& shadow) {
 void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
   const ShadowRay& shadow = shadows_[arrival.id];
   Path& path = paths_[arrival.id];
-  Vertex& vertex = vertices_[0];
+  Vertex& vertex = passed_;
   vertex.hit = &hit;
   vertex.point = &point;
   vertex.space = shadow.space;
