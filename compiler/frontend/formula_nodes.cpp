@@ -43,9 +43,11 @@ bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
   for (const Formula::Node& node : formula.nodes) {
     if (node.function != "const" || fits_float(node.value)) continue;
     all = false;
-    const std::string is = std::isnan(node.value) ? "has no value" : fmt::format("is {}", node.value);
+    const bool none = std::isnan(node.value);
+    const std::string is = none ? "has no value" : fmt::format("is {}", node.value);
     diagnostics.error("E0409", node.span, fmt::format("this part of the formula {}", is), "",
-                      {"numbers are evaluated in float, which ends at 3.4e38: scale the formula down"});
+                      {none ? "it is like 0/0, wherever it is evaluated: write a number"
+                            : "numbers are evaluated in float, which ends at 3.4e38: scale the formula down"});
   }
   return all;
 }

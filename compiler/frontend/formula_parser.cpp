@@ -205,7 +205,7 @@ FormulaId FormulaParser::resolve(const Token& name) {
   if (is_axis(name.text)) {
     if (context_.has_point) return context_.builder.coordinate(name.text[0], span(name));
     report("E0405", span(name), fmt::format("`{}` has no value here", name.text), "",
-           {"x, y and z are known only in the formula of a node"});
+           {"x, y and z are known only in the formula of a node, and in those of materials that may vary"});
     return stand_in(name);
   }
   const Scope::Entry* entry = context_.scope.use(name.text);

@@ -63,7 +63,7 @@ std::optional<ExitCode> check_collisions(const std::string& scene, const std::ve
   for (const std::string& file : outputs) {
     std::filesystem::path path = canonical_name(file);
     if (std::find(taken.begin(), taken.end(), path) != taken.end()) {
-      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is the scene or another output", file),
+      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is read, or is another output", file),
                   {"give each output a name of its own"});
     }
     taken.push_back(std::move(path));
