@@ -54,7 +54,14 @@ void find_files(Elaborated& elaborated, const Source& source, Diagnostics& diagn
   const fs::path path = fs::path(source.name()).parent_path() / image.file;
   image.file = path.string();
   std::error_code error;
-  if (fs::is_regular_file(path, error)) return;
+  if (fs::is_regular_file(path, error)) {
+    std::string ending = path.extension().string();
+    for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    if (ending == ".hdr" || ending == ".exr") return;
+    diagnostics.error("E0311", image.span, fmt::format("`{}` is no picture of light", image.file), "",
+                      {"a background is a .hdr or .exr file: others hold no more than a screen's brightness"});
+    return;
+  }
   diagnostics.error("E0311", image.span,
                     fmt::format("cannot read `{}`: {}", image.file, error ? error.message() : "it is not a file"), "",
                     {"a path in a scene begins at the scene's own folder"});

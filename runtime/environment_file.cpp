@@ -1,7 +1,9 @@
 #include "runtime/environment_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <string_view>
 
 #include "runtime/image_read.h"
@@ -9,9 +11,11 @@
 namespace fathom::runtime {
 namespace {
 
+// Infinity, as half floats hold at the sun, becomes the largest half; no sum of pixels overflows.
 float usable(float value) {
+  constexpr float kLargestHalf = 65504, kLargest = 1e20f;
   if (!(value > 0)) return 0;
-  return std::min(value, std::numeric_limits<float>::max());
+  return std::isinf(value) ? kLargestHalf : std::min(value, kLargest);
 }
 
 bool ends_in(const std::string& path, std::string_view ending) {
@@ -22,17 +26,19 @@ bool ends_in(const std::string& path, std::string_view ending) {
 
 }  // namespace
 
-std::variant<EnvironmentImage, std::string> read_environment(const std::string& path) {
-  if (!ends_in(path, ".hdr") && !ends_in(path, ".exr")) return std::string("its name ends in neither .hdr nor .exr");
+std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path) {
+  if (!ends_in(path, ".hdr") && !ends_in(path, ".exr")) {
+    return UnreadImage{fmt::format("`{}` ends in neither .hdr nor .exr", path)};
+  }
   const auto read = read_image(path);
-  if (const auto* unread = std::get_if<UnreadImage>(&read)) return unread->problem;
+  if (const auto* unread = std::get_if<UnreadImage>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);
   // A picture of luminance alone is grey.
   const std::vector<float>* grey = image.channel("Y");
   const std::vector<float>* channels[] = {image.channel("R"), image.channel("G"), image.channel("B")};
   for (const std::vector<float>*& channel : channels) {
     if (channel == nullptr) channel = grey;
-    if (channel == nullptr) return std::string("it has neither channels R, G and B nor Y");
+    if (channel == nullptr) return UnreadImage{fmt::format("`{}` has neither channels R, G and B nor Y", path)};
   }
   EnvironmentImage result{image.area.width(), image.area.height(), {}};
   for (std::size_t i = 0; i < channels[0]->size(); ++i) {

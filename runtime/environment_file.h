@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/image_read.h"
+
 namespace fathom::runtime {
 
 struct EnvironmentImage {
@@ -14,8 +16,8 @@ struct EnvironmentImage {
   std::vector<glm::vec3> pixels;  // from the top row; finite and not negative
 };
 
-// The picture, or why it cannot be read, for people. What is not a number or negative in it becomes 0, and what is
-// beyond float its largest.
-std::variant<EnvironmentImage, std::string> read_environment(const std::string& path);
+// The picture, or why it cannot be read. What is not a number or negative in it becomes 0, and infinity
+// the largest number of 16 bits.
+std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path);
 
 }  // namespace fathom::runtime

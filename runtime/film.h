@@ -23,6 +23,9 @@
 
 namespace fathom::runtime {
 
+// What the samples of a pixel may add up to.
+inline constexpr double kFullPixel = 0x1p31;
+
 // What one camera path adds to its pixel.
 struct PathSample {
   glm::vec3 radiance{0};     // linear sRGB

@@ -17,6 +17,9 @@
 
 namespace fathom::runtime {
 
+// Of a file that is read: more than any of ours has, and few enough that a broken header does not take all memory.
+inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28, kMostValues = std::int64_t{1} << 31;
+
 // What a file says of itself: name -> value. Matrices act on row vectors from the right (p M), row by row: what
 // OpenEXR keeps and pbrt writes.
 using Matrix4 = std::array<float, 16>;

@@ -24,8 +24,6 @@ namespace fathom::runtime {
 namespace {
 
 constexpr int kNoThreads = 0;  // beside the caller's
-// More pixels than any file of ours has, and few enough that a broken header does not take all memory.
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 
 // OpenEXR's view of the file that is written. What goes wrong is kept there and said by commit().
 class FileSink : public Imf::OStream {
@@ -158,7 +156,10 @@ std::int64_t pixels_of(const Imath::Box2i& window) {
 
 FloatImage read_header(const Imf::Header& header) {
   const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
-  if (pixels_of(data) > kMostPixels || pixels_of(display) > kMostPixels) throw std::runtime_error("it is too large");
+  std::int64_t channels = 0;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
+  const bool fits = pixels_of(data) <= kMostPixels && pixels_of(display) <= kMostPixels;
+  if (!fits || pixels_of(data) * channels > kMostValues) throw std::runtime_error("it is too large");
   FloatImage image;
   image.width = display.max.x - display.min.x + 1;
   image.height = display.max.y - display.min.y + 1;

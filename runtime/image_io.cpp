@@ -171,7 +171,9 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
       done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality);
       break;
     case ImageFormat::Bmp:
-      done = stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
+      // The header's numbers are of 32 bits.
+      done = picture.rgb.size() < (std::size_t{1} << 31) - (std::size_t{1} << 20) &&
+             stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
       break;
     default:
       CHECK(false, "bytes are not what this format holds");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <stb_image.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <charconv>
@@ -21,8 +22,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using Decoded = std::variant<FloatImage, std::string>;
-
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 
 // An image of that size with the channels R, G, B and perhaps A.
 FloatImage empty_image(int width, int height, bool alpha) {
@@ -59,17 +58,50 @@ struct FreeStb {
 template <typename Sample>
 using StbPixels = std::unique_ptr<Sample, FreeStb>;
 
-std::string stb_problem() {
-  const char* reason = stbi_failure_reason();
-  return reason != nullptr ? reason : "its content makes no sense";
-}
+// A file's bytes as stb takes them: at their end zeros, with which the run lengths of an hdr picture never end and
+// rows of others are invented. So `filler` follows instead, and it is told.
+struct StbSource {
+  const Bytes& bytes;
+  char filler = 0;
+  std::size_t at = 0;
+  bool ran_out = false;
+
+  static int read(void* user, char* data, int size) {
+    auto& source = *static_cast<StbSource*>(user);
+    const std::size_t count = std::min(static_cast<std::size_t>(size), source.bytes.size() - source.at);
+    std::memcpy(data, source.bytes.data() + source.at, count);
+    source.at += count;
+    if (count > 0) return static_cast<int>(count);
+    source.ran_out = true;
+    std::memset(data, source.filler, static_cast<std::size_t>(size));
+    return size;
+  }
+  static void skip(void* user, int count) {
+    auto& source = *static_cast<StbSource*>(user);
+    const auto to = static_cast<std::int64_t>(source.at) + count,
+               end = static_cast<std::int64_t>(source.bytes.size());
+    source.ran_out |= to > end;
+    source.at = static_cast<std::size_t>(std::clamp<std::int64_t>(to, 0, end));
+  }
+  static int has_ended(void* user) { return static_cast<StbSource*>(user)->ran_out; }
+
+  // nullptr where the picture could be decoded.
+  const char* problem(const void* pixels) const {
+    if (ran_out) return "it ends too early";
+    if (pixels != nullptr) return nullptr;
+    const char* reason = stbi_failure_reason();
+    return reason != nullptr ? reason : "its content makes no sense";
+  }
+};
+constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
 
 // Whole samples as sRGB signals.
 template <typename Sample>
-Decoded decode_signals(Sample* (*load)(const stbi_uc*, int, int*, int*, int*, int), const Bytes& bytes) {
+Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, int*, int*, int), const Bytes& bytes) {
   int width = 0, height = 0, components = 0;
-  const StbPixels<Sample> pixels(load(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components, 0));
-  if (!pixels) return stb_problem();
+  StbSource source{bytes};
+  const StbPixels<Sample> pixels(load(&kFromSource, &source, &width, &height, &components, 0));
+  if (const char* problem = source.problem(pixels.get())) return problem;
   constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
   std::vector<float> light(kMost + 1);
   for (std::size_t i = 0; i <= kMost; ++i) {
@@ -82,18 +114,18 @@ Decoded decode_signals(Sample* (*load)(const stbi_uc*, int, int*, int*, int*, in
 
 Decoded decode_shown(const Bytes& bytes) {
   if (stbi_is_16_bit_from_memory(bytes.data(), static_cast<int>(bytes.size()))) {
-    return decode_signals<stbi_us>(stbi_load_16_from_memory, bytes);
+    return decode_signals<stbi_us>(stbi_load_16_from_callbacks, bytes);
   }
-  return decode_signals<stbi_uc>(stbi_load_from_memory, bytes);
+  return decode_signals<stbi_uc>(stbi_load_from_callbacks, bytes);
 }
 
 Decoded decode_hdr(const Bytes& bytes) {
   // Otherwise stb would make light of any other picture.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   int width = 0, height = 0, components = 0;
-  const StbPixels<float> pixels(
-      stbi_loadf_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components, 3));
-  if (!pixels) return stb_problem();
+  StbSource source{bytes, '\xff'};  // no run is so long
+  const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
+  if (const char* problem = source.problem(pixels.get())) return problem;
   const auto same = [](float value) { return value; };
   return spread(pixels.get(), width, height, 3, same, same);
 }

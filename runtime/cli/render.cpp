@@ -78,8 +78,8 @@ std::optional<ExitCode> read_background(const compiler::Background& background, 
                                         const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
   auto image = runtime::read_environment(background.image.file);
-  if (const auto* reason = std::get_if<std::string>(&image)) {
-    return fail(streams, kIo, fmt::format("cannot read the background `{}`: {}", background.image.file, *reason));
+  if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
+    return fail(streams, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem);
   }
   options.environment =
       std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
@@ -203,6 +203,11 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
 
   runtime::RenderResult result = render_with_progress(request, scene, streams, watching);
   if (result.stats.cancelled) return kDone;
+  if (result.stats.saturated > 0) {
+    streams.err << fmt::format(
+        "warning: {} lost: a pixel's samples add up to {:.2g} at most; scale the lights down\n",
+        count_of(result.stats.saturated, "sample"), runtime::kFullPixel);
+  }
   if (request.denoise) runtime::denoise(result.film, result.settings.threads);
   if (const auto code = write_all(request, scene, result, streams)) return *code;
   return kDone;

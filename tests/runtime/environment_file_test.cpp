@@ -15,8 +15,8 @@ namespace {
 
 std::string reason(const std::string& path) {
   const auto read = read_environment(path);
-  const auto* why = std::get_if<std::string>(&read);
-  return why ? *why : "";
+  const auto* why = std::get_if<UnreadImage>(&read);
+  return why ? why->problem : "";
 }
 
 void write(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }

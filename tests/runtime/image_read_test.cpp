@@ -104,6 +104,16 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
     problem(name, "");
     problem(name, "not a picture at all");
   }
+  // Once, run lengths of an hdr picture were read for ever after its end, and rows of others were invented.
+  for (const char* name : {"e.hdr", "e.bmp", "e.png", "e.jpg", "e.pfm"}) {
+    REQUIRE(write_layer(layer_of(ramp(), Layer::Beauty), {}, folder.file(name)) == std::nullopt);
+    std::ifstream file(folder.file(name), std::ios::binary);
+    const std::string whole(std::istreambuf_iterator<char>(file), {});
+    for (const std::size_t part : {whole.size() / 4, whole.size() / 2, whole.size() - 3}) {
+      CAPTURE(part);
+      problem(name, whole.substr(0, part));
+    }
+  }
   CHECK(problem("a.tga", "x").find(".exr") != std::string::npos);
   CHECK(problem("b.pfm", "PF\n2 2\n-1.0\n1234").find("too early") != std::string::npos);
   CHECK(problem("c.pfm", "PF\n2000000 2000000\n-1.0\n1234").find("too large") != std::string::npos);

@@ -21,7 +21,7 @@ inline std::shared_ptr<runtime::EnvironmentImage> random_image(int width, int he
 inline constexpr const char* kSky = R"("background": {"type": "sky", "elevation": 35, "azimuth": 50, "turbidity": 4,
     "sun_disc": false})";
 // The file is not read: random_image() stands for it.
-inline constexpr const char* kPicture =
-    R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR R"(/README.md", "rotate": 40, "strength": 2})";
+inline constexpr const char* kPicture = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
+                                        R"(/tests/data/one-pixel.hdr", "rotate": 40, "strength": 2})";
 
 }  // namespace fathom::test
