@@ -119,7 +119,8 @@ class Finder {
   };
 
   bool glows(std::uint32_t surface) const {
-    return emits(materials_[surfaces_[surface].material]);
+    const Material& material = materials_[surfaces_[surface].material];
+    return emits(material) && !transmits(material);
   }
   std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
 

@@ -3,7 +3,8 @@
 // A lamp is a sphere, box, cylinder, capsule or quad with an emissive material that unions alone join to the scene
 // and that transforms only move, turn and scale alike along all axes. What is cut, blended, bent or repeated is none:
 // its light is found by rays that hit it. Where other objects hide part of a lamp it stays one: no ray arrives from
-// there.
+// there. What light may pass is none, either: within its like, or what outranks it, it has no surface and hides
+// nothing.
 //
 // Tested by: tests/compiler/lamps_test.cpp
 #pragma once

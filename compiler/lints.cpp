@@ -64,6 +64,7 @@ class Linter {
 
   void run(const vm::VerifiedProgram& surface) {
     find_vanishing();
+    find_clear();
     find_hidden();
     for (NodeId id = 0; id <= scene_.root; ++id) {
       if (!field_.reached(id)) continue;
@@ -148,6 +149,7 @@ class Linter {
       const std::span<const NodeId> arms = graph_.children(id);
       if (arms.size() > Containment::kLongestList) continue;
       for (const auto [arm, within] : containment_.hidden_arms(graph_, arms)) {
+        if (holds_clear_[within]) continue;
         if (lamp_in(arm)) {
           warn("W0507", arm, fmt::format("the lamp {} sends out no light", word(arm)),
                fmt::format("it is wholly inside the {}", word(within)),
@@ -158,6 +160,21 @@ class Linter {
                "a union has no inside walls: leave it out, move it, or cut room for it out of what it is in");
         }
       }
+    }
+  }
+
+  bool is_clear(std::size_t surface) const {
+    return transmits(tables_.materials[tables_.surfaces[surface].material]);
+  }
+
+  void find_clear() {
+    holds_clear_.resize(graph_.size());
+    for (NodeId id = 0; id <= scene_.root; ++id) {
+      const std::span<const NodeId> children = graph_.children(id);
+      const auto surface = kind(id) == Kind::Paint ? static_cast<std::size_t>(graph_.params(id)[0]) : 0;
+      holds_clear_[id] =
+          (kind(id) == Kind::Paint && surface < tables_.surfaces.size() && is_clear(surface)) ||
+          std::any_of(children.begin(), children.end(), [&](NodeId child) { return holds_clear_[child]; });
     }
   }
 
@@ -318,6 +335,7 @@ class Linter {
     vm::Workspace workspace;
     const vm::SurfaceValue value = vm::evaluate_surface(surface, tables_.camera.position, workspace);
     if (!(value.distance < 0)) return;
+    if (value.surface < tables_.surfaces.size() && is_clear(value.surface)) return;
     NodeId at = scene_.root;
     for (const NodeId object : field_.objects(tables_.surfaces)) {
       if (value.surface < tables_.surfaces.size() && field_.surface(object) < tables_.surfaces.size() &&
@@ -337,6 +355,8 @@ class Linter {
   const FieldGraph field_;
   Containment containment_;
   std::vector<bool> vanishes_;  // [node]
+  std::vector<bool>
+      holds_clear_;  // [node] whether some of it is painted with what light passes: it shows what it holds
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 

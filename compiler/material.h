@@ -25,7 +25,7 @@ struct MaterialNumbers {
   double specular_weight = 1;
   glm::dvec3 specular_color{1};
   double roughness = 0.3;
-  double ior = 1.5;         // index of refraction inside relative to outside
+  double ior = 1.5;         // index of refraction, relative to vacuum
   double transmission = 0;  // transmission_weight
   glm::dvec3 transmission_color{1};
   double transmission_depth = 0;  // scene units: after so much transmission_color is left; 0: tint of each crossing

@@ -6,12 +6,14 @@
 // is not: pixels that miss a light in stage 1 get few samples and stay dark. Kirk and Arvo, "Unbiased Sampling
 // Techniques for Image Synthesis", 1991.)
 //
-//     {sampler, seed, first_samples(spp)}                     // stage 1: every pixel, samples [0,
-//     first_samples(spp)) const std::vector<int> more = second_samples(estimates_of(film), width, height, spp);
+//     {sampler, seed, first_samples(spp)}                     // stage 1: of every pixel all
+//     more = second_samples(estimates_of(film), width, height, spp);
 //     {sampler, second_seed(seed), spp - first_samples(spp)}  // stage 2: samples [0, more[pixel])
 //
 // Stage 2 needs numbers that know nothing of stage 1's: in one sequence later points avoid earlier ones, and bias is
-// back. Tested by: tests/runtime/adaptive_test.cpp
+// back.
+//
+// Tested by: tests/runtime/adaptive_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 namespace fathom::runtime {
 namespace {
 
-using Type = Material::Type;
+using Type = MaterialType;
 
 bool is_lambert(Type type) { return type == Type::Diffuse || type == Type::Emissive; }
 

@@ -56,7 +56,7 @@ class Bsdf {
   BsdfSample sample_transparent(float lobe) const;
   BsdfSample sample_layers(float lobe, glm::vec2 u) const;
 
-  Material::Type type_;
+  MaterialType type_;
   glm::vec3 color_, normal_, wo_;
   float eta_;
   std::optional<Layers> layers_;  // of principled materials only: the others are cheap

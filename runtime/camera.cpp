@@ -65,6 +65,11 @@ Camera::Camera(const compiler::Camera& camera, int width, int height)
   if (projection_ == Projection::Perspective) set_lens(camera);
 }
 
+double Camera::spread(double margin) const {
+  if (projection_ != Projection::Orthographic) return lens_radius_;
+  return glm::length(half_ * (1.0 + 2 * margin / size_));
+}
+
 void Camera::set_axes(const compiler::Camera& camera) {
   forward_ = glm::normalize(camera.target - camera.position);
   glm::dvec3 right = glm::cross(forward_, camera.up), pole = camera.up;

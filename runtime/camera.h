@@ -40,6 +40,9 @@ class Camera {
   double lens_radius() const { return lens_radius_; }        // of the circle round the aperture, scene units
   double focus_distance() const { return focus_distance_; }  // along F, scene units
 
+  // No ray within `margin` pixels of the picture begins farther than this from position(), scene units.
+  double spread(double margin) const;
+
   // The place of the lens: along R and U, scene units.
   glm::dvec2 lens_point(glm::vec2 u) const;
 

@@ -104,7 +104,8 @@ void Integrator::start(std::span<const PathKey> keys) {
     Path& path = paths_[id];
     path.key = keys[i];
     path.sampler = samplers[i];
-    path.space = world_.camera_space;
+    path.space = world_.camera_space ? *world_.camera_space
+                                     : space_at(rays[i].origin, world_.media, world_.materials, scratch_);
     path.throughput = glm::vec3(1);
     path.weight = weights[i];
     path.eta_scale = 1;
@@ -150,7 +151,7 @@ void Integrator::settle_arrivals(std::size_t field) {
   const auto hits_end = std::partition(shadows_end, settled_.end(), is_hit);
   for (const Arrival& arrival : std::span(settled_.begin(), tests_end)) {
     const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
-    end_shadow_test(arrival.id, free);
+    end_shadow_test(arrival.id, free && !is_endless(field, arrival.id));
   }
   const auto in_batches = [](std::span<const Arrival> arrivals, const auto& use) {
     for (std::size_t first = 0; first < arrivals.size(); first += kSurfaceBatch) {
@@ -163,6 +164,12 @@ void Integrator::settle_arrivals(std::size_t field) {
   clock.enter(Stage::Film);
   for (const std::uint32_t id : ended_) add_to_film(id);
   ended_.clear();
+}
+
+// Whether a shadow ray looked for the background from within a medium and met no end of that: as leave_scene() has
+// it, there is none to see.
+bool Integrator::is_endless(std::size_t field, std::uint32_t id) const {
+  return field != 0 && !shadows_.empty() && std::isinf(shadows_[id].length);
 }
 
 // A path that met nothing more sees the background.

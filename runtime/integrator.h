@@ -49,7 +49,7 @@ struct World {
   Media media;
   Materials materials;
   Lights lights;
-  Space camera_space;  // where the camera is
+  std::optional<Space> camera_space;  // where all camera rays begin, if they do in the same
 };
 
 // Which numbers paths are drawn by, and where they stand among the samples of their pixel.
@@ -131,6 +131,7 @@ class Integrator {
   Space no_medium(const Vertex& vertex, glm::dvec3 place);
   void record_first_hit(const Vertex& vertex, const Arrival& arrival);
   void add_emission(const Vertex& vertex);
+  bool is_endless(std::size_t field, std::uint32_t id) const;
   float hit_share(const Path& path, float light_pdf) const;
   void add_light(Path& path, glm::vec3 radiance, int bounces);
   std::optional<ShadowRay> look_for_light(Vertex& vertex);

@@ -15,31 +15,12 @@
 
 namespace fathom::runtime {
 
-// The compiler's material in float; colours are linear sRGB.
-struct Material {
-  using Type = compiler::Material::Type;
-  Type type;
-  glm::vec3 color;
-  glm::vec3 emission;    // radiance; black unless emissive
-  float ior;             // inside relative to outside
-  glm::vec3 absorption;  // per scene unit
-};
-
-inline Material to_material(const compiler::Material& m) {
-  const bool emissive = m.type == compiler::Material::Type::Emissive;
-  return {m.type, m.color, emissive ? glm::vec3(m.emission) : glm::vec3(0), static_cast<float>(m.ior), m.absorption};
-}
-
-inline std::vector<Material> to_materials(const compiler::CompiledScene& scene) {
-  std::vector<Material> materials;
-  for (const compiler::Material& m : scene.materials) materials.push_back(to_material(m));
-  return materials;
-}
+using MaterialType = compiler::Material::Type;
 
 // A material at one place of a surface: every parameter a number. Names and meanings after OpenPBR 1.1 (Academy
 // Software Foundation, "OpenPBR Surface", 2024); a parameter at its default costs nothing.
 struct MaterialPoint {
-  Material::Type type = Material::Type::Diffuse;
+  MaterialType type = MaterialType::Diffuse;
   glm::vec3 base_color{0.8f};   // base_weight is multiplied in
   float diffuse_roughness = 0;  // 0: Lambert's
   float metalness = 0;
@@ -64,7 +45,7 @@ struct MaterialPoint {
   bool passes_straight() const { return opacity < 1 || (passes_light() && thin_walled); }
 
  private:
-  bool passes_light() const { return type == Material::Type::Transparent || transmission > 0; }
+  bool passes_light() const { return type == MaterialType::Transparent || transmission > 0; }
 };
 
 // All parameters mixed linearly, t in [0,1]; at 0 and below it is a, at 1 and above b. Two of one type stay of it; of
@@ -105,12 +86,6 @@ class Materials {
   bool pass_straight_ = false;
 };
 
-// What the albedo picture shows: the colour, and for lamps the light's, clamped to white.
-inline glm::vec3 albedo_of(const Material& m) {
-  if (m.type != Material::Type::Emissive) return m.color;
-  const glm::vec3 sum = m.color + m.emission;
-  return {sum.x < 1 ? sum.x : 1, sum.y < 1 ? sum.y : 1, sum.z < 1 ? sum.z : 1};
-}
 glm::vec3 albedo_of(const MaterialPoint& m);
 
 }  // namespace fathom::runtime

@@ -21,11 +21,4 @@ std::optional<std::uint32_t> Media::at(glm::dvec3 place, RealScratch& scratch) c
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> Media::of_material(std::uint32_t material) const {
-  for (std::uint32_t i = 0; i < media_.size(); ++i) {
-    if (media_[i].material == material) return i;
-  }
-  return std::nullopt;
-}
-
 }  // namespace fathom::runtime

@@ -25,8 +25,6 @@ class Media {
 
   // The medium that fills the place, in scene units of the programs; nothing in the open and within what is opaque.
   std::optional<std::uint32_t> at(glm::dvec3 place, RealScratch& scratch) const;
-  // The medium of a material, if it has one.
-  std::optional<std::uint32_t> of_material(std::uint32_t material) const;
 
  private:
   struct Medium {

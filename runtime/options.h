@@ -21,7 +21,7 @@
 namespace fathom::runtime {
 
 struct Progress {
-  double fraction;     // of the camera paths that are finished, in [0,1]
+  double fraction;     // of the camera paths that are begun, in [0,1]
   std::uint64_t rays;  // marched so far
   double seconds;      // since the render began
 };

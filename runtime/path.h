@@ -8,6 +8,7 @@
 #include "runtime/light.h"
 #include "runtime/ray.h"
 #include "runtime/sampler.h"
+#include "runtime/space.h"
 
 namespace fathom::runtime {
 
@@ -15,14 +16,6 @@ namespace fathom::runtime {
 struct PathKey {
   int x, y;              // pixel
   std::uint32_t sample;  // of the pixel's, in the plan that draws them
-};
-
-// What fills the space a ray travels through.
-struct Space {
-  std::uint32_t field = 0;  // 0: the scene's; else that of medium number field - 1
-  int side = 0;             // of that field, as Ray::side
-  float ior = 1;            // relative to vacuum
-  glm::vec3 absorption{0};  // per scene unit
 };
 
 struct Path {

@@ -18,6 +18,8 @@ constexpr float kLeastAlpha = 1e-3f;
 // blur.
 constexpr float kLeastBend = 0.01f;
 constexpr float kLeastCos = 1e-6f;
+// Of a lobe that light may take, to be drawn.
+constexpr float kLeastChance = 0.01f;
 constexpr float kBelowOne = 0x1.fffffep-1f;
 
 float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
@@ -171,6 +173,8 @@ void Principled::set_chances() {
   if (coat_weight_ > 0 && !inside_) chance_[kCoat] = 1 - coat_passes_o_;
   if (metal_ > 0) chance_[kMetal] = coat_passes_o_ * metal_ * greatest(coat_tint_ * metal_tint_(wo_.z));
   chance_[kBoundary] = coat_passes_o_ * (greatest(coat_tint_ * glossy) + greatest(boundary_passes(1 - reflected)));
+  // Facets may let through what the surface itself reflects wholly.
+  if (glass_ > 0 && !smooth_boundary_) chance_[kBoundary] = std::max(chance_[kBoundary], kLeastChance * glass_);
   chance_[kPigment] = greatest(pigment_albedo_);
   chance_[kLost] = greatest(lost_metal_.albedo() + lost_glass_.albedo());
   chance_[kLostThrough] = away * greatest(lost_through_.albedo());

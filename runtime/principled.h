@@ -1,14 +1,12 @@
 // A surface in layers: coat over metal, glass or pigment under a dielectric boundary. A subset of OpenPBR 1.1
 // (Academy Software Foundation, "OpenPBR Surface", 2024), in local space: the normal is z, wo lies above.
 //
-//     opacity * [ coat over ( metalness * metal + (1 - metalness) * ( transmission * glass
-//                                                                    + (1 - transmission) * boundary over pigment ) )
-//                                                                    ]
+//     opacity * [ coat over ( metalness * metal + (1 - metalness) * body ) ]
+//     body = transmission * glass + (1 - transmission) * boundary over pigment
 //
 // Every part is reciprocal: f(wo,wi) = f(wi,wo), through a boundary but for eta^2; and none gives more than it gets:
-// - A rough boundary's lost light comes back as a diffuse lobe by what each direction lost (Kulla and Conty,
-// "Revisiting
-//   Physically Based Shading at Imageworks", 2017; energy.h), through glass on both sides.
+// - A rough boundary's lost light comes back as a diffuse lobe by what each direction lost, through glass on both
+//   sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017; energy.h).
 // - Pigment gets what the boundary lets through, h = 1 - E: h(wo) h(wi) / average (Kelemen and Szirmay-Kalos, "A
 //   Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001). With diffuse_roughness the
 //   divisor goes over to the greatest h, which may lose a few hundredths.

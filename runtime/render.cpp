@@ -129,21 +129,6 @@ class Worker {
   std::uint64_t tile_paths_ = 0, reported_rays_ = 0;
 };
 
-// What fills the place where the camera stands.
-Space space_at(glm::dvec3 place, const Media& media, const Materials& materials) {
-  Space space;
-  RealScratch scratch;
-  const std::optional<std::uint32_t> medium = media.at(place, scratch);
-  if (!medium) return space;
-  const MaterialPoint filling = materials.at(media.material(*medium), place, scratch.workspace);
-  space.field = *medium + 1;
-  space.side = -1;
-  if (!filling.fills()) return space;
-  space.ior = filling.ior;
-  space.absorption = filling.absorption;
-  return space;
-}
-
 World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
   World world{scene,
               settings,
@@ -159,7 +144,11 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
     add_regions(world.field, scene, regions);
     world.media.add_regions(scene, regions);
   }
-  world.camera_space = space_at(scene.camera.position, world.media, world.materials);
+  RealScratch scratch;
+  const glm::dvec3 eye = world.camera.position();
+  if (is_even_around(eye, world.camera.spread(world.filter.radius()), world.field, world.media, scratch)) {
+    world.camera_space = space_at(eye, world.media, world.materials, scratch);
+  }
   return world;
 }
 

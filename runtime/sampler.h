@@ -170,9 +170,7 @@ class Sampler {
  private:
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-  float next_independent() {
-    return static_cast<float>(mix64(key_ + kGoldenGamma * ++drawn_) >> 40) * 0x1p-24f;
-  }
+  float next_independent() { return static_cast<float>(mix64(key_ + kGoldenGamma * ++drawn_) >> 40) * 0x1p-24f; }
 
   // 64 random bits for the next pair, of which the seeds are made.
   std::uint64_t pair_hash() { return mix64(key_ + kGoldenGamma * ++drawn_); }

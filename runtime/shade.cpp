@@ -145,7 +145,6 @@ MaterialPoint Integrator::mix_of(const vm::SurfaceShares& shares, glm::dvec3 pla
   for (int i = 1; i < shares.count; ++i) {
     const double more = shares.all[static_cast<std::size_t>(i)].weight;
     weight += more;
-    if (material(i) == material(0)) continue;
     mixed = mix(mixed, materials.at(material(i), place, scratch_.workspace), static_cast<float>(more / weight));
   }
   return mixed;
@@ -251,6 +250,7 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   const float share = both ? power_heuristic(light.pdf, value.pdf) : 1;
   const bool through = glm::dot(light.wi, v.point->normal) < 0;
   const Space& space = through ? v.beyond : v.space;
+  if (shadows_.empty() && space.field != 0 && std::isinf(light.distance)) return std::nullopt;  // no way out
   path.shadow_radiance = path.throughput * value.f * light.radiance * (share / light.pdf);
   if (shadows_.empty()) path.shadow_radiance *= transmittance(space, light.distance);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;

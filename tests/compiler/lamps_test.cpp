@@ -93,6 +93,22 @@ TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]")
         1);
 }
 
+TEST_CASE("lamps: what light may pass is none", "[lamps]") {
+  const auto count = [](const std::string& material) {
+    const Source source("scene.json",
+                        R"({"version": 1, "materials": {"m": {"type": "principled", "emission": [1, 1, 1], )" +
+                            material + R"(}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
+    Diagnostics diagnostics;
+    const auto scene = compile(source, diagnostics);
+    REQUIRE(scene);
+    return scene->lamps.size();
+  };
+  CHECK(count(R"("roughness": 0.5)") == 1);
+  CHECK(count(R"("transmission": 1)") == 0);
+  CHECK(count(R"("opacity": 0.5)") == 0);
+  CHECK(count(R"("opacity": "0.5 + x")") == 0);
+}
+
 TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[lamps]") {
   const CompiledScene scene = lit(R"({"type": "sphere", "radius": 1, "translate": [1e5, 0, 0], "material": "glow"},
       {"type": "quad", "a": [99999, 3, 0], "b": [100001, 3, 0], "c": [100001, 3, 2], "d": [99999, 3, 2],

@@ -108,6 +108,23 @@ TEST_CASE("one union as the only object is one object", "[report]") {
   CHECK(report.objects[0].name == "pair");
 }
 
+// Once, a lamp in a glass ball sent out no light, it said, and a camera under water had to move.
+TEST_CASE("what is within glass shows", "[report]") {
+  const std::string outer = R"("camera": {"position": [1.5, 0, 0]}, "objects": [
+      {"type": "sphere", "radius": 2, "material": "glass"}, {"type": "sphere", "radius": 1)";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", ""}, {"", R"(, "material": "glass")"}, {R"(, "lamp": {"type": "emissive"})", R"(, "material": "lamp")"}};
+  for (const auto& [material, inner] : cases) {
+    const Source source("scene.json", R"({"version": 1, "materials": {"glass": {"type": "transparent"})" + material +
+                                          "}, " + outer + inner + "}]}");
+    Diagnostics diagnostics;
+    CompileOptions options;
+    options.lint = true;
+    compile(source, diagnostics, options);
+    CHECK(diagnostics.all().empty());
+  }
+}
+
 TEST_CASE("lints are for check, and a formula without a bound is for everyone", "[report]") {
   const std::string hidden = R"({"type": "sphere", "radius": 2}, {"type": "sphere", "radius": 1})";
   CHECK(compiled(hidden).diagnostics.all().empty());

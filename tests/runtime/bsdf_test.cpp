@@ -78,7 +78,7 @@ TEST_CASE("bsdf: mirrors and Snell's law", "[runtime]") {
 
 TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only what passes", "[runtime]") {
   MaterialPoint m;
-  m.type = Material::Type::Transparent;
+  m.type = MaterialType::Transparent;
   m.base_color = glm::vec3(0.5f);
   const glm::vec3 normal(0, 0, 1), wo = glm::normalize(glm::vec3(1, 0, 0.3f));
   const Bsdf bsdf(m, normal, wo, 1.5f, false);
@@ -221,7 +221,7 @@ TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees",
 
 TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]") {
   MaterialPoint smooth;
-  smooth.type = Material::Type::Transparent;
+  smooth.type = MaterialType::Transparent;
   smooth.base_color = glm::vec3(1);
   for (const MaterialPoint& m : {smooth, glass(0)}) {
     const glm::vec3 wo = towards(0.6f, 0.1f);
@@ -277,7 +277,7 @@ TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[
   pane.metalness = 0.25f;
   pane.opacity = 0.6f;
   hole.opacity = 0.25f;
-  mirror.type = Material::Type::Specular;
+  mirror.type = MaterialType::Specular;
   const Case cases[] = {{"pane", pane},
                         {"pane from inside", pane, true},
                         {"hole", hole},
@@ -325,7 +325,7 @@ TEST_CASE("bsdf: light goes straight through either way alike", "[runtime]") {
 TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[runtime]") {
   const auto is_delta = [](const MaterialPoint& m) { return Bsdf(m, kNormal, kNormal, 1.5f, false).is_delta(); };
   MaterialPoint mirror;
-  mirror.type = Material::Type::Specular;
+  mirror.type = MaterialType::Specular;
   CHECK(is_delta(mirror));
   CHECK(is_delta(metal(0)));
   CHECK(is_delta(glass(0)));

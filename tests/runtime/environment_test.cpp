@@ -104,7 +104,7 @@ TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and i
   const auto shared = std::make_shared<EnvironmentImage>(image);
   const auto looking = [&](const char* rotate, glm::vec3 w) {
     const std::string settings = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
-                                 R"(/README.md", "rotate": )" +
+                                 R"(/tests/data/one-pixel.hdr", "rotate": )" +
                                  std::string(rotate) + "}";
     return Environment(scene_with(settings), shared).radiance(glm::normalize(w)).x;
   };
@@ -146,6 +146,19 @@ TEST_CASE("environment: a disc however small gives the irradiance asked for", "[
     const Mean e = irradiance(lit, {{0, 0, 0}, glm::normalize(glm::vec3(1, 2, 1))}, 20000);
     CHECK(e.value == Approx(2).epsilon(degrees > 1 ? 1e-3 : 1e-5));
   }
+}
+
+// Once, a disc of 1e-4 degrees, as rays met it, was 7 % larger than its radiance was for.
+TEST_CASE("environment: rays that hit a small disc find its irradiance", "[lights]") {
+  const Environment lit(scene_with(disc_of(1e-4)), nullptr);
+  const glm::vec3 middle = glm::normalize(glm::vec3(1, 2, 1));
+  const glm::vec3 aside = glm::normalize(glm::cross(middle, glm::vec3(1, 0, 0)));
+  float least = 0, most = 1e-3f;  // sines; its rim is between
+  for (int i = 0; i < 40; ++i) {
+    const float between = (least + most) / 2;
+    (lit.radiance(glm::normalize(middle + between * aside)).x > 0 ? least : most) = between;
+  }
+  CHECK(M_PI * least * least * lit.radiance(middle).x == Approx(2).epsilon(1e-3));
 }
 
 TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[lights]") {

@@ -108,6 +108,18 @@ TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
   expect(tests::veiled_drink(), options, 1e-3);
 }
 
+// Once, light was found on a clear lamp's surface where water filled it, and through a sea that has no end.
+TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
+  for (const LightScene& scene : {tests::drowned_lamp(), tests::bottomless_sea()}) {
+    for (const LightSampling way : kEveryWay) {
+      INFO("way " << static_cast<int>(way));
+      RenderOptions options = square(8, 16);
+      options.light_sampling = way;
+      expect(scene, options, 1e-3);
+    }
+  }
+}
+
 // What goes straight on is not scattered: however few bounces a path may make, it sees what lies behind a hole.
 TEST_CASE("light: holes are no bounces", "[render][light]") {
   LightScene scene =

@@ -14,7 +14,7 @@ namespace {
 using compiler::CompiledScene;
 using glm::dvec3;
 using glm::vec3;
-using Type = Material::Type;
+using Type = MaterialType;
 
 CompiledScene scene_of(const std::string& material, const std::string& translate = "[0, 0, 0]") {
   return tests::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/render.h"
+#include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 
 namespace fathom::runtime {
@@ -65,6 +66,36 @@ TEST_CASE("media: what lies within glass is seen through it", "[render]") {
       "lamp": {"type": "emissive", "emission": [1, 1, 1]})";
   const glm::dvec3 seen = seen_through(materials, layer(0.5, -0.5, "glass") + "," + layer(0, -0.3, "lamp"));
   CHECK(seen.x == Approx(std::exp(-0.5)).epsilon(1e-4));
+}
+
+std::string ball_round(const std::string& camera) {
+  return R"("camera": {)" + camera + R"(}, "background": [1, 1, 1],
+      "materials": {"clear": {"type": "transparent", "ior": 1, "absorption": [1, 0, 0]}},
+      "objects": [{"type": "sphere", "radius": 1, "material": "clear"}])";
+}
+
+double red_of(const std::string& json) {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 64;
+  return estimate(render(scene_of(json), options).film).mean;
+}
+
+// Once, all rays began in what fills the camera's own place: of a ball cut by the plane they start from all that
+// missed it were black.
+TEST_CASE("media: every camera ray begins in what fills its own place", "[render]") {
+  const std::string plane = R"("type": "orthographic", "position": [0.5, 0, 0], "target": [0.5, 0, -1], "width": )";
+  // Half a chord.
+  CHECK(red_of(ball_round(plane + "0.002")) == Approx(std::exp(-std::sqrt(0.75))).epsilon(1e-3));
+  // A disc of half chords s: its mean of exp(-s) is 2 (1 - 2 / e). It has pi of the 16 that are seen.
+  const std::string wide = R"("type": "orthographic", "position": [0, 0, 0], "target": [0, 0, -1], "width": 4)";
+  const double share = M_PI / 16;
+  CHECK(red_of(ball_round(wide)) == Approx(1 - share + share * 2 * (1 - 2 / M_E)).epsilon(2e-3));
+  // A lens half in the ball, half out of it: those that begin outside pass by.
+  const std::string lens =
+      R"("position": [1, 0, 0], "target": [1, 0, -100], "fov": 0.01, "lens_radius": 0.001, "focus_distance": 100)";
+  CHECK(red_of(ball_round(lens)) < 1);
+  CHECK(red_of(ball_round(lens)) > 0.95);
 }
 
 // Once, light that came out of the glass on a table went on within the table, for a union has no surface there.

@@ -42,6 +42,33 @@ inline LightScene in_even_light(const std::string& material,
           1};
 }
 
+// A body of which a small spot is seen, along z, within a sea of water that bends no light.
+inline LightScene in_sea(const std::string& name, const std::string& sea, const std::string& rest) {
+  return {name,
+          R"("camera": {"type": "orthographic", "position": [0, 0, 3], "target": [0, 0, 0], "width": 0.002},
+             "materials": {"water": {"type": "transparent", "ior": 1, "priority": 1},
+                           "white": {"type": "diffuse", "color": [1, 1, 1]},
+                           "glow": {"type": "principled", "transmission": 1, "ior": 1, "emission": [9, 9, 9]}},
+             "objects": [{)" +
+              sea + R"(, "material": "water"},
+                         {"type": "box", "half_size": [1, 1, 0.1], "translate": [0, 0, -0.1], "material": "white"})" +
+              rest,
+          0};
+}
+
+// What water outranks has no surface there, so a glowing ball of clear glass in it is not.
+inline LightScene drowned_lamp() {
+  return in_sea("a lamp that is not there", R"("type": "sphere", "radius": 10)",
+                R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 3, 3], "material": "glow"}])");
+}
+
+// No ray leaves a half space of water downwards.
+inline LightScene bottomless_sea() {
+  return in_sea("a sea without a ground", R"("type": "plane", "normal": [0, 0, -1], "offset": 1)",
+                R"(], "background": [1, 1, 1], "lights": {"far": {"type": "directional", "direction": [0, 0, -1],
+                   "irradiance": [1, 1, 1], "angle": 2}})");
+}
+
 // A floor of albedo 1/2 round the origin, of which only a spot is seen that is too small for its light to vary.
 inline std::string floor_spot(const std::string& lights, const std::string& objects,
                               const std::string& materials = "") {

@@ -14,7 +14,7 @@
 
 namespace fathom::test {
 
-using runtime::Bsdf, runtime::Material, runtime::MaterialPoint;
+using runtime::Bsdf, runtime::MaterialPoint, runtime::MaterialType;
 
 inline const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
 inline constexpr float kCosines[] = {1, 0.8f, 0.5f, 0.2f, 0.05f};
@@ -36,7 +36,7 @@ struct MaterialCase {
   Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
   // The index that light is bent by, specular_weight in it.
   float bending() const {
-    if (material.thin_walled || material.type != Material::Type::Principled) return 1;
+    if (material.thin_walled || material.type != MaterialType::Principled) return 1;
     const float s = std::sqrt(material.specular_weight) * (eta() - 1) / (eta() + 1);
     return (1 + s) / (1 - s);
   }
@@ -44,7 +44,7 @@ struct MaterialCase {
 
 inline MaterialPoint principled(float roughness) {
   MaterialPoint m;
-  m.type = Material::Type::Principled;
+  m.type = MaterialType::Principled;
   m.base_color = glm::vec3(1);
   m.roughness = roughness;
   return m;
