@@ -87,8 +87,8 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   // What it costs to know how far the solid is convex pays where that is seldom no further than the distance.
   constexpr double kConvexShare = 0.25;
   field.convex = vm::convex_share(compiled.distance) >= kConvexShare;
-  // Where the bound does not end a ray, `far` has to: certify() needs an end.
-  constexpr double kFarthest = 1e12;
+  // Where the bound does not end a ray, `far` has to: certify() needs an end. No number of a scene is larger.
+  constexpr double kFarthest = 1e18;
   const bool bounded = compiled.bound.empty() || compiled.bound.finite();
   field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
   if (!bounded) field.far = std::min(field.far, kFarthest);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 
 #include "tests/runtime/rays.h"
@@ -53,6 +54,20 @@ TEST_CASE("march: an empty scene is missed, and a wide floor hides nothing that 
   const MarchResult result = march(make_field(wide), rays);
   for (const Arrival& arrival : result.arrivals) {
     if (!(arrival.t < 3)) FAIL_CHECK("the ray of slope number " << arrival.id << " went through the ball");
+  }
+}
+
+// Once, every ray ended 1e12 away, whatever was asked for.
+TEST_CASE("march: a floor of any size is met", "[march]") {
+  for (const char* size : {"1", "1e6", "1e12", "1e15"}) {
+    CAPTURE(size);
+    const auto scene =
+        scene_of(std::string(R"("camera": {"position": [0, 0, )") + size +
+                 R"(]}, "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -)" + size + "}]");
+    const std::vector<Ray> rays{{to_float({0, 0, 0}), to_float(glm::normalize(glm::dvec3(0, -3, -4)))}};
+    const MarchResult result = march(make_field(scene), rays);
+    REQUIRE(result.counters.hits == 1);
+    CHECK(result.arrivals[0].t == Approx(std::atof(size) / 0.6).epsilon(1e-6));
   }
 }
 
