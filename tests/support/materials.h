@@ -32,7 +32,10 @@ struct MaterialCase {
   MaterialPoint material;
   bool inside = false;
 
-  float eta() const { return inside ? 1 / material.ior : material.ior; }
+  // What fills no body is of its own index from both sides.
+  float eta() const { return inside && material.fills() ? 1 / material.ior : material.ior; }
+  // The same from where wi is.
+  float across(bool through) const { return through && material.fills() ? 1 / eta() : eta(); }
   Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
   // The index that light is bent by, specular_weight in it.
   float bending() const {
@@ -123,7 +126,7 @@ inline double worst_asymmetry(MaterialCase c, int pairs, std::uint64_t seed) {
     if (wo.z < 0.01f || other.z < 0.01f) continue;
     const glm::vec3 wi(other.x, other.y, through ? -other.z : other.z);
     const Bsdf here(c.material, up, wo, c.eta(), c.inside);
-    const Bsdf there(c.material, through ? -up : up, wi, through ? 1 / c.eta() : c.eta(), through != c.inside);
+    const Bsdf there(c.material, through ? -up : up, wi, c.across(through), through != c.inside);
     // Radiance counts by the square of its side's index.
     const float index = through ? c.bending() : 1;
     const glm::vec3 forth = here.evaluate(wi).f / other.z * (index * index), back = there.evaluate(wo).f / wo.z;
