@@ -37,7 +37,7 @@ constexpr const char* kScenes[] = {FATHOM_SOURCE_DIR "/scenes/cornell-box.json",
 constexpr double kBar = 10;     // relMSE of before over that of the default
 constexpr double kGoal = 1e-3;  // relMSE
 constexpr int kPilotSpp = 8;    // to see how fast a scene is
-constexpr int kSpp = 32;
+constexpr int kSpp = 32;        // of the default's longest picture
 constexpr int kReference = 48;  // times the samples of the longest picture
 constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits};
 constexpr ImageWay kDefault{};

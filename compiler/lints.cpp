@@ -354,9 +354,8 @@ class Linter {
   Diagnostics& diagnostics_;
   const FieldGraph field_;
   Containment containment_;
-  std::vector<bool> vanishes_;  // [node]
-  std::vector<bool>
-      holds_clear_;  // [node] whether some of it is painted with what light passes: it shows what it holds
+  std::vector<bool> vanishes_;     // [node]
+  std::vector<bool> holds_clear_;  // [node] whether light passes some of it, which then shows what it holds
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "runtime/image_read.h"
 
@@ -18,18 +17,9 @@ float usable(float value) {
   return std::isinf(value) ? kLargestHalf : std::min(value, kLargest);
 }
 
-bool ends_in(const std::string& path, std::string_view ending) {
-  if (path.size() < ending.size()) return false;
-  return std::equal(ending.rbegin(), ending.rend(), path.rbegin(),
-                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-}
-
 }  // namespace
 
 std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path) {
-  if (!ends_in(path, ".hdr") && !ends_in(path, ".exr")) {
-    return UnreadImage{fmt::format("`{}` ends in neither .hdr nor .exr", path)};
-  }
   const auto read = read_image(path);
   if (const auto* unread = std::get_if<UnreadImage>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);

@@ -171,7 +171,7 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
       done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality);
       break;
     case ImageFormat::Bmp:
-      // The header's numbers are of 32 bits.
+      // The header's numbers are of 32 bits, and rows are padded.
       done = picture.rgb.size() < (std::size_t{1} << 31) - (std::size_t{1} << 20) &&
              stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
       break;

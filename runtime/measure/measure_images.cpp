@@ -104,7 +104,8 @@ std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene) {
   for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
     ways.push_back({.marching = {.method = Method::Sphere, .epsilon = epsilon}});
   }
-  if (scene.lamps.empty() && scene.lights.empty()) return ways;
+  const bool surrounded = scene.background.type != compiler::Background::Type::Gradient;  // sky, picture: sampled
+  if (scene.lamps.empty() && scene.lights.empty() && !surrounded) return ways;
   for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
     ways.push_back({.sampler = sampler});
   ways.push_back({.light_sampling = LightSampling::Lights});

@@ -27,8 +27,8 @@ struct ImagePlan {
   ImageWay reference_way = {.marching = {.method = Method::Certified}};
 };
 
-// The default, and sphere tracing at several eps; of a scene with lamps or lights also other samplers and ways to
-// find light.
+// The default, and sphere tracing at several eps; of a scene with lamps, lights, a sky or a picture round it also
+// other samplers and ways to find light.
 std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene);
 
 // Linear sRGB, [y][x][rgb].

@@ -134,6 +134,9 @@ TEST_CASE("chart: what is charted ends with the reference, and starts with what 
   CHECK(compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)] == kDefaultSampler);
   CHECK(kLightSamplingNames[static_cast<std::size_t>(settings.light_sampling)] == kDefaultLights);
   CHECK(painted_ways(scene_of(kLampScene)).size() == 9);
+  // Once, light of the sky was no light to look for.
+  const std::string under_sky = R"("background": {"type": "sky"}, "objects": [{"type": "sphere", "radius": 1}])";
+  CHECK(painted_ways(scene_of(under_sky)).size() == 9);
 }
 
 // One row for each way, in the order of kWays, for each class of rays.

@@ -59,10 +59,8 @@ TEST_CASE("environment file: bad files say why", "[lights]") {
   const tests::TemporaryFolder folder;
   write(folder.file("a.hdr"), "no picture");
   write(folder.file("b.exr"), "no picture");
-  write(folder.file("c.png"), "");
   CHECK(reason(folder.file("a.hdr")).find("Radiance") != std::string::npos);
   CHECK(reason(folder.file("b.exr")).find("exr") != std::string::npos);
-  CHECK(reason(folder.file("c.png")).find(".hdr nor .exr") != std::string::npos);
   CHECK(!reason(folder.file("none.hdr")).empty());
   CHECK(!reason(folder.file("none.exr")).empty());
 }
