@@ -15,6 +15,8 @@ void ByteWriter::text(std::string_view text) {
   bytes_.insert(bytes_.end(), text.begin(), text.end());
 }
 
+void ByteWriter::raw(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+
 std::uint64_t ByteReader::little_endian(int count) {
   const std::span<const std::uint8_t> bytes = raw(static_cast<std::size_t>(count));
   std::uint64_t value = 0;

@@ -27,7 +27,7 @@ class ByteWriter {
   void u64(std::uint64_t value) { little_endian(value, 8); }
   void f64(double value);
   void text(std::string_view text);  // u32 bytes, then these
-  void raw(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  void raw(std::span<const std::uint8_t> bytes);
 
   std::size_t size() const { return bytes_.size(); }
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }

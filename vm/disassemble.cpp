@@ -2,19 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include "vm/escape.h"
 
 namespace fathom::vm {
 namespace {
-
-float float_at(const Program& program, std::size_t word) { return std::bit_cast<float>(program.words[word]); }
 
 // e.g. " _ x"; nothing when all operands come from the stack. `constant` is where the next constant lies.
 std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t constant) {
   if ((row.form != Form::Unary && row.form != Form::Binary) || operand_of(word) == 0) return "";
   const Sources sources = sources_of(word);
   const auto name = [&](Source source) -> std::string {
-    if (source == Source::Constant) return fmt::format(" {}", float_at(program, constant++));
+    if (source == Source::Constant) return fmt::format(" {}", program.wide[constant++]);
     if (source == Source::Local) return fmt::format(" %{}", sources.local);
     return std::string(" ") + "_xyz"[static_cast<std::size_t>(source)];
   };
@@ -28,8 +26,7 @@ std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint
   if (row.form != Form::Shape) return "";
   std::string text;
   if (operand_of(word) & kMoved) {
-    text = fmt::format(" at {} {} {}", float_at(program, moved), float_at(program, moved + 1),
-                       float_at(program, moved + 2));
+    text = fmt::format(" at {} {} {}", program.wide[moved], program.wide[moved + 1], program.wide[moved + 2]);
   }
   return operand_of(word) & kJoined ? text + " min" : text;
 }
@@ -45,15 +42,14 @@ std::string operation(const Program& program, std::size_t at, const OpcodeInfo& 
     const int i = static_cast<int>(n) % row.immediates;
     if (row.form == Form::Outline && i == 0) text += ' ';  // sets the groups apart
     text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
-                                         : fmt::format(" {}", float_at(program, first + n));
+                                         : fmt::format(" {}", program.wide[first + n]);
   }
   return text + shape_modes(program, row, word, at + 1);
 }
 
-std::string place(const Program& program, const DebugEntry& entry) {
-  std::string text = entry.symbol;
-  if (entry.line > 0) text = fmt::format("{}:{}:{} {}", program.source_name, entry.line, entry.column, text);
-  return text;
+std::string place(const DebugEntry& entry) {
+  const std::string where = entry.line > 0 ? fmt::format("@{}:{}", entry.line, entry.column) : "@";
+  return entry.symbol.empty() ? where : where + " " + escape(entry.symbol);
 }
 
 // A stack's height before and after, or the one height when it stays.
@@ -61,14 +57,20 @@ std::string height(int before, int change) {
   return change == 0 ? fmt::format("{}", before) : fmt::format("{}->{}", before, before + change);
 }
 
+std::string trimmed(std::string text) {
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
 }  // namespace
 
 std::string disassemble(const VerifiedProgram& verified) {
   const Program& program = verified.program();
-  std::string text = fmt::format("; {}  {} ops  {} words  max stack {} values, {} points  {} locals  cost {}\n",
-                                 program.source_name.empty() ? "program" : program.source_name,
+  std::string text = fmt::format("; {} ops  {} words  max stack {} values, {} points  {} locals  cost {}\n",
                                  verified.instructions(), program.words.size(), verified.max_values(),
                                  verified.max_points(), program.locals, verified.cost());
+  if (program.locals > 0) text += fmt::format("locals {}\n", program.locals);
+  if (!program.source_name.empty()) text += fmt::format("source \"{}\"\n", escape(program.source_name));
   text += "; off  words  values  points  cost  op                                       ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
@@ -79,9 +81,10 @@ std::string disassemble(const VerifiedProgram& verified) {
     const std::string point_stack = height(points, effect.points_change);
     values += effect.values_change;
     points += effect.points_change;
-    const std::string source = i < program.debug.size() ? place(program, program.debug[i]) : "";
-    text += fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<40} ; {}\n", at, length, value_stack, point_stack,
-                        instruction_cost(program.words[at]), operation(program, at, row), source);
+    const std::string line =
+        fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<40} ", at, length, value_stack, point_stack,
+                    instruction_cost(program.words[at]), operation(program, at, row));
+    text += i < program.debug.size() ? line + place(program.debug[i]) + '\n' : trimmed(line) + '\n';
     at += length;
   }
   return text;

@@ -1,12 +1,14 @@
-// The listing of a program: one line an instruction, after the layout of other bytecode tools.
+// The listing of a program: one line an instruction, after the layout of other bytecode tools. vm/assemble.h reads it
+// back, to the word.
 //
 //       off  words  values  points  cost  op                               ; source
-//      0000      4       0    1->2     1  translate 0 1 0                  ; scene.json:6:5 transform "ball"
+//      0000      4       0    1->2     1  translate 0 1 0                  @6:5 transform "ball"
 //
-// off: of the opcode word, in words. values, points: the stacks' heights before and after.
+// off: of the opcode word, in words. values, points: the stacks' heights before and after. @: line and column in the
+// source named above, and the node.
 //
-// Numbers print with the fewest digits that read back to the same float, so that the listing loses nothing.
-// Tested by: tests/golden (dumps)
+// Numbers are what the machine in double sees, with the fewest digits that read back to the same.
+// Tested by: tests/vm/assemble_test.cpp, tests/golden (dumps)
 #pragma once
 
 #include <string>

@@ -34,7 +34,9 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
       }
     } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
       return fmt::format("{}: {} is not finite", row.mnemonic, name);
-    } else if (static_cast<float>(program.wide[word]) != std::bit_cast<float>(bits)) {
+    } else if (program.wide[word] == 0 && std::signbit(program.wide[word])) {
+      return fmt::format("{}: {} is -0, which is written 0", row.mnemonic, name);
+    } else if (std::bit_cast<std::uint32_t>(static_cast<float>(program.wide[word])) != bits) {
       return fmt::format("{}: {} is {} in the code but {} in the wide table", row.mnemonic, name,
                          std::bit_cast<float>(bits), program.wide[word]);
     }

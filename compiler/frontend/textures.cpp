@@ -15,7 +15,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr int kDeepest = 16;
+constexpr int kDeepest = kMaxPatternDepth;
 
 // A pattern's row with ends that the parameter can be.
 RecordSpec row_for(const RecordSpec& pattern, const PropertySpec& parameter) {

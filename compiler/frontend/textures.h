@@ -14,6 +14,8 @@
 
 namespace fathom::compiler {
 
+inline constexpr int kMaxPatternDepth = 16;  // patterns that one is within
+
 // A value as read: a texture, or a constant.
 struct ReadTexture {
   glm::dvec3 typical;                       // the constant; what stands in for the texture (material.h)

@@ -195,18 +195,17 @@ std::optional<std::string> make_folder(const std::string& folder) {
   return runtime::check_image_path((std::filesystem::path(folder) / "map.png").string());
 }
 
-std::variant<std::vector<compiler::Source>, ExitCode> read_scenes(const ChartRequest& request,
-                                                                  const Streams& streams) {
-  std::vector<compiler::Source> sources;
+std::variant<std::vector<SceneInput>, ExitCode> read_scenes(const ChartRequest& request, const Streams& streams) {
+  std::vector<SceneInput> sources;
   if (request.scene.path.empty()) {
     for (const ChartScene& scene : chart_scenes()) {
-      sources.emplace_back(std::string(scene.path), std::string(scene.text));
+      sources.push_back({compiler::Source(std::string(scene.path), std::string(scene.text)), std::nullopt});
     }
     return sources;
   }
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  sources.push_back(std::get<compiler::Source>(std::move(source)));
+  sources.push_back(std::get<SceneInput>(std::move(source)));
   return sources;
 }
 
@@ -225,8 +224,8 @@ std::variant<std::vector<NamedScene>, ExitCode> compile_scenes(const ChartReques
   auto sources = read_scenes(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&sources)) return *code;
   std::vector<NamedScene> scenes;
-  for (compiler::Source& source : std::get<std::vector<compiler::Source>>(sources)) {
-    const std::string name = name_of(source, request);
+  for (SceneInput& source : std::get<std::vector<SceneInput>>(sources)) {
+    const std::string name = name_of(source.source, request);
     auto compiled = compile_scene(std::move(source), request.scene, streams);
     if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
     scenes.push_back({name, std::get<compiler::CompiledScene>(std::move(compiled))});

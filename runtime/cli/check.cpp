@@ -70,7 +70,7 @@ int run_check(std::span<const std::string> args, const Streams& streams) {
   options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
     if (pass == "graph") graph = stage;
   };
-  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams, options);
+  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code == kBadScene ? kFoundProblems : *code;
 
   const auto& scene = std::get<compiler::CompiledScene>(compiled);

@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "compiler/artefact/listing.h"
 #include "compiler/graph_export.h"
 #include "compiler/pass_diff.h"
 #include "runtime/cli/operation_table.h"
@@ -23,10 +24,11 @@ constexpr const char* kExamples =
     "fathom dump scene.json --after graph          # before the first\n"
     "fathom dump scene.json --diff                 # what each pass changed\n"
     "fathom dump scene.json --stats                # what costs what\n"
+    "fathom dump scene.fbc --stage file            # everything, as text that `fathom asm` reads back\n"
     "fathom dump scene.json --region 0,1,0         # what matters at a point, and the whole program\n"
     "fathom dump scene.json --stage graph --format dot | dot -Tsvg > graph.svg";
 
-enum Stage { kSyntax, kGraph, kBytecode };
+enum Stage { kSyntax, kGraph, kBytecode, kFile };
 enum Format { kText, kJson, kDot, kMermaid };
 
 struct DumpRequest {
@@ -72,6 +74,11 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
   if (request.stage == kSyntax && request.format > kText) {
     return refuse("the syntax is printed as text only", "the scene file itself is the JSON");
   }
+  if (request.stage == kFile && (request.format > kText || request.after)) {
+    return refuse(fmt::format("--stage file is all of the compiled scene, as text; {} does not go with it",
+                              request.after ? "--after" : "--format"),
+                  "use --stage bytecode");
+  }
   if (request.stage == kBytecode && request.format > kJson) {
     return refuse("bytecode is a sequence, not a graph to draw", "use --stage graph, or --format text or json");
   }
@@ -86,8 +93,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   Arguments arguments("dump", "Prints what the compiler made of a scene.", kExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.option("--stage", "STAGE",
-                   "syntax, graph or bytecode (default: bytecode, or graph where other options are about it)",
-                   one_of({"syntax", "graph", "bytecode"}, request.stage));
+                   "syntax, graph, bytecode, or file: all that `fathom compile` writes (default: bytecode, or graph "
+                   "where other options are about it)",
+                   one_of({"syntax", "graph", "bytecode", "file"}, request.stage));
   arguments.option("--after", "PASS", "Stop after this pass of the compiler; graph stops before the first",
                    pass_name(request.after));
   arguments.option("--program", "PROGRAM", "distance (the default) or surface",
@@ -128,15 +136,16 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
   return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) + vm::disassemble(program);
 }
 
-}  // namespace
+// What is printed of a compiled scene alone, without the way to it.
+std::string print_compiled(const compiler::CompiledScene& scene, const DumpRequest& request) {
+  if (request.stage == kBytecode) return print_bytecode(scene, request);
+  const vm::Program& program = scene.distance.program();
+  return compiler::write_listing(
+      scene, {!program.debug.empty() || !program.source_name.empty(), !scene.source.text().empty()});
+}
 
-int run_dump(std::span<const std::string> args, const Streams& streams) {
-  DumpRequest request;
-  if (const auto code = parse(args, streams, request)) return *code;
-  auto read = read_scene(request.scene, streams);
-  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
-  const compiler::Source& source = std::get<compiler::Source>(read);
-
+// The stages that are made on the way from the text to the programs.
+ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& source, const Streams& streams) {
   std::string syntax;
   compiler::Scene graph;
   compiler::PassDiff diff(source);
@@ -149,7 +158,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   } else if (request.stage == kGraph) {
     options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = scene; };
   }
-  const auto compiled = compile_scene(source, request.scene, streams, options);
+  const auto compiled = compile_scene({source, std::nullopt}, request.scene, streams, options);
   if (request.stage == kSyntax) streams.out << syntax;  // of a scene with errors in it, too
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
@@ -165,10 +174,33 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
                   "the scene has no regions: it has no bounded part, or its program cannot be cut");
     }
     streams.out << *listing;
-  } else if (request.stage == kBytecode) {
-    streams.out << print_bytecode(scene, request);
+  } else if (request.stage >= kBytecode) {
+    streams.out << print_compiled(scene, request);
   }
   return kDone;
+}
+
+}  // namespace
+
+int run_dump(std::span<const std::string> args, const Streams& streams) {
+  DumpRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  auto read = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  const SceneInput& input = std::get<SceneInput>(read);
+  const bool as_stored =
+      request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
+  if (input.stored && as_stored) {
+    streams.out << print_compiled(input.stored->scene, request);
+    return kDone;
+  }
+  if (input.stored && !input.stored->has_text) {
+    return fail(
+        streams, kUsage,
+        fmt::format("{} holds programs without the scene they were compiled from", quoted(request.scene.path)),
+        {"--stage bytecode and --stage file print what it holds"});
+  }
+  return dump_compiling(request, input.source, streams);
 }
 
 }  // namespace fathom::cli

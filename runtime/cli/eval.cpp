@@ -150,7 +150,7 @@ int run_eval(std::span<const std::string> args, const Streams& streams) {
   }
   compiler::CompileOptions options;
   options.stop_after = request.after;
-  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams, options);
+  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <span>
 
 #include "compiler/frontend/formula.h"
 
@@ -44,6 +45,52 @@ Verdict read_definition(std::string_view text, std::pair<std::string, double>& d
   return std::nullopt;
 }
 
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+ExitCode bad_file(const std::string& path, const compiler::FileError& error, const Streams& streams) {
+  Help help;
+  if (!error.remedy.empty()) help.push_back(error.remedy);
+  return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), error.reason), help);
+}
+
+// Whatever it is, with its name for messages.
+std::variant<compiler::Source, ExitCode> read_any(const std::string& path, const Streams& streams) {
+  auto text = read_text(path, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
+  }
+  return compiler::Source(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
+}
+
+// Of which the folder counts: of standard input the one we are in.
+std::string folder_name(const std::string& path) { return path == "-" ? "" : path; }
+
+// Whether more is asked for than what is compiled in the end. (on_pass alone is for who likes to watch.)
+bool asks_for_graph(const compiler::CompileOptions& options) {
+  return options.stop_after || options.on_syntax || options.lint;
+}
+
+// Of a file without the scene's text.
+std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
+                                                            const SceneArguments& arguments, const Streams& streams,
+                                                            const compiler::CompileOptions& options) {
+  const Help help = {"`fathom compile` without --no-text keeps the text"};
+  if (!arguments.definitions.empty()) {
+    return fail(streams, kUsage,
+                fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
+                            quoted(arguments.path)),
+                help);
+  }
+  if (asks_for_graph(options)) {
+    return fail(streams, kUsage,
+                fmt::format("{} holds programs without the scene they were compiled from", quoted(arguments.path)),
+                help);
+  }
+  return compiler::unproved(std::move(stored.scene));
+}
+
 // Whether anything is wrong with the command line's values for parameters (E05xx).
 bool about_definitions(const compiler::Diagnostics& diagnostics) {
   const auto& all = diagnostics.all();
@@ -74,31 +121,52 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const S
 
 std::string quoted(const std::string& path) { return path == "-" ? "standard input" : "`" + path + "`"; }
 
-std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
-  auto text = read_text(arguments.path, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(arguments.path), unreadable->reason));
-  }
-  return compiler::Source(arguments.path == "-" ? "<stdin>" : arguments.path, std::get<std::string>(std::move(text)));
+std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
+  auto read = read_any(arguments.path, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  auto& source = std::get<compiler::Source>(read);
+  if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
+  auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path));
+  if (const auto* error = std::get_if<compiler::FileError>(&stored)) return bad_file(arguments.path, *error, streams);
+  auto& scene = std::get<compiler::StoredScene>(stored);
+  return SceneInput{scene.scene.source, std::move(scene)};
 }
 
-std::variant<compiler::CompiledScene, ExitCode> compile_scene(compiler::Source source,
-                                                              const SceneArguments& arguments, const Streams& streams,
+std::variant<compiler::Source, ExitCode> read_scene_text(const SceneArguments& arguments, const Streams& streams) {
+  auto read = read_any(arguments.path, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  auto& source = std::get<compiler::Source>(read);
+  if (!compiler::is_compiled_file(source.text())) return std::move(source);
+  auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
+  if (const auto* error = std::get_if<compiler::FileError>(&text)) return bad_file(arguments.path, *error, streams);
+  return std::get<compiler::Source>(std::move(text));
+}
+
+std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
+                                                              const Streams& streams,
                                                               compiler::CompileOptions options) {
+  if (input.stored && !input.stored->has_text) {
+    return take_stored(*std::move(input.stored), arguments, streams, options);
+  }
   const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
-  const compiler::Source copy = source;
   compiler::Diagnostics diagnostics;
   options.definitions = arguments.definitions;
-  auto scene = compiler::compile(std::move(source), diagnostics, options);
-  const std::string printed = diagnostics.print(copy, format, streams.color);
-  streams.err << printed;
+  auto scene = compiler::compile(input.source, diagnostics, options);
+  streams.err << diagnostics.print(input.source, format, streams.color);
   const std::size_t errors = diagnostics.errors(), warnings = diagnostics.all().size() - errors;
   if (errors > 0 && format == compiler::ErrorFormat::Text) {
-    streams.err << copy.name() << ": " << count_of(errors, "error")
+    streams.err << input.source.name() << ": " << count_of(errors, "error")
                 << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
   }
-  if (scene) return std::move(*scene);
-  return about_definitions(diagnostics) ? kUsage : kBadScene;
+  if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
+  const bool comparable = input.stored && arguments.definitions.empty() && !asks_for_graph(options);
+  if (comparable && compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
+    note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
+                              "and nothing is proved of them. `fathom compile` makes it anew",
+                              quoted(arguments.path)));
+    return compiler::unproved(std::move(input.stored->scene));
+  }
+  return std::move(*scene);
 }
 
 Setter pass_name(std::optional<std::string>& target) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "compiler/artefact/load.h"
 #include "compiler/compile.h"
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/streams.h"
@@ -17,8 +18,8 @@ struct SceneArguments {
   compiler::Definitions definitions;  // values for the scene's parameters
 };
 
-// The positional argument, --define and --error-format. A scene that is not `required` has an empty path when none was
-// given.
+// The positional argument, --define and --error-format. A scene that is not `required` has an empty path when none
+// was given.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required = true);
 
 // The text of a file, or of standard input for "-"; otherwise the reason, for people.
@@ -30,13 +31,23 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const S
 // The file's name for messages.
 std::string quoted(const std::string& path);
 
-// The scene's text, or the exit code after a message.
-std::variant<compiler::Source, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
+// A scene as a file has it.
+struct SceneInput {
+  compiler::Source source;                      // its text; empty when a file of compiled programs came without
+  std::optional<compiler::StoredScene> stored;  // of such a file
+};
+
+// The scene's text and programs, or the exit code after a message.
+std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
+
+// The text alone, also of a file whose programs are for another machine.
+std::variant<compiler::Source, ExitCode> read_scene_text(const SceneArguments& arguments, const Streams& streams);
 
 // Compiles and prints the diagnostics, warnings too. When there were errors, kBadScene, or kUsage for values that the
-// scene's parameters cannot have.
-std::variant<compiler::CompiledScene, ExitCode> compile_scene(compiler::Source source,
-                                                              const SceneArguments& arguments, const Streams& streams,
+// scene's parameters cannot have. The programs of a compiled file that are not those of its text, or came without,
+// are taken as they are, unproved and with a warning, unless `options` ask for what lies between text and programs.
+std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
+                                                              const Streams& streams,
                                                               compiler::CompileOptions options = {});
 
 // A Setter for the name of a pass, or "graph" for "before the first pass".

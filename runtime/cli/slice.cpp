@@ -123,7 +123,7 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
   if (const auto problem = runtime::check_image_path(request.output)) return fail(streams, kIo, *problem);
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  const auto compiled = compile_scene(std::get<compiler::Source>(std::move(source)), request.scene, streams);
+  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
 

@@ -15,6 +15,8 @@ namespace fathom::cli {
 int run_render(std::span<const std::string> args, const Streams& streams);
 int run_check(std::span<const std::string> args, const Streams& streams);
 int run_dump(std::span<const std::string> args, const Streams& streams);
+int run_compile(std::span<const std::string> args, const Streams& streams);
+int run_asm(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
 int run_slice(std::span<const std::string> args, const Streams& streams);
 int run_tonemap(std::span<const std::string> args, const Streams& streams);
@@ -34,6 +36,8 @@ inline constexpr std::array kVerbs = {
     Verb{"render", "scene.json -o out.png", "renders the scene to image files", run_render},
     Verb{"check", "scene.json", "prints what is wrong with the scene and how exact it is", run_check},
     Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
+    Verb{"compile", "scene.json -o scene.fbc", "writes the compiled scene to a file", run_compile},
+    Verb{"asm", "listing.txt -o scene.fbc", "makes a compiled scene of its listing", run_asm},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
     Verb{"tonemap", "in.exr -o out.png", "makes a picture of a render's numbers", run_tonemap},

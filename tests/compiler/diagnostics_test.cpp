@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "compiler/artefact/listing.h"
 #include "compiler/compile.h"
 #include "compiler/error_codes.h"
 #include "tests/support/golden.h"
@@ -34,8 +35,14 @@ Definitions definitions_in(const std::string& scene) {
   return definitions;
 }
 
+// Of a scene, or of a listing, which opens with its head or a comment of its own kind.
 Diagnostics diagnose(const Source& source) {
   Diagnostics diagnostics;
+  if (source.text().starts_with("fathom ") || source.text().starts_with(";")) {
+    FileContents contents;
+    read_listing(source, diagnostics, contents);
+    return diagnostics;
+  }
   CompileOptions options;
   options.definitions = definitions_in(source.text());
   options.lint = true;

@@ -80,7 +80,7 @@ std::string operations(const vm::VerifiedProgram& program) {
   constexpr std::size_t kColumn = 37;
   for (std::size_t at = text.find("\n  ") + 1; at < text.size(); at = text.find('\n', at) + 1) {
     const std::string line = text.substr(at, text.find('\n', at) - at);
-    const std::string operation = line.substr(kColumn, line.find(" ;") - kColumn);
+    const std::string operation = line.substr(kColumn, line.find(" @") - kColumn);
     all += operation.substr(0, operation.find_last_not_of(' ') + 1) + '\n';
   }
   return all;

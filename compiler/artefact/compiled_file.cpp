@@ -1,0 +1,203 @@
+#include "compiler/artefact/compiled_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "compiler/artefact/byte_archive.h"
+#include "compiler/artefact/fields.h"
+#include "compiler/artefact/programs.h"
+#include "vm/binary.h"
+
+namespace fathom::compiler {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// In the order they lie in the file.
+enum Section { kCode, kTables, kDebug, kText, kSections };
+constexpr std::string_view kSectionNames[] = {"code", "tables", "debug", "text"};
+
+// Magic, version, number of sections, digest of the opcodes; of each section size and digest; digest of the header.
+constexpr std::size_t kHeaderSize = 8 + 4 + 4 + 16 + kSections * (8 + 16) + 16;
+constexpr std::size_t kMostName = 1 << 16;  // bytes
+
+void write(vm::ByteWriter& out, vm::Digest digest) {
+  out.u64(digest.low);
+  out.u64(digest.high);
+}
+
+vm::Digest read_digest(vm::ByteReader& in) {
+  const std::uint64_t low = in.u64();
+  return {low, in.u64()};
+}
+
+Bytes write_code(const CompiledScene& scene) {
+  vm::ByteWriter out;
+  out.u32(static_cast<std::uint32_t>(scene.media.size()));
+  out.u32(static_cast<std::uint32_t>(scene.formulas.size()));
+  for (const NamedProgram& row : programs_of(scene)) vm::write_program(out, *row.program);
+  return out.take();
+}
+
+Bytes write_tables(const CompiledScene& scene) {
+  vm::ByteWriter out;
+  ByteArchiveWriter archive(out);
+  fields(archive, const_cast<CompiledScene&>(scene));  // a writer changes nothing
+  return out.take();
+}
+
+Bytes write_debug(const CompiledScene& scene) {
+  vm::ByteWriter out;
+  for (const NamedProgram& row : programs_of(scene)) vm::write_debug(out, *row.program);
+  return out.take();
+}
+
+Bytes write_text(const Source& source) {
+  vm::ByteWriter out;
+  out.text(std::filesystem::path(source.name()).filename().string());
+  out.text(source.text());
+  return out.take();
+}
+
+FileError damaged(std::string_view section, std::string_view what) {
+  return {fmt::format("the section `{}` {}", section, what), "it was changed or damaged: compile the scene again"};
+}
+
+std::variant<ProgramList, FileError> read_code(std::span<const std::uint8_t> bytes) {
+  vm::ByteReader in(bytes);
+  const std::size_t media = in.u32(), formulas = in.u32();
+  // A program takes 20 bytes at least.
+  const bool room = media <= bytes.size() / 40 && formulas <= bytes.size() / 20;
+  if (in.failed() || !room) return damaged("code", "is cut off");
+  ProgramList list(media, formulas);
+  while (!list.full()) {
+    const std::size_t begin = in.offset();
+    auto program = vm::read_program(in);
+    if (const auto* error = std::get_if<vm::VerifyError>(&program)) {
+      return FileError{fmt::format("program `{}` at byte {} of the code, word {}: {}", list.next(), begin,
+                                   error->offset, error->reason),
+                       ""};
+    }
+    list.add(std::get<vm::VerifiedProgram>(std::move(program)));
+  }
+  if (in.left() > 0) return damaged("code", fmt::format("goes on for {} bytes after its last program", in.left()));
+  return list;
+}
+
+std::optional<FileError> read_debug(std::span<const std::uint8_t> bytes, ProgramList& list) {
+  if (bytes.empty()) return std::nullopt;
+  vm::ByteReader in(bytes);
+  for (vm::VerifiedProgram& program : list.programs) {
+    vm::DebugTable table = vm::read_debug(in, program);
+    if (in.failed()) return damaged("debug", fmt::format("makes no sense at byte {}", in.offset()));
+    program = vm::with_debug(program, std::move(table));
+  }
+  if (in.left() > 0) return damaged("debug", "goes on after its last program");
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_compiled_file(std::string_view bytes) {
+  return bytes.size() >= kFileMagic.size() &&
+         std::equal(kFileMagic.begin(), kFileMagic.end(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+}
+
+std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileContents& contents) {
+  const Bytes sections[kSections] = {write_code(scene), write_tables(scene),
+                                     contents.debug ? write_debug(scene) : Bytes(),
+                                     contents.text ? write_text(scene.source) : Bytes()};
+  vm::ByteWriter out;
+  out.raw(kFileMagic);
+  out.u32(kFileVersion);
+  out.u32(kSections);
+  write(out, vm::opcode_digest());
+  for (const Bytes& section : sections) {
+    out.u64(section.size());
+    write(out, vm::digest(section));
+  }
+  write(out, vm::digest(out.bytes()));
+  for (const Bytes& section : sections) out.raw(section);
+  return out.take();
+}
+
+std::variant<CompiledFile, FileError> open_file(std::span<const std::uint8_t> bytes) {
+  vm::ByteReader in(bytes);
+  const auto magic = in.raw(kFileMagic.size());
+  if (!std::equal(magic.begin(), magic.end(), kFileMagic.begin(), kFileMagic.end())) {
+    return FileError{"it is no compiled scene: the first bytes are others", "`fathom compile` writes one"};
+  }
+  if (const std::uint32_t version = in.u32(); version != kFileVersion) {
+    return FileError{fmt::format("it is of version {} of the format; this program reads {}", version, kFileVersion),
+                     "compile the scene again with this program"};
+  }
+  const bool four = in.u32() == kSections;
+  CompiledFile file;
+  file.opcodes = read_digest(in);
+  std::uint64_t sizes[kSections];
+  vm::Digest digests[kSections];
+  for (int i = 0; i < kSections; ++i) {
+    sizes[i] = in.u64();
+    digests[i] = read_digest(in);
+  }
+  const std::span<const std::uint8_t> header = bytes.first(in.offset());
+  if (read_digest(in) != vm::digest(header) || in.failed() || !four) {
+    return FileError{"its header is damaged or cut off", "compile the scene again"};
+  }
+  std::span<const std::uint8_t> sections[kSections];
+  for (int i = 0; i < kSections; ++i) {
+    if (sizes[i] > in.left()) return damaged(kSectionNames[i], "is cut off");
+    sections[i] = in.raw(static_cast<std::size_t>(sizes[i]));
+    if (vm::digest(sections[i]) != digests[i]) return damaged(kSectionNames[i], "has another digest than it should");
+  }
+  if (in.left() > 0) return FileError{fmt::format("{} bytes follow its last section", in.left()), ""};
+  file.code = sections[kCode];
+  file.tables = sections[kTables];
+  file.debug = sections[kDebug];
+  if (sections[kText].empty()) return file;
+  vm::ByteReader text(sections[kText]);
+  std::string name = text.text(kMostName);
+  std::string content = text.text(text.left());
+  if (text.failed() || text.left() > 0) return damaged("text", "makes no sense");
+  file.text = Source(std::move(name), std::move(content));
+  return file;
+}
+
+std::variant<CompiledScene, FileError> read_file(const CompiledFile& file, const std::string& path) {
+  if (file.opcodes != vm::opcode_digest()) {
+    return FileError{"its programs are for another machine than this program's",
+                     file.text ? "it holds its scene: `fathom compile` makes it anew"
+                               : "it holds no scene to compile again: use the program it was made with"};
+  }
+  auto read = read_code(file.code);
+  if (auto* error = std::get_if<FileError>(&read)) return std::move(*error);
+  auto& list = std::get<ProgramList>(read);
+  if (auto error = read_debug(file.debug, list)) return *std::move(error);
+  CompiledScene scene = std::move(list).scene();
+  vm::ByteReader in(file.tables);
+  ByteArchiveReader archive(in);
+  fields(archive, scene);
+  if (archive.failed())
+    return damaged("tables", fmt::format("is wrong at byte {}: {}", in.offset(), archive.reason()));
+  if (in.left() > 0) return damaged("tables", "goes on after its last field");
+  if (auto problem = check_tags(scene)) return FileError{*std::move(problem), ""};
+  scene.source = file.text ? beside(*file.text, path) : Source(path, "");
+  place_picture(scene);
+  return scene;
+}
+
+Source beside(const Source& text, const std::string& path) {
+  return Source((std::filesystem::path(path).parent_path() / text.name()).string(), text.text());
+}
+
+vm::Digest scene_digest(const CompiledScene& scene) {
+  Bytes all = write_code(scene);
+  const Bytes tables = write_tables(scene);
+  all.insert(all.end(), tables.begin(), tables.end());
+  return vm::digest(all);
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,356 @@
+#include "compiler/artefact/fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <utility>
+#include <variant>
+
+#include "compiler/frontend/textures.h"
+
+namespace fathom::compiler {
+namespace {
+
+using Names = std::span<const std::string_view>;
+
+constexpr double kAny = 1e300;               // of numbers that must be finite alone
+constexpr double kTiny = 1e-300;             // of numbers above 0
+constexpr double kWhole = 9007199254740992;  // 2^53: up to here a double counts
+constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
+constexpr std::string_view kBackgrounds[] = {"gradient", "sky", "image"};
+constexpr std::string_view kLights[] = {"point", "spot", "directional"};
+constexpr std::string_view kLamps[] = {"sphere", "box", "cylinder", "capsule", "quad"};
+constexpr std::string_view kMaterials[] = {"diffuse", "emissive", "specular", "transparent", "principled"};
+
+void index(Archive& a, std::string_view name, std::uint32_t& number, std::size_t count) {
+  if (a.reading() && count == 0) return a.fail(fmt::format("`{}` names something of which there is none", name));
+  field(a, name, number, 0, a.reading() ? count - 1 : ~std::uint32_t{0});
+}
+
+void unit_vector(Archive& a, std::string_view name, glm::dvec3& v) {
+  field(a, name, v, -1, 1);
+  if (a.reading() && !(std::abs(glm::length(v) - 1) < 1e-6)) a.fail(fmt::format("`{}` is not of length 1", name));
+}
+
+void signed_whole(Archive& a, std::string_view name, int& number, int least, int most) {
+  double wide = number;
+  field(a, name, wide, least, most);
+  if (wide != std::trunc(wide)) a.fail(fmt::format("{} is not a whole number", wide));
+  number = static_cast<int>(wide);
+}
+
+// Under the name that the scene has for it, from the scene's own folder. (A reader does not know the folder yet:
+// place_picture() adds it.)
+void picture(Archive& a, CompiledScene& scene) {
+  std::string& file = scene.background.image.file;
+  if (a.reading()) return field(a, "picture", file);
+  const std::filesystem::path folder = std::filesystem::path(scene.source.name()).parent_path();
+  const bool known = !file.empty() && !folder.empty();
+  const std::string beside = known ? std::filesystem::path(file).lexically_relative(folder).string() : "";
+  std::string name = beside.empty() ? file : beside;
+  field(a, "picture", name);
+}
+
+// A parameter of materials by its name, which is that of its field below.
+struct Numbered {
+  std::string_view name;
+  std::variant<MaterialNumber, MaterialColor> place;
+  double least, most;
+};
+using M = MaterialNumbers;
+const Numbered kNumbers[] = {
+    {"base_weight", &M::base_weight, 0, 1},
+    {"color", &M::color, 0, 1},
+    {"diffuse_roughness", &M::diffuse_roughness, 0, 1},
+    {"metalness", &M::metalness, 0, 1},
+    {"specular_weight", &M::specular_weight, 0, 1},
+    {"specular_color", &M::specular_color, 0, 1},
+    {"roughness", &M::roughness, 0, 1},
+    {"ior", &M::ior, kTiny, kAny},
+    {"transmission", &M::transmission, 0, 1},
+    {"transmission_color", &M::transmission_color, 0, 1},
+    {"transmission_depth", &M::transmission_depth, 0, kAny},
+    {"coat_weight", &M::coat_weight, 0, 1},
+    {"coat_color", &M::coat_color, 0, 1},
+    {"coat_roughness", &M::coat_roughness, 0, 1},
+    {"coat_ior", &M::coat_ior, kTiny, kAny},
+    {"emission", &M::emission, 0, kAny},
+    {"emission_luminance", &M::emission_luminance, 0, kAny},
+    {"absorption", &M::absorption, 0, kAny},
+    {"opacity", &M::opacity, 0, 1},
+};
+
+void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const Numbered& row : kNumbers) all.push_back(row.name);
+    return all;
+  }();
+  std::size_t at = 0;
+  while (at + 1 < names.size() && kNumbers[at].place != t.parameter) ++at;
+  a.begin("parameter");
+  a.choice(at, names);
+  a.end();
+  t.parameter = kNumbers[at].place;
+  index(a, "texture", t.texture, textures);
+  field(a, "least", t.least, -kAny, kAny);
+  field(a, "most", t.most, -kAny, kAny);
+  if (!a.reading() || a.failed()) return;
+  if (t.least > t.most || t.least < std::min(kNumbers[at].least, 1e-3) || t.most > kNumbers[at].most) {
+    a.fail(fmt::format("`{}` cannot be from {} to {}", names[at], t.least, t.most));
+  }
+}
+
+void fields(Archive& a, Material& m, std::size_t textures) {
+  field(a, "name", m.name);
+  field(a, "type", m.type, Names(kMaterials));
+  for (const Numbered& row : kNumbers) {
+    if (const auto* number = std::get_if<MaterialNumber>(&row.place)) {
+      field(a, row.name, m.*(*number), row.least, row.most);
+    } else {
+      field(a, row.name, m.*std::get<MaterialColor>(row.place), row.least, row.most);
+    }
+  }
+  field(a, "thin_walled", m.thin_walled);
+  signed_whole(a, "priority", m.priority, -1000, 1000);
+  list(a, "textured", m.textured, [&](Archive& archive, TexturedParameter& t) { fields(archive, t, textures); });
+}
+
+void fields(Archive& a, Pattern::Checker&) { (void)a; }
+void fields(Archive& a, Pattern::Stripes& s) {
+  unit_vector(a, "axis", s.axis);
+  field(a, "width", s.width, 0, 1);
+  field(a, "softness", s.softness, 0, 1);
+}
+void fields(Archive& a, Pattern::Gradient& g) {
+  field(a, "from", g.from, -kAny, kAny);
+  field(a, "to", g.to, -kAny, kAny);
+}
+void fields(Archive& a, Pattern::Noise& n) {
+  field(a, "octaves", n.octaves, 1, 16);
+  field(a, "gain", n.gain, 0, 1);
+  field(a, "lacunarity", n.lacunarity, 1, 16);
+  field(a, "contrast", n.contrast, 0, 1000);
+  field(a, "seed", n.seed, 0, ~std::uint64_t{0});
+}
+void fields(Archive& a, Pattern::Bricks& b) {
+  field(a, "width", b.width, kTiny, kAny);
+  field(a, "height", b.height, kTiny, kAny);
+  field(a, "mortar", b.mortar, 0, kAny);
+  field(a, "shift", b.shift, 0, 1);
+}
+
+// A variant as the index of what it holds, by name, and that.
+template <typename Variant, std::size_t... kIndex>
+void make(Variant& v, std::size_t index, std::index_sequence<kIndex...>) {
+  (void)((index == kIndex && (v = std::variant_alternative_t<kIndex, Variant>{}, true)) || ...);
+}
+template <typename Variant>
+void kind(Archive& a, std::string_view name, Variant& v, Names names) {
+  std::size_t index = v.index();
+  a.begin(name);
+  a.choice(index, names);
+  a.end();
+  if (a.reading()) make(v, index, std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
+constexpr std::string_view kPatterns[] = {"checker", "stripes", "gradient", "noise", "bricks"};
+constexpr std::string_view kTextures[] = {"color", "formula", "pattern"};
+
+// `textures` is how many come before this one.
+void fields(Archive& a, Pattern& p, std::size_t textures) {
+  kind(a, "pattern", p.kind, kPatterns);
+  std::visit([&](auto& own) { fields(a, own); }, p.kind);
+  for (int row = 0; row < 3; ++row) {
+    field(a, std::string_view("x_row y_row z_row").substr(static_cast<std::size_t>(6 * row), 5),
+          p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
+  }
+  field(a, "translation", p.to_pattern.translation, -kAny, kAny);
+  index(a, "a", p.a, textures);
+  index(a, "b", p.b, textures);
+}
+
+void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) {
+  kind(a, "texture", t, kTextures);
+  if (auto* color = std::get_if<glm::dvec3>(&t)) field(a, "value", *color, -kAny, kAny);
+  if (auto* pattern = std::get_if<Pattern>(&t)) fields(a, *pattern, textures);
+  if (auto* formula = std::get_if<TextureFormula>(&t)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      index(a, std::string_view("redgreenblue").substr(i == 0 ? 0 : 3 * i + (i == 2 ? 2 : 0), i == 0 ? 3 : 6 - i),
+            formula->programs[i], formulas);
+    }
+  }
+}
+
+void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
+  field(a, "shape", l.shape, Names(kLamps));
+  field(a, "rotation", l.rotation, -1.001, 1.001);
+  field(a, "translation", l.translation, -kAny, kAny);
+  field(a, "radius", l.radius, 0, kAny);
+  field(a, "half_height", l.half_height, 0, kAny);
+  field(a, "half_size", l.half_size, 0, kAny);
+  for (std::size_t i = 0; i < 4; ++i) {
+    field(a, std::string_view("corner0corner1corner2corner3").substr(7 * i, 7), l.corners[i], -kAny, kAny);
+  }
+  index(a, "surface", l.surface, scene.surfaces.size());
+  index(a, "material", l.material, scene.materials.size());
+}
+
+void media(Archive& a, CompiledScene& scene) {
+  a.begin("media");
+  if (a.list(scene.media.size()) != scene.media.size()) a.fail("there are not as many programs of media");
+  for (Medium& medium : scene.media) {
+    a.begin_record();
+    index(a, "material", medium.material, scene.materials.size());
+    fields(a, static_cast<CompiledField&>(medium));
+    a.end_record();
+  }
+  a.end();
+}
+
+// A pattern of patterns: how deep the deepest is.
+int texture_depth(const std::vector<Texture>& textures) {
+  std::vector<int> depths;  // [texture]
+  int deepest = 0;
+  for (const Texture& texture : textures) {
+    const auto* pattern = std::get_if<Pattern>(&texture);
+    depths.push_back(pattern ? 1 + std::max(depths[pattern->a], depths[pattern->b]) : 0);
+    deepest = std::max(deepest, depths.back());
+  }
+  return deepest;
+}
+
+void textures(Archive& a, CompiledScene& scene) {
+  a.begin("textures");
+  const std::size_t count = a.list(scene.textures.size());
+  if (a.reading()) scene.textures.clear();
+  for (std::size_t i = 0; i < count && !a.failed(); ++i) {
+    if (a.reading()) scene.textures.emplace_back();
+    a.begin_record();
+    fields(a, scene.textures[i], i, scene.formulas.size());
+    a.end_record();
+  }
+  a.end();
+  if (a.reading() && !a.failed() && texture_depth(scene.textures) > kMaxPatternDepth + 1) {
+    a.fail(fmt::format("patterns are more than {} deep", kMaxPatternDepth));
+  }
+}
+
+}  // namespace
+
+void fields(Archive& a, Parameter& p) {
+  field(a, "name", p.name);
+  field(a, "value", p.value, -kAny, kAny);
+  field(a, "min", p.min, -kEndless, kEndless);
+  field(a, "max", p.max, -kEndless, kEndless);
+  field(a, "doc", p.doc);
+}
+
+void fields(Archive& a, Camera& c) {
+  field(a, "projection", c.projection, Names(kProjections));
+  field(a, "position", c.position, -kAny, kAny);
+  field(a, "target", c.target, -kAny, kAny);
+  field(a, "up", c.up, -kAny, kAny);
+  field(a, "fov", c.fov, kTiny, 3.1415926535897927);
+  field(a, "vertical_fov", c.vertical_fov, kTiny, 3.1415926535897927);
+  field(a, "focal_length", c.focal_length, kTiny, kAny);
+  field(a, "sensor_width", c.sensor_width, kTiny, kAny);
+  field(a, "width", c.width, kTiny, kAny);
+  field(a, "lens_radius", c.lens_radius, 0, kAny);
+  field(a, "f_stop", c.f_stop, kTiny, kAny);
+  field(a, "focus_distance", c.focus_distance, kTiny, kAny);
+  field(a, "blades", c.blades, 0, kMaxBlades);
+  field(a, "blade_rotation", c.blade_rotation, -kAny, kAny);
+  if (!a.reading() || a.failed()) return;
+  const glm::dvec3 view = c.target - c.position;
+  const double across = glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up)));
+  if (!(glm::length(view) > 0 && across > 0)) a.fail("the camera has no direction of view, or looks along its `up`");
+}
+
+void fields(Archive& a, Film& f) {
+  field(a, "width", f.width, 1, kMaxSide);
+  field(a, "height", f.height, 1, kMaxSide);
+  field(a, "exposure", f.exposure, -100, 100);
+  field(a, "filter", f.filter, Names(kFilterNames));
+  field(a, "filter_width", f.filter_width, kMinFilterWidth, kMaxFilterWidth);
+  field(a, "tone", f.tone, Names(kToneCurves));
+}
+
+void fields(Archive& a, RenderSettings& s) {
+  field(a, "spp", s.spp, 1, kMaxSpp);
+  field(a, "bounces", s.bounces, 0, kMaxBounces);
+  field(a, "tile", s.tile, 1, kMaxTile);
+  field(a, "seed", s.seed, 0, ~std::uint64_t{0});
+  field(a, "sampler", s.sampler, Names(kSamplerNames));
+  field(a, "adaptive", s.adaptive);
+  field(a, "far", s.far, kTiny, kAny);
+}
+
+void fields(Archive& a, Background& b) {
+  field(a, "type", b.type, Names(kBackgrounds));
+  field(a, "bottom", b.bottom, 0, kAny);
+  field(a, "top", b.top, 0, kAny);
+  unit_vector(a, "sun", b.sky.sun);
+  if (a.reading() && b.sky.sun.y < 0) a.fail("the sun is below the horizon");
+  field(a, "turbidity", b.sky.turbidity, 2, 10);
+  field(a, "ground_albedo", b.sky.ground_albedo, 0, 1);
+  field(a, "sky_strength", b.sky.strength, 0, kAny);
+  field(a, "sun_disc", b.sky.sun_disc);
+  field(a, "rotate", b.image.rotate, -kAny, kAny);
+  field(a, "strength", b.image.strength, 0, kAny);
+}
+
+void fields(Archive& a, Light& l) {
+  field(a, "name", l.name);
+  field(a, "type", l.type, Names(kLights));
+  field(a, "position", l.position, -kAny, kAny);
+  unit_vector(a, "direction", l.direction);
+  field(a, "intensity", l.intensity, 0, kAny);
+  field(a, "angle", l.angle, 0, 90);
+  field(a, "blend", l.blend, 0, 1);
+}
+
+void fields(Archive& a, CompiledField& f) {
+  field(a, "bound_lo", f.bound.lo, -kEndless, kEndless);
+  field(a, "bound_hi", f.bound.hi, -kEndless, kEndless);
+  field(a, "contents_lo", f.contents.lo, -kEndless, kEndless);
+  field(a, "contents_hi", f.contents.hi, -kEndless, kEndless);
+  field(a, "lipschitz", f.lipschitz, kTiny, kAny);
+  field(a, "magnitude", f.magnitude, 0, kAny);
+  field(a, "certified", f.certified);
+}
+
+void fields(Archive& a, CompiledScene& scene) {
+  field(a, "summary", scene.summary);
+  field(a, "nodes", scene.node_count, 0, ~std::uint32_t{0});
+  field(a, "origin", scene.origin, -kAny, kAny);
+  list(a, "parameters", scene.parameters);
+  record(a, "camera", scene.camera);
+  record(a, "film", scene.film);
+  record(a, "render", scene.settings);
+  record(a, "background", scene.background);
+  picture(a, scene);
+  list(a, "lights", scene.lights);
+  textures(a, scene);
+  list(a, "materials", scene.materials,
+       [&](Archive& archive, Material& material) { fields(archive, material, scene.textures.size()); });
+  list(a, "surfaces", scene.surfaces, [&](Archive& archive, Surface& surface) {
+    field(archive, "name", surface.name);
+    index(archive, "material", surface.material, scene.materials.size());
+    field(archive, "mixed", surface.mixed);
+  });
+  if (a.reading() && !a.failed() && scene.surfaces.empty()) a.fail("there is no surface");
+  list(a, "lamps", scene.lamps, [&](Archive& archive, Lamp& lamp) { fields(archive, lamp, scene); });
+  record(a, "field", static_cast<CompiledField&>(scene));
+  media(a, scene);
+}
+
+void place_picture(CompiledScene& scene) {
+  std::string& file = scene.background.image.file;
+  if (!file.empty()) file = (std::filesystem::path(scene.source.name()).parent_path() / file).string();
+}
+
+}  // namespace fathom::compiler

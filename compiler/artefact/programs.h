@@ -1,0 +1,45 @@
+// The programs of a compiled scene in one order, and a scene made of programs read in that order.
+// Tested by: tests/compiler/artefact_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/compiled_scene.h"
+
+namespace fathom::compiler {
+
+struct NamedProgram {
+  std::string name;  // "distance", "surface", "medium 0 distance", "medium 0 surface", ..., "formula 0", ...
+  const vm::VerifiedProgram* program;
+};
+
+std::vector<NamedProgram> programs_of(const CompiledScene& scene);
+
+// Collects them, in that order.
+class ProgramList {
+ public:
+  ProgramList(std::size_t media, std::size_t formulas) : media_(media), formulas_(formulas) {}
+
+  std::string next() const { return name(programs.size()); }  // the name of the one that is wanted
+  bool full() const { return programs.size() == 2 + 2 * media_ + formulas_; }
+  void add(vm::VerifiedProgram program) { programs.push_back(std::move(program)); }
+
+  // With nothing but the programs. The list must be full.
+  CompiledScene scene() &&;
+
+  std::vector<vm::VerifiedProgram> programs;
+
+ private:
+  std::string name(std::size_t index) const;
+
+  std::size_t media_, formulas_;
+};
+
+// What is wrong with the numbers of tags; nullopt when each names a surface.
+std::optional<std::string> check_tags(const CompiledScene& scene);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,92 @@
+// fathom compile: a scene as a file of programs; fathom asm: such a file made of its listing.
+// Tested by: tests/runtime/cli_compile_test.cpp
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "compiler/artefact/listing.h"
+#include "runtime/atomic_file.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/verbs.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kCompileExamples =
+    "fathom compile scene.json -o scene.fbc        # every verb that takes a scene takes it\n"
+    "fathom compile scene.json -o scene.fbc --strip --no-text\n"
+    "fathom compile old.fbc -o new.fbc             # anew, from the scene's text in it\n"
+    "fathom render scene.fbc -o out.png -D r=0.3   # parameters can be set as of the scene itself";
+constexpr const char* kAsmExamples =
+    "fathom dump scene.fbc --stage file > scene.txt\n"
+    "fathom asm scene.txt -o same.fbc              # the same bytes\n"
+    "echo 'sphere 1' | fathom asm - -o ball.fbc";
+
+// The file, or standard output for "-".
+ExitCode write_compiled(const compiler::CompiledScene& scene, const compiler::FileContents& contents,
+                        const std::string& path, const Streams& streams) {
+  const std::vector<std::uint8_t> bytes = compiler::write_file(scene, contents);
+  if (path == "-") {
+    streams.out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return kDone;
+  }
+  if (const auto problem = runtime::write_file(bytes, path)) return fail(streams, kIo, *problem);
+  streams.err << fmt::format("wrote {} ({} bytes)\n", path, bytes.size());
+  return kDone;
+}
+
+std::optional<ExitCode> check_output(const std::string& input, const std::string& output, const Streams& streams) {
+  if (output.empty()) return fail(streams, kUsage, "-o FILE is missing", {"- writes to standard output"});
+  if (output == "-") return std::nullopt;
+  if (const auto code = check_collisions(input, {output}, streams)) return code;
+  if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_compile(std::span<const std::string> args, const Streams& streams) {
+  SceneArguments scene_arguments;
+  std::optional<std::string> output;
+  bool strip = false, no_text = false;
+  Arguments arguments("compile", "Writes the compiled scene to a file: docs/BYTECODE.md.", kCompileExamples);
+  add_scene_arguments(arguments, scene_arguments);
+  arguments.option("-o,--output", "FILE", "File to write, by custom .fbc; - is standard output", any_text(output));
+  arguments.flag("--strip", "Leave out where instructions come from, and their names", strip);
+  arguments.flag("--no-text", "Leave out the scene's text: no -D, and nothing is proved of the programs", no_text);
+  if (const auto code = arguments.parse(args, streams)) return *code;
+  if (const auto code = check_output(scene_arguments.path, output.value_or(""), streams)) return *code;
+  auto input = read_scene_text(scene_arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
+  const auto compiled =
+      compile_scene({std::get<compiler::Source>(std::move(input)), std::nullopt}, scene_arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  return write_compiled(std::get<compiler::CompiledScene>(compiled), {!strip, !no_text}, *output, streams);
+}
+
+int run_asm(std::span<const std::string> args, const Streams& streams) {
+  std::string path;
+  std::optional<std::string> output;
+  int error_format = 0;
+  Arguments arguments("asm", "Makes a compiled scene of its listing, or of that of one program.", kAsmExamples);
+  arguments.positional("listing", "What `fathom dump --stage file` printed, or a program; - reads standard input",
+                       path);
+  arguments.option("-o,--output", "FILE", "File to write, by custom .fbc; - is standard output", any_text(output));
+  arguments.option("--error-format", "FORMAT", "How to print what is wrong with the listing: text, short or json",
+                   one_of({"text", "short", "json"}, error_format));
+  if (const auto code = arguments.parse(args, streams)) return *code;
+  if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
+  auto text = read_text(path, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
+  }
+  const compiler::Source listing(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
+  compiler::Diagnostics diagnostics;
+  compiler::FileContents contents;
+  const auto scene = compiler::read_listing(listing, diagnostics, contents);
+  streams.err << diagnostics.print(listing, static_cast<compiler::ErrorFormat>(error_format), streams.color);
+  return scene ? write_compiled(*scene, contents, *output, streams) : kBadScene;
+}
+
+}  // namespace fathom::cli

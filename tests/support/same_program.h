@@ -1,0 +1,23 @@
+// Whether two programs are the same to the bit, with where they come from.
+#pragma once
+
+#include <bit>
+
+#include "vm/program.h"
+
+namespace fathom::test {
+
+inline bool same_program(const vm::Program& a, const vm::Program& b) {
+  bool same = a.words == b.words && a.wide.size() == b.wide.size() && a.locals == b.locals &&
+              a.source_name == b.source_name && a.debug.size() == b.debug.size();
+  for (std::size_t i = 0; same && i < a.wide.size(); ++i) {
+    same = std::bit_cast<std::uint64_t>(a.wide[i]) == std::bit_cast<std::uint64_t>(b.wide[i]);
+  }
+  for (std::size_t i = 0; same && i < a.debug.size(); ++i) {
+    same = a.debug[i].offset == b.debug[i].offset && a.debug[i].line == b.debug[i].line &&
+           a.debug[i].column == b.debug[i].column && a.debug[i].symbol == b.debug[i].symbol;
+  }
+  return same;
+}
+
+}  // namespace fathom::test

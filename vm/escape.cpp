@@ -1,0 +1,52 @@
+#include "vm/escape.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace fathom::vm {
+namespace {
+
+constexpr std::string_view kLetters = "nrt\\", kMeanings = "\n\r\t\\";
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos) {
+      out += '\\';
+      out += kLetters[known];
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+bool unescape(std::string_view text, std::string& out) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\') {
+      out += text[i];
+      continue;
+    }
+    if (++i == text.size()) return false;
+    if (const std::size_t known = kLetters.find(text[i]); known != kLetters.npos) {
+      out += kMeanings[known];
+    } else {
+      unsigned code = 0;
+      const std::string_view digits = text.substr(std::min(i + 1, text.size()), 4);
+      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
+      if (text[i] != 'u' || digits.size() != 4 || error != std::errc() || end != digits.data() + 4 || code >= 0x20) {
+        return false;
+      }
+      out += static_cast<char>(code);
+      i += 4;
+    }
+  }
+  return true;
+}
+
+}  // namespace fathom::vm
