@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 
 namespace fathom::vm {
@@ -79,6 +80,7 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
     constant[word] = true;
     program.wide[word] = static_cast<double>(std::bit_cast<float>(program.words[word]));
   });
+  std::optional<VerifyError> misplaced;  // told when the code itself is sound
   std::int64_t last = -1;
   for (std::size_t left = in.count(12); left > 0; --left) {
     const std::uint32_t word = in.u32();
@@ -86,10 +88,13 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
     if (word >= program.words.size() || word <= last) {
       return VerifyError{word, "the unrounded constants are not in order, or beyond the code"};
     }
-    if (!constant[word]) return VerifyError{word, "an unrounded constant where the code has none"};
+    last = word;
+    if (!constant[word]) {
+      misplaced = VerifyError{word, "an unrounded constant where the code has none"};
+      continue;
+    }
     program.wide[word] = value;
     if (!is_wide(program, word)) return VerifyError{word, "an unrounded constant that is the rounded one"};
-    last = word;
   }
   if (in.failed()) return cut_off();
   auto verified = verify(std::move(program), limits);
@@ -98,6 +103,7 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
     return VerifyError{0, fmt::format("declares stacks of {} values and {} points; the code reaches {} and {}",
                                       max_values, max_points, good->max_values(), good->max_points())};
   }
+  if (good && misplaced) return *std::move(misplaced);
   return verified;
 }
 

@@ -38,7 +38,8 @@ void unit_vector(Archive& a, std::string_view name, glm::dvec3& v) {
 void signed_whole(Archive& a, std::string_view name, int& number, int least, int most) {
   double wide = number;
   field(a, name, wide, least, most);
-  if (wide != std::trunc(wide)) a.fail(fmt::format("{} is not a whole number", wide));
+  const bool negative_zero = wide == 0 && std::signbit(wide);
+  if (wide != std::trunc(wide) || negative_zero) a.fail(fmt::format("{} is not a whole number", wide));
   number = static_cast<int>(wide);
 }
 

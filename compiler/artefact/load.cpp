@@ -1,5 +1,6 @@
 #include "compiler/artefact/load.h"
 
+#include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -26,9 +27,11 @@ bool is_outside_free(const vm::VerifiedProgram& program, const Box& box) {
 }
 
 void distrust(CompiledField& field) {
+  constexpr double kRounding = 1e-12;  // of the intervals, per unit of the box
   field.certified = false;
-  const bool free = field.bound.finite() && !field.bound.empty() && is_outside_free(field.distance, field.bound);
-  if (!free) field.bound = Box::everything();
+  const bool known = field.bound.finite() && !field.bound.empty();
+  const Box grown = field.bound.grown(known ? kRounding * glm::length(field.bound.hi - field.bound.lo) : 0);
+  field.bound = known && is_outside_free(field.distance, grown) ? grown : Box::everything();
 }
 
 }  // namespace

@@ -1,0 +1,137 @@
+// fathom compile and fathom asm, and every verb over what they write.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+
+namespace fathom::tests {
+namespace {
+
+using Catch::Matchers::Contains;
+
+constexpr const char* kSettable = R"({
+  "version": 1,
+  "params": {"r": {"default": 0.5, "min": 0.1, "max": 2}},
+  "film": {"width": 24, "height": 16},
+  "objects": [{"name": "ball", "type": "sphere", "radius": "r"}]
+})";
+
+}  // namespace
+
+TEST_CASE("a compiled scene renders to the same bits as the scene", "[cli]") {
+  const Folder folder;
+  for (const char* name : {"ball", "two"}) {
+    const std::string scene = name;
+    REQUIRE(folder.run("compile " + scene + ".json -o " + scene + ".fbc").code == 0);
+    REQUIRE(folder.run("render " + scene + ".json -r 32 -s 2 -o a.exr -q").code == 0);
+    REQUIRE(folder.run("render " + scene + ".fbc -r 32 -s 2 -o b.exr -q").code == 0);
+    CHECK(folder.read("a.exr") == folder.read("b.exr"));
+    // Names and places are no part of what is rendered.
+    REQUIRE(folder.run("compile --strip " + scene + ".json -o " + scene + ".fbc").code == 0);
+    REQUIRE(folder.run("render " + scene + ".fbc -r 32 -s 2 -o b.exr -q").code == 0);
+    CHECK(folder.read("a.exr") == folder.read("b.exr"));
+  }
+}
+
+TEST_CASE("dump and asm are inverse, to the byte", "[cli]") {
+  const Folder folder;
+  for (const char* flags : {"", "--strip", "--no-text", "--strip --no-text"}) {
+    CAPTURE(flags);
+    REQUIRE(folder.run(std::string("compile two.json -o a.fbc ") + flags).code == 0);
+    const Result script = folder.run_script(
+        "$fathom dump --stage file a.fbc > a.txt && $fathom asm a.txt -o b.fbc && cmp a.fbc b.fbc && "
+        "$fathom dump --stage file a.fbc | $fathom asm - -o - | cmp - a.fbc");
+    CAPTURE(script.err);
+    CHECK(script.code == 0);
+  }
+}
+
+TEST_CASE("parameters can be set of a compiled scene as of the scene itself", "[cli]") {
+  const Folder folder;
+  folder.write("s.json", kSettable);
+  REQUIRE(folder.run("compile s.json -o s.fbc").code == 0);
+  CHECK(folder.run("eval s.fbc --at 3,0,0").out.starts_with("2.5 "));
+  CHECK(folder.run("eval s.fbc -D r=1 --at 3,0,0").out.starts_with("2 "));
+  const Result wrong = folder.run("eval s.fbc -D r=5 --at 3,0,0");
+  CHECK(wrong.code == 2);
+  // Set once and for all, and then anew from the text, which knows nothing of it.
+  REQUIRE(folder.run("compile s.json -D r=2 -o two.fbc").code == 0);
+  CHECK(folder.run("dump two.fbc").out.find("sphere 2") != std::string::npos);
+  // Without the text there is nothing to set, and the message says so.
+  REQUIRE(folder.run("compile s.json --no-text -o bare.fbc").code == 0);
+  const Result bare = folder.run("eval bare.fbc -D r=1 --at 3,0,0");
+  CHECK(bare.code == 2);
+  CHECK_THAT(bare.err, Contains("its parameters are numbers in them by now"));
+  CHECK(folder.run("eval bare.fbc --at 3,0,0").out.starts_with("2.5 "));
+}
+
+TEST_CASE("every verb takes a compiled scene", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
+  REQUIRE(folder.run("compile two.json --no-text -o bare.fbc").code == 0);
+  CHECK(folder.run("check two.fbc").code == 0);
+  CHECK(folder.run("dump two.fbc").out == folder.run("dump two.json").out);
+  CHECK(folder.run("dump --stage graph two.fbc").code == 0);
+  CHECK(folder.run("eval two.fbc --at 0,0,0").out == folder.run("eval two.json --at 0,0,0").out);
+  CHECK(folder.run("slice two.fbc -o slice.png").code == 0);
+  CHECK(folder.run("emit cpp two.fbc -o two.h").code == 0);
+  CHECK(folder.run("render - -o out.png -r 16 -s 1 -q", folder.read("two.fbc")).code == 0);
+  // Programs alone: what needs no graph.
+  CHECK(folder.run("dump bare.fbc").code == 0);
+  CHECK(folder.run("render bare.fbc -o out.png -r 16 -s 1 -q").code == 0);
+  for (const char* verb : {"check bare.fbc", "dump --stage graph bare.fbc", "dump --after fold bare.fbc"}) {
+    const Result refused = folder.run(verb);
+    CAPTURE(verb);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Contains("without the scene they were compiled from"));
+  }
+}
+
+TEST_CASE("a damaged file is refused with its name, and nothing is written", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
+  std::string bytes = folder.read("ball.fbc");
+  bytes[bytes.size() / 2] ^= 1;
+  folder.write("bad.fbc", bytes);
+  for (const char* verb :
+       {"render bad.fbc -o out.png", "check bad.fbc", "dump bad.fbc", "compile bad.fbc -o out.png"}) {
+    const Result refused = folder.run(verb);
+    CAPTURE(verb, refused.err);
+    CHECK(refused.code == 65);
+    CHECK_THAT(refused.err, Contains("`bad.fbc`: the section `"));
+  }
+  CHECK_FALSE(folder.has("out.png"));
+}
+
+TEST_CASE("programs that the text in their file does not make are run, but not believed", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
+  REQUIRE(folder
+              .run_script("$fathom dump --stage file ball.fbc | sed 's/ sphere 0.5 / sphere 0.25 /' | "
+                          "$fathom asm - -o other.fbc")
+              .code == 0);
+  const Result other = folder.run("eval other.fbc --at 3,0,0");
+  CHECK(other.out.starts_with("2.75 "));
+  CHECK_THAT(other.err, Contains("makes other programs of the scene in it"));
+  // compile makes it anew of the text.
+  REQUIRE(folder.run("compile other.fbc -o again.fbc").code == 0);
+  CHECK(folder.read("again.fbc") == folder.read("ball.fbc"));
+}
+
+TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {
+  const Folder folder;
+  CHECK_THAT(folder.run("compile ball.json").err, Contains("-o FILE is missing"));
+  CHECK(folder.run("compile ball.json").code == 2);
+  CHECK(folder.run("compile ball.json -o ball.json").code == 2);
+  CHECK(folder.run("compile ball.json -o none/ball.fbc").code == 74);
+  CHECK(folder.run("compile none.json -o ball.fbc").code == 74);
+  folder.write("bad.txt", "sphere 1\nspher 2\n");
+  const Result refused = folder.run("asm bad.txt -o bad.fbc");
+  CHECK(refused.code == 65);
+  CHECK_THAT(refused.err, Contains("bad.txt:2:1") && Contains("did you mean `sphere`?"));
+  CHECK_FALSE(folder.has("bad.fbc"));
+  REQUIRE(folder.run("asm - -o ball.fbc", "sphere 1\n").code == 0);
+  CHECK(folder.run("eval ball.fbc --at 0,0,3").out.starts_with("2 "));
+}
+
+}  // namespace fathom::tests
