@@ -31,22 +31,6 @@ std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint
   return operand_of(word) & kJoined ? text + " min" : text;
 }
 
-std::string operation(const Program& program, std::size_t at, const OpcodeInfo& row) {
-  const std::uint32_t word = program.words[at];
-  std::string text(row.mnemonic);
-  if (row.has_operand) text += fmt::format(" {}", operand_of(word));
-  text += operands(program, row, word, at + 1);
-  const auto leading = static_cast<std::size_t>(leading_immediates(word));
-  const std::size_t first = at + 1 + leading, count = instruction_length(word) - 1 - leading;
-  for (std::size_t n = 0; n < count; ++n) {
-    const int i = static_cast<int>(n) % row.immediates;
-    if (row.form == Form::Outline && i == 0) text += ' ';  // sets the groups apart
-    text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
-                                         : fmt::format(" {}", program.wide[first + n]);
-  }
-  return text + shape_modes(program, row, word, at + 1);
-}
-
 std::string place(const DebugEntry& entry) {
   const std::string where = entry.line > 0 ? fmt::format("@{}:{}", entry.line, entry.column) : "@";
   return entry.symbol.empty() ? where : where + " " + escape(entry.symbol);
@@ -64,6 +48,23 @@ std::string trimmed(std::string text) {
 
 }  // namespace
 
+std::string instruction_text(const Program& program, std::size_t at) {
+  const OpcodeInfo& row = *find_opcode(program.words[at] & 0xff);
+  const std::uint32_t word = program.words[at];
+  std::string text(row.mnemonic);
+  if (row.has_operand) text += fmt::format(" {}", operand_of(word));
+  text += operands(program, row, word, at + 1);
+  const auto leading = static_cast<std::size_t>(leading_immediates(word));
+  const std::size_t first = at + 1 + leading, count = instruction_length(word) - 1 - leading;
+  for (std::size_t n = 0; n < count; ++n) {
+    const int i = static_cast<int>(n) % row.immediates;
+    if (row.form == Form::Outline && i == 0) text += ' ';  // sets the groups apart
+    text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
+                                         : fmt::format(" {}", program.wide[first + n]);
+  }
+  return text + shape_modes(program, row, word, at + 1);
+}
+
 std::string disassemble(const VerifiedProgram& verified) {
   const Program& program = verified.program();
   std::string text = fmt::format("; {} ops  {} words  max stack {} values, {} points  {} locals  cost {}\n",
@@ -74,7 +75,6 @@ std::string disassemble(const VerifiedProgram& verified) {
   text += "; off  words  values  points  cost  op                                       ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
-    const OpcodeInfo& row = *find_opcode(program.words[at] & 0xff);
     const std::size_t length = instruction_length(program.words[at]);
     const StackEffect effect = effect_of(program.words[at]);
     const std::string value_stack = height(values, effect.values_change);
@@ -83,7 +83,7 @@ std::string disassemble(const VerifiedProgram& verified) {
     points += effect.points_change;
     const std::string line =
         fmt::format("  {:04}  {:5}  {:>6}  {:>6}  {:4}  {:<40} ", at, length, value_stack, point_stack,
-                    instruction_cost(program.words[at]), operation(program, at, row));
+                    instruction_cost(program.words[at]), instruction_text(program, at));
     text += i < program.debug.size() ? line + place(program.debug[i]) + '\n' : trimmed(line) + '\n';
     at += length;
   }

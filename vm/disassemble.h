@@ -11,6 +11,7 @@
 // Tested by: tests/vm/assemble_test.cpp, tests/golden (dumps)
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "vm/verify.h"
@@ -18,5 +19,8 @@
 namespace fathom::vm {
 
 std::string disassemble(const VerifiedProgram& program);
+
+// The instruction whose opcode word is at `offset`: "translate 0 1 0".
+std::string instruction_text(const Program& program, std::size_t offset);
 
 }  // namespace fathom::vm

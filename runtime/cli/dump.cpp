@@ -8,9 +8,11 @@
 #include "compiler/graph_export.h"
 #include "compiler/pass_diff.h"
 #include "runtime/cli/operation_table.h"
+#include "runtime/cli/program_diff.h"
 #include "runtime/cli/program_json.h"
 #include "runtime/cli/region_listing.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/trace_listing.h"
 #include "runtime/cli/verbs.h"
 #include "vm/disassemble.h"
 
@@ -23,6 +25,8 @@ constexpr const char* kExamples =
     "fathom dump scene.json --stage graph          # after all passes\n"
     "fathom dump scene.json --after graph          # before the first\n"
     "fathom dump scene.json --diff                 # what each pass changed\n"
+    "fathom dump --diff a.fbc b.fbc                # what two programs differ in\n"
+    "fathom dump scene.json --run --at 0,1,0       # the stacks at a point, after every instruction\n"
     "fathom dump scene.json --stats                # what costs what\n"
     "fathom dump scene.fbc --stage file            # everything, as text that `fathom asm` reads back\n"
     "fathom dump scene.json --region 0,1,0         # what matters at a point, and the whole program\n"
@@ -37,13 +41,15 @@ struct DumpRequest {
   int format = -1;   // a Format; -1: not given
   int program = -1;  // 0 distance, 1 surface; -1: not given
   std::optional<std::string> after;
-  std::optional<glm::dvec3> region;
-  bool stats = false, diff = false;
+  std::optional<glm::dvec3> region, at;
+  std::string other;  // what --diff compares with; empty: the passes with each other
+  bool stats = false, diff = false, run = false;
 };
 
 // What the flags do not say follows from those that are there.
 void fill_in(DumpRequest& request) {
-  const bool bytecode = request.stats || request.program >= 0;
+  const bool programs = request.diff && !request.other.empty();
+  const bool bytecode = request.stats || request.program >= 0 || request.run || programs;
   const bool graph = (request.after && *request.after != compiler::pass_names().back()) || request.diff ||
                      request.format == kDot || request.format == kMermaid;
   if (request.stage < 0) request.stage = graph && !bytecode ? kGraph : kBytecode;
@@ -58,8 +64,22 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
     return refuse(fmt::format("{} is about bytecode", request.stats ? "--stats" : "--program"),
                   "use it with --stage bytecode");
   }
-  if (request.stage != kGraph && request.diff) {
-    return refuse("--diff compares graphs", "use it with --stage graph, and without --stats or --program");
+  if (!request.other.empty() && !request.diff) {
+    return refuse("a second scene is for --diff alone", "fathom dump --diff a.fbc b.fbc compares two programs");
+  }
+  if (request.diff && !request.other.empty() &&
+      (request.stage != kBytecode || request.stats || request.run || request.region || request.format > kText)) {
+    return refuse("--diff of two scenes compares their bytecode", "leave out all but --program and --after");
+  }
+  if (request.stage != kGraph && request.diff && request.other.empty()) {
+    return refuse("--diff of one scene compares graphs",
+                  "use it with --stage graph, and without --stats or --program");
+  }
+  if (request.run != request.at.has_value()) {
+    return refuse("--run and --at go together", "fathom dump scene.json --run --at 0,1,0");
+  }
+  if (request.run && (request.stage != kBytecode || request.stats || request.region || request.format > kText)) {
+    return refuse("--run is about bytecode, as text", "leave out --stage graph, --stats, --region and --format");
   }
   if (request.region && (request.stage != kBytecode || request.stats || request.after || request.format > kText)) {
     return refuse("--region lists the bytecode as it is run",
@@ -92,6 +112,7 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DumpRequest& request) {
   Arguments arguments("dump", "Prints what the compiler made of a scene.", kExamples);
   add_scene_arguments(arguments, request.scene);
+  arguments.positional("other", "Of --diff: the scene to compare with", request.other, false);
   arguments.option("--stage", "STAGE",
                    "syntax, graph, bytecode, or file: all that `fathom compile` writes (default: bytecode, or graph "
                    "where other options are about it)",
@@ -102,9 +123,15 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    one_of({"distance", "surface"}, request.program));
   arguments.option("--format", "FORMAT", "text (the default) or json; for graphs also dot and mermaid",
                    one_of({"text", "json", "dot", "mermaid"}, request.format));
-  arguments.flag("--diff", "Print what each pass changed in the distance's graph, and what that saved", request.diff);
+  arguments.flag("--diff",
+                 "Print what each pass changed in the distance's graph, and what that saved; of two scenes, what "
+                 "their programs differ in",
+                 request.diff);
   arguments.option("--region", "X,Y,Z", "Print the part of the program that matters in the region at a point, too",
                    into(read_point, request.region));
+  arguments.flag("--run", "Print the stacks after each instruction, in f32, at the point that --at gives",
+                 request.run);
+  arguments.option("--at", "X,Y,Z", "Of --run: the point", into(read_point, request.at));
   arguments.flag("--stats", "Print what operations and nodes cost, in multiply-adds a point", request.stats);
   if (const auto code = arguments.parse(args, streams)) return code;
   fill_in(request);
@@ -124,16 +151,31 @@ std::string origin_line(const compiler::CompiledScene& scene) {
   return origin == glm::dvec3(0) ? "" : fmt::format("; origin {} {} {}\n", origin.x, origin.y, origin.z);
 }
 
+const vm::VerifiedProgram& program_of(const compiler::CompiledScene& scene, const DumpRequest& request) {
+  return request.program == 1 ? scene.surface : scene.distance;
+}
+
 std::string print_bytecode(const compiler::CompiledScene& scene, const DumpRequest& request) {
-  const bool surface = request.program == 1;
-  const char* name = surface ? "surface" : "distance";
-  const vm::VerifiedProgram& program = surface ? scene.surface : scene.distance;
+  const char* name = request.program == 1 ? "surface" : "distance";
+  const vm::VerifiedProgram& program = program_of(scene, request);
+  if (request.run) {
+    return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) +
+           trace_listing(program, *request.at - scene.origin);
+  }
   if (request.stats) {
     return fmt::format("{}\n{} of the graph\n\n{}", operation_table(program), count_of(scene.node_count, "node"),
                        cost_by_node(program));
   }
   if (request.format == kJson) return program_json(program, name, scene);
   return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) + vm::disassemble(program);
+}
+
+std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const DumpRequest& request,
+                                     const Streams& streams) {
+  const std::uint32_t length = program_of(scene, request).instructions();
+  if (!request.run || length <= kMostTraced) return std::nullopt;
+  return fail(streams, kUsage, fmt::format("--run is for {} instructions at most; these are {}", kMostTraced, length),
+              {"--region lists the few of them that matter in the region at a point"});
 }
 
 // What is printed of a compiled scene alone, without the way to it.
@@ -175,8 +217,35 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     }
     streams.out << *listing;
   } else if (request.stage >= kBytecode) {
+    if (const auto code = check_length(scene, request, streams)) return *code;
     streams.out << print_compiled(scene, request);
   }
+  return kDone;
+}
+
+// The compiled scene of one side of --diff a b, or the exit code after a message.
+std::variant<compiler::CompiledScene, ExitCode> read_side(const DumpRequest& request, const std::string& path,
+                                                          const Streams& streams) {
+  SceneArguments arguments = request.scene;
+  arguments.path = path;
+  auto read = read_scene(arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  auto& input = std::get<SceneInput>(read);
+  if (input.stored && !request.after && arguments.definitions.empty()) return std::move(input.stored->scene);
+  compiler::CompileOptions options;
+  options.stop_after = request.after;
+  return compile_scene(std::move(input), arguments, streams, options);
+}
+
+ExitCode dump_difference(const DumpRequest& request, const Streams& streams) {
+  const auto before = read_side(request, request.scene.path, streams);
+  if (const auto* code = std::get_if<ExitCode>(&before)) return *code;
+  const auto after = read_side(request, request.other, streams);
+  if (const auto* code = std::get_if<ExitCode>(&after)) return *code;
+  const auto side = [&](const std::string& name, const auto& scene) {
+    return DiffSide{name, program_of(std::get<compiler::CompiledScene>(scene), request)};
+  };
+  streams.out << program_diff(side(request.scene.path, before), side(request.other, after));
   return kDone;
 }
 
@@ -185,12 +254,14 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
 int run_dump(std::span<const std::string> args, const Streams& streams) {
   DumpRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
+  if (!request.other.empty()) return dump_difference(request, streams);
   auto read = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   const SceneInput& input = std::get<SceneInput>(read);
   const bool as_stored =
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
+    if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
     streams.out << print_compiled(input.stored->scene, request);
     return kDone;
   }

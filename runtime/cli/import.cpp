@@ -49,8 +49,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
     foreign = scene.format != compiler::SceneFormat::Scene;
     if (foreign) text = compiler::write_json(scene.file);
   };
-  const auto compiled =
-      compile_scene(std::get<SceneInput>(std::move(source)), scene_arguments, streams, options);
+  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), scene_arguments, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   if (!foreign) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));

@@ -148,3 +148,41 @@ place    ops      cost   share  node
 total      2        25
 )");
 }
+
+TEST_CASE("cli: dump --run shows the stacks at a point and names the first number that is not finite") {
+  const Folder folder;
+  const auto ball = folder.run("dump ball.json --run --at 0,3,0");
+  CHECK(ball.code == 0);
+  CHECK_THAT(ball.out, Contains("; at 0 3 0\n") && Contains("\n;   points (0 3 0)   values 2.5\n"));
+  CHECK(ball.out.find("not finite") == std::string::npos);
+  // The listing is still one: the stacks stand in comments.
+  CHECK(folder.run("asm - -o run.fbc", ball.out).code == 0);
+  CHECK(folder.run("dump run.fbc --run --at 0,3,0").out.find("values 2.5") != std::string::npos);
+  REQUIRE(folder.run("asm - -o nan.fbc", "x\nsqrt\nsphere 1 min\n").code == 0);
+  const auto bad = folder.run("dump nan.fbc --run --at=-1,0,0");
+  CHECK_THAT(bad.out, Contains("; the first number that is not finite, nan, is left by 0001"));
+  CHECK(folder.run("dump ball.json --run").code == 2);
+  CHECK(folder.run("dump ball.json --at 0,0,0").code == 2);
+  CHECK(folder.run("dump ball.json --run --at 0,0,0 --stats").code == 2);
+  std::string lines = "sphere 1\n";
+  for (int i = 0; i < 20000; ++i) lines += "sphere 1 min\n";
+  REQUIRE(folder.run("asm - -o long.fbc", lines).code == 0);
+  const auto refused = folder.run("dump long.fbc --run --at 0,0,0");
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.err, Contains("20000 instructions at most; these are 20001"));
+}
+
+TEST_CASE("cli: dump --diff of two scenes says what their programs differ in") {
+  const Folder folder;
+  REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
+  CHECK(folder.run("dump --diff two.json two.fbc").out == "; two.json and two.fbc are the same program\n");
+  const auto diff = folder.run("dump --diff ball.json two.fbc");
+  CHECK(diff.code == 0);
+  CHECK_THAT(diff.out, Contains("; 1 -> 2 ops, 2 -> 12 words, cost 8 -> 25\n--- ball.json\n+++ two.fbc\n@@") &&
+                           Contains("\n-sphere 0.5") && Contains("\n+sphere 1 at -2 0 0"));
+  CHECK(folder.run("dump --diff two.json two.fbc --program surface").out ==
+        "; two.json and two.fbc are the same program\n");
+  CHECK(folder.run("dump two.json two.fbc").code == 2);
+  CHECK(folder.run("dump --diff two.json two.fbc --stage graph").code == 2);
+  CHECK(folder.run("dump --diff two.json none.fbc").code == 74);
+}

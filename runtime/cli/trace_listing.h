@@ -1,0 +1,19 @@
+// A program's listing with its stacks at one point after every instruction, for `fathom dump --run`.
+// Tested by: tests/runtime/cli_dump_test.cpp
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "vm/verify.h"
+
+namespace fathom::cli {
+
+// Longer programs are not traced: the work grows with the square of the length.
+inline constexpr std::uint32_t kMostTraced = 20000;  // instructions
+
+// `point` is in the program's coordinates. The stacks stand in comments, so the assembler reads the listing as ever.
+// It ends with the first instruction that left a NaN or an infinity, if one did.
+std::string trace_listing(const vm::VerifiedProgram& program, glm::dvec3 point);
+
+}  // namespace fathom::cli
