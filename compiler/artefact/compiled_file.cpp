@@ -183,7 +183,11 @@ std::variant<CompiledScene, FileError> read_file(const CompiledFile& file, const
   if (archive.failed())
     return damaged("tables", fmt::format("is wrong at byte {}: {}", in.offset(), archive.reason()));
   if (in.left() > 0) return damaged("tables", "goes on after its last field");
-  if (auto problem = check_tags(scene)) return FileError{*std::move(problem), ""};
+  if (const auto fault = check_tags(scene)) {
+    return FileError{
+        fmt::format("program `{}`, word {}: {}", programs_of(scene)[fault->program].name, fault->word, fault->reason),
+        ""};
+  }
   scene.source = file.text ? beside(*file.text, path) : Source(path, "");
   place_picture(scene);
   return scene;

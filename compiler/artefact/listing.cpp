@@ -55,7 +55,7 @@ class ListingReader {
       table_reader.fail("here a program should begin: `program distance {`");
     }
     if (table_reader.failed()) return refuse(table_reader);
-    if (const auto problem = check_tags(scene)) return error({}, *problem);
+    if (const auto fault = check_tags(scene)) return refuse_tag(bodies_[fault->program], *fault);
     contents.text = text_found_;
     if (text_found_) scene.source = Source(std::move(text_name_), std::move(scene_text_));
     place_picture(scene);
@@ -75,7 +75,7 @@ class ListingReader {
     scene.materials.emplace_back().name = "white";
     scene.background.bottom = scene.background.top = glm::dvec3(1);
     scene.summary = "a program, nothing is proved";
-    if (const auto problem = check_tags(scene)) return error({}, *problem);
+    if (const auto fault = check_tags(scene)) return refuse_tag(span(0, text_.size()), *fault);
     contents = {has_debug(scene.distance), false};
     return scene;
   }
@@ -136,6 +136,7 @@ class ListingReader {
       }
       std::optional<vm::VerifiedProgram> program = assemble(place.begin, place.end);
       if (!program) return std::nullopt;
+      bodies_.push_back(place);
       contents.debug = contents.debug || has_debug(*program);
       list.add(std::move(*program));
     }
@@ -154,6 +155,10 @@ class ListingReader {
       return error_at<vm::VerifiedProgram>(line_of_word(begin, end, wrong->offset), wrong->reason);
     }
     return std::get<vm::VerifiedProgram>(std::move(verified));
+  }
+
+  std::optional<CompiledScene> refuse_tag(Span body, const TagFault& fault) {
+    return error(line_of_word(body.begin, body.end, fault.word), fault.reason);
   }
 
   std::optional<vm::VerifiedProgram> refuse_line(std::size_t begin, const vm::AssembleError& wrong) {
@@ -226,6 +231,7 @@ class ListingReader {
   const std::string& text_;
   Diagnostics& diagnostics_;
   std::size_t programs_begin_ = 0;
+  std::vector<Span> bodies_;  // [program]
   bool text_found_ = false;
   std::string text_name_, scene_text_;
 };

@@ -36,14 +36,16 @@ CompiledScene ProgramList::scene() && {
   return scene;
 }
 
-std::optional<std::string> check_tags(const CompiledScene& scene) {
-  for (const NamedProgram& row : programs_of(scene)) {
-    const std::vector<std::uint32_t>& words = row.program->program().words;
+std::optional<TagFault> check_tags(const CompiledScene& scene) {
+  const std::vector<NamedProgram> all = programs_of(scene);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::vector<std::uint32_t>& words = all[i].program->program().words;
     for (std::size_t at = 0; at < words.size(); at += vm::instruction_length(words[at])) {
       const bool tag = (words[at] & 0xff) == static_cast<std::uint32_t>(vm::Opcode::Tag);
       if (!tag || vm::operand_of(words[at]) < scene.surfaces.size()) continue;
-      return fmt::format("program `{}`, word {}: tag {}: there are {} surfaces", row.name, at,
-                         vm::operand_of(words[at]), scene.surfaces.size());
+      return TagFault{i, static_cast<std::uint32_t>(at),
+                      fmt::format("tag {}: the scene has {} {}", vm::operand_of(words[at]), scene.surfaces.size(),
+                                  scene.surfaces.size() == 1 ? "surface" : "surfaces")};
     }
   }
   return std::nullopt;

@@ -39,7 +39,12 @@ class ProgramList {
   std::size_t media_, formulas_;
 };
 
-// What is wrong with the numbers of tags; nullopt when each names a surface.
-std::optional<std::string> check_tags(const CompiledScene& scene);
+// The first tag that names no surface.
+struct TagFault {
+  std::size_t program;  // in the order of programs_of()
+  std::uint32_t word;
+  std::string reason;
+};
+std::optional<TagFault> check_tags(const CompiledScene& scene);
 
 }  // namespace fathom::compiler

@@ -17,6 +17,7 @@ namespace {
 constexpr const char* kExamples =
     "fathom import prospero.vm -o prospero.json\n"
     "fathom import molecule.json | fathom check -\n"
+    "fathom import scene.fbc -o scene.json         # the text that a compiled scene carries\n"
     "\n"
     "Every verb reads these formats itself; import is for who wants to change what is in them.";
 
@@ -42,6 +43,8 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   auto source = read_scene(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
 
+  const bool compiled_file = std::get<SceneInput>(source).stored.has_value();
+  const std::string own_text = std::get<SceneInput>(source).source.text();
   bool foreign = false;
   std::string text;
   compiler::CompileOptions options;
@@ -51,10 +54,10 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   };
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), scene_arguments, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  if (!foreign) {
+  if (!foreign && !compiled_file) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
   }
-  text = fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text;
+  text = foreign ? fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text : own_text;
   if (!output) {
     streams.out << text;
     return kDone;

@@ -275,7 +275,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
   CHECK_THAT(refused("program formula 0 {", "  program"), Contains("neither a program nor the text"));
   CHECK_THAT(refused("\n}\nprogram surface", "\nprogram surface"), Contains("error"));
   CHECK_THAT(refused("sphere 0.5", "sphere 0.5 7"), Contains("`sphere` takes 1 numbers (radius), not 2"));
-  CHECK_THAT(refused("tag 0", "tag 99"), Contains("tag 99: there are 4 surfaces"));
+  CHECK_THAT(refused("tag 0", "tag 99"), Contains("tag 99: the scene has 4 surfaces"));
   CHECK_THAT(refused("|{", "{"), Contains("begins with |"));
 }
 

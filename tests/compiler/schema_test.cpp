@@ -106,7 +106,7 @@ TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][s
 TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyond a schema", "[schema]") {
   for (const fs::path& path : golden_files("diagnostics")) {
     const std::string name = path.filename().string(), whole = read_file(path);
-    if (name.starts_with("layout")) continue;
+    if (name.starts_with("layout") || name.starts_with("E07")) continue;  // E07xx are of listings
     const std::string text = whole.substr(0, whole.find("----- expected\n")), code = name.substr(0, 5);
     CAPTURE(name);
     CHECK((kStructural.count(code) > 0) != beyond(code));

@@ -87,6 +87,14 @@ TEST_CASE("every verb takes a compiled scene", "[cli]") {
   }
 }
 
+TEST_CASE("import gives back the text that a compiled scene carries", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
+  CHECK(folder.run("import two.fbc").out == kTwo);
+  REQUIRE(folder.run("compile two.json --no-text -o bare.fbc").code == 0);
+  CHECK(folder.run("import bare.fbc").code == 2);
+}
+
 TEST_CASE("a damaged file is refused with its name, and nothing is written", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
