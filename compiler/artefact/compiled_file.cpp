@@ -55,9 +55,14 @@ Bytes write_debug(const CompiledScene& scene) {
   return out.take();
 }
 
-Bytes write_text(const Source& source) {
+Bytes write_text(const Source& source, const Definitions& definitions) {
   vm::ByteWriter out;
   out.text(std::filesystem::path(source.name()).filename().string());
+  out.u32(static_cast<std::uint32_t>(definitions.size()));
+  for (const auto& [name, value] : definitions) {
+    out.text(name);
+    out.f64(value);
+  }
   out.text(source.text());
   return out.take();
 }
@@ -109,7 +114,7 @@ bool is_compiled_file(std::string_view bytes) {
 std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileContents& contents) {
   const Bytes sections[kSections] = {write_code(scene), write_tables(scene),
                                      contents.debug ? write_debug(scene) : Bytes(),
-                                     contents.text ? write_text(scene.source) : Bytes()};
+                                     contents.text ? write_text(scene.source, contents.definitions) : Bytes()};
   vm::ByteWriter out;
   out.raw(kFileMagic);
   out.u32(kFileVersion);
@@ -160,6 +165,10 @@ std::variant<CompiledFile, FileError> open_file(std::span<const std::uint8_t> by
   if (sections[kText].empty()) return file;
   vm::ByteReader text(sections[kText]);
   std::string name = text.text(kMostName);
+  for (std::size_t left = text.count(12); left > 0; --left) {
+    std::string parameter = text.text(kMostName);
+    file.definitions.emplace_back(std::move(parameter), text.f64());
+  }
   std::string content = text.text(text.left());
   if (text.failed() || text.left() > 0) return damaged("text", "makes no sense");
   file.text = Source(std::move(name), std::move(content));

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "compiler/compiled_scene.h"
+#include "compiler/frontend/parameters.h"
 #include "vm/digest.h"
 
 namespace fathom::compiler {
@@ -29,10 +30,11 @@ namespace fathom::compiler {
 inline constexpr std::array<std::uint8_t, 8> kFileMagic = {0x89, 'F', 'B', 'C', '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kFileVersion = 1;
 
-// What a file may do without.
+// What a file holds beside programs and tables.
 struct FileContents {
-  bool debug = true;  // places and names of the instructions
-  bool text = true;   // the scene's text: without it nothing is proved and no parameter can be set
+  bool debug = true;             // places and names of the instructions
+  bool text = true;              // the scene's text: without it nothing is proved and no parameter can be set
+  Definitions definitions = {};  // the values that parameters of the text were given
 };
 
 struct FileError {
@@ -45,6 +47,7 @@ struct CompiledFile {
   vm::Digest opcodes;  // of the table the programs were made for
   std::span<const std::uint8_t> code, tables, debug;
   std::optional<Source> text;  // under its file's name, without folders
+  Definitions definitions;     // with which it was compiled
 };
 
 bool is_compiled_file(std::string_view bytes);

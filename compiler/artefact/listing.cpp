@@ -57,6 +57,7 @@ class ListingReader {
     if (table_reader.failed()) return refuse(table_reader);
     if (const auto fault = check_tags(scene)) return refuse_tag(bodies_[fault->program], *fault);
     contents.text = text_found_;
+    contents.definitions = std::move(definitions_);
     if (text_found_) scene.source = Source(std::move(text_name_), std::move(scene_text_));
     place_picture(scene);
     return scene;
@@ -76,7 +77,7 @@ class ListingReader {
     scene.background.bottom = scene.background.top = glm::dvec3(1);
     scene.summary = "a program, nothing is proved";
     if (const auto fault = check_tags(scene)) return refuse_tag(span(0, text_.size()), *fault);
-    contents = {has_debug(scene.distance), false};
+    contents = {has_debug(scene.distance), false, {}};
     return scene;
   }
 
@@ -198,6 +199,11 @@ class ListingReader {
       const std::size_t line_end = std::min(text_.find('\n', at), text_.size());
       std::string_view line = std::string_view(text_).substr(at, line_end - at);
       if (line.ends_with('\r')) line.remove_suffix(1);
+      if (line.starts_with("define ") && !text_found_) {
+        if (!read_definition(at, line_end)) return false;
+        at = line_end + 1;
+        continue;
+      }
       if (text_found_) scene_text_ += '\n';
       if (!line.starts_with('|') || !vm::unescape(line.substr(1), scene_text_)) {
         return report(span(at, line_end), "a line of the text begins with |, and a backslash in it is written \\\\");
@@ -206,6 +212,17 @@ class ListingReader {
       at = line_end + 1;
     }
     return true;
+  }
+
+  // define "r" 0.5
+  bool read_definition(std::size_t begin, std::size_t end) {
+    TextArchiveReader in(std::string_view(text_).substr(0, end));
+    in.skip_to(begin);
+    auto& [name, value] = definitions_.emplace_back();
+    in.expect("define");
+    in.text(name);
+    in.number(value);
+    return in.failed() ? report(span(in.fault_begin(), in.fault_end()), in.reason()) : true;
   }
 
   std::optional<CompiledScene> refuse(const TextArchiveReader& in) {
@@ -234,6 +251,7 @@ class ListingReader {
   std::vector<Span> bodies_;  // [program]
   bool text_found_ = false;
   std::string text_name_, scene_text_;
+  Definitions definitions_;
 };
 
 }  // namespace
@@ -248,7 +266,11 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
     out += fmt::format("program {} {{\n{}}}\n", row.name, listing);
   }
   if (!contents.text) return out;
-  return out + fmt::format("text \"{}\"\n{}", vm::escape(file_name(scene.source)), barred(scene.source.text()));
+  out += fmt::format("text \"{}\"\n", vm::escape(file_name(scene.source)));
+  for (const auto& [name, value] : contents.definitions) {
+    out += fmt::format("define \"{}\" {}\n", vm::escape(name), value);
+  }
+  return out + barred(scene.source.text());
 }
 
 std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents) {

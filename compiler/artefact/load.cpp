@@ -41,13 +41,15 @@ std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> b
   if (auto* error = std::get_if<FileError>(&file)) return std::move(*error);
   auto scene = read_file(std::get<CompiledFile>(file), path);
   if (auto* error = std::get_if<FileError>(&scene)) return std::move(*error);
-  return StoredScene{std::get<CompiledScene>(std::move(scene)), std::get<CompiledFile>(file).text.has_value()};
+  return StoredScene{std::get<CompiledScene>(std::move(scene)), std::get<CompiledFile>(file).text.has_value(),
+                     std::get<CompiledFile>(file).definitions};
 }
 
-std::variant<Source, FileError> read_stored_text(std::span<const std::uint8_t> bytes, const std::string& path) {
-  auto file = open_file(bytes);
-  if (auto* error = std::get_if<FileError>(&file)) return std::move(*error);
-  if (const auto& text = std::get<CompiledFile>(file).text) return beside(*text, path);
+std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_t> bytes, const std::string& path) {
+  auto opened = open_file(bytes);
+  if (auto* error = std::get_if<FileError>(&opened)) return std::move(*error);
+  auto& file = std::get<CompiledFile>(opened);
+  if (file.text) return StoredText{beside(*file.text, path), std::move(file.definitions)};
   return FileError{"it holds programs without the scene they were compiled from", "compile the scene's own file"};
 }
 

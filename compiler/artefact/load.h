@@ -13,15 +13,20 @@ namespace fathom::compiler {
 
 // What a file of compiled programs, `path`, holds.
 struct StoredScene {
-  CompiledScene scene;  // claims, not proofs
-  bool has_text;        // scene.source is what it was compiled from
+  CompiledScene scene;      // claims, not proofs
+  bool has_text;            // scene.source is what it was compiled from
+  Definitions definitions;  // with these values
 };
 [[nodiscard]] std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes,
                                                                const std::string& path);
 
 // The scene's text in such a file, as if it lay beside it, though its programs may be for another machine.
-[[nodiscard]] std::variant<Source, FileError> read_stored_text(std::span<const std::uint8_t> bytes,
-                                                               const std::string& path);
+struct StoredText {
+  Source source;
+  Definitions definitions;
+};
+[[nodiscard]] std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_t> bytes,
+                                                                   const std::string& path);
 
 // The stored scene for use without a proof: its constants count as estimates, its bound as unknown unless the machine
 // shows that nothing is outside it, and its lamps are found by the rays that hit them alone.

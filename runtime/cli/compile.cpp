@@ -62,7 +62,8 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   const auto compiled =
       compile_scene({std::get<compiler::Source>(std::move(input)), std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  return write_compiled(std::get<compiler::CompiledScene>(compiled), {!strip, !no_text}, *output, streams);
+  return write_compiled(std::get<compiler::CompiledScene>(compiled), {!strip, !no_text, scene_arguments.definitions},
+                        *output, streams);
 }
 
 int run_asm(std::span<const std::string> args, const Streams& streams) {

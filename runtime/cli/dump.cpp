@@ -179,11 +179,12 @@ std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const
 }
 
 // What is printed of a compiled scene alone, without the way to it.
-std::string print_compiled(const compiler::CompiledScene& scene, const DumpRequest& request) {
+std::string print_compiled(const compiler::CompiledScene& scene, const DumpRequest& request,
+                           const compiler::Definitions& definitions) {
   if (request.stage == kBytecode) return print_bytecode(scene, request);
   const vm::Program& program = scene.distance.program();
   return compiler::write_listing(
-      scene, {!program.debug.empty() || !program.source_name.empty(), !scene.source.text().empty()});
+      scene, {!program.debug.empty() || !program.source_name.empty(), !scene.source.text().empty(), definitions});
 }
 
 // The stages that are made on the way from the text to the programs.
@@ -218,7 +219,7 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     streams.out << *listing;
   } else if (request.stage >= kBytecode) {
     if (const auto code = check_length(scene, request, streams)) return *code;
-    streams.out << print_compiled(scene, request);
+    streams.out << print_compiled(scene, request, request.scene.definitions);
   }
   return kDone;
 }
@@ -262,7 +263,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
     if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
-    streams.out << print_compiled(input.stored->scene, request);
+    streams.out << print_compiled(input.stored->scene, request, input.stored->definitions);
     return kDone;
   }
   if (input.stored && !input.stored->has_text) {
@@ -270,6 +271,10 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
         streams, kUsage,
         fmt::format("{} holds programs without the scene they were compiled from", quoted(request.scene.path)),
         {"--stage bytecode and --stage file print what it holds"});
+  }
+  if (input.stored) {
+    compiler::Definitions& own = request.scene.definitions;
+    own.insert(own.begin(), input.stored->definitions.begin(), input.stored->definitions.end());
   }
   return dump_compiling(request, input.source, streams);
 }

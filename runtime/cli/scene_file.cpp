@@ -67,6 +67,12 @@ std::variant<compiler::Source, ExitCode> read_any(const std::string& path, const
 // Of which the folder counts: of standard input the one we are in.
 std::string folder_name(const std::string& path) { return path == "-" ? "" : path; }
 
+// Of a name the last counts.
+compiler::Definitions both(compiler::Definitions first, const compiler::Definitions& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
 // Whether more is asked for than what is compiled in the end. (on_pass alone is for who likes to watch.)
 bool asks_for_graph(const compiler::CompileOptions& options) {
   return options.stop_after || options.on_syntax || options.lint;
@@ -132,14 +138,16 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
   return SceneInput{scene.scene.source, std::move(scene)};
 }
 
-std::variant<compiler::Source, ExitCode> read_scene_text(const SceneArguments& arguments, const Streams& streams) {
+std::variant<compiler::Source, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams) {
   auto read = read_any(arguments.path, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return std::move(source);
   auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
   if (const auto* error = std::get_if<compiler::FileError>(&text)) return bad_file(arguments.path, *error, streams);
-  return std::get<compiler::Source>(std::move(text));
+  auto& stored = std::get<compiler::StoredText>(text);
+  arguments.definitions = both(stored.definitions, arguments.definitions);
+  return std::move(stored.source);
 }
 
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
@@ -150,7 +158,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   }
   const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
   compiler::Diagnostics diagnostics;
-  options.definitions = arguments.definitions;
+  options.definitions = input.stored ? both(input.stored->definitions, arguments.definitions) : arguments.definitions;
   auto scene = compiler::compile(input.source, diagnostics, options);
   streams.err << diagnostics.print(input.source, format, streams.color);
   const std::size_t errors = diagnostics.errors(), warnings = diagnostics.all().size() - errors;

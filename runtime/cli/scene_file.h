@@ -41,7 +41,8 @@ struct SceneInput {
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
 
 // The text alone, also of a file whose programs are for another machine.
-std::variant<compiler::Source, ExitCode> read_scene_text(const SceneArguments& arguments, const Streams& streams);
+// What the file was compiled with comes before the command line's definitions.
+std::variant<compiler::Source, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams);
 
 // Compiles and prints the diagnostics, warnings too. When there were errors, kBadScene, or kUsage for values that the
 // scene's parameters cannot have. The programs of a compiled file that are not those of its text, or came without,

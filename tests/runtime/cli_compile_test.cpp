@@ -54,9 +54,17 @@ TEST_CASE("parameters can be set of a compiled scene as of the scene itself", "[
   CHECK(folder.run("eval s.fbc -D r=1 --at 3,0,0").out.starts_with("2 "));
   const Result wrong = folder.run("eval s.fbc -D r=5 --at 3,0,0");
   CHECK(wrong.code == 2);
-  // Set once and for all, and then anew from the text, which knows nothing of it.
+  // Set when it was compiled, and then set anew.
   REQUIRE(folder.run("compile s.json -D r=2 -o two.fbc").code == 0);
   CHECK(folder.run("dump two.fbc").out.find("sphere 2") != std::string::npos);
+  const Result two = folder.run("eval two.fbc --at 3,0,0");
+  CHECK(two.out.starts_with("1 "));
+  CHECK(folder.run("dump --stage graph two.fbc").out.find("sphere radius=2 ") != std::string::npos);
+  CHECK(two.err.empty());  // proved with the value it was compiled with
+  CHECK(folder.run("eval two.fbc -D r=1.5 --at 3,0,0").out.starts_with("1.5 "));
+  CHECK(folder.run_script("$fathom dump --stage file two.fbc | $fathom asm - -o - | cmp - two.fbc").code == 0);
+  REQUIRE(folder.run("compile two.fbc -o again.fbc").code == 0);
+  CHECK(folder.read("again.fbc") == folder.read("two.fbc"));
   // Without the text there is nothing to set, and the message says so.
   REQUIRE(folder.run("compile s.json --no-text -o bare.fbc").code == 0);
   const Result bare = folder.run("eval bare.fbc -D r=1 --at 3,0,0");
