@@ -94,6 +94,7 @@ struct Background {
     bool sun_disc = true;
   };
   struct Image {        // latitude and longitude: the middle of the picture looks along -z, +x is to its right
+    std::string name;   // as the scene has it
     std::string file;   // as it can be opened: the scene's folder is put before it
     double rotate = 0;  // about y, degrees, counter-clockwise seen from above
     double strength = 1;

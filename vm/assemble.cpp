@@ -35,7 +35,17 @@ std::optional<Number> to_number(Token token) {
   return value;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+// The listing's: offset, length, two heights, cost.
+constexpr int kColumns = 5;
+
+// "12" or "0->1".
+bool is_column(Token token) {
+  const auto is_number = [](Token part) {
+    return !part.empty() && part.find_first_not_of("0123456789") == Token::npos;
+  };
+  const std::size_t arrow = std::min(token.find("->"), token.size());
+  return is_number(token.substr(0, arrow)) && (arrow == token.size() || is_number(token.substr(arrow + 2)));
+}
 
 // One line's instruction while it is read.
 struct Draft {
@@ -79,16 +89,25 @@ class Assembler {
   // The line's tokens, without the listing's columns, comment and place.
   void split(std::string_view line, DebugEntry& place) {
     tokens_.clear();
-    for (std::size_t at = 0;;) {
+    int columns = 0;
+    for (std::size_t at = 0; !error_;) {
       at = line.find_first_not_of(" \t\r", at);
-      if (at == line.npos || line[at] == ';') return;
+      if (at == line.npos || line[at] == ';') break;
       if (line[at] == '@') return read_place(line.substr(at), place);
-      if (line[at] == '"') return read_source(line.substr(at));
+      if (line[at] == '"') {
+        at += read_source(line.substr(at));
+        continue;
+      }
       const std::size_t end = std::min(line.find_first_of(" \t\r;", at), line.size());
       const Token token = line.substr(at, end - at);
-      if (!tokens_.empty() || !is_digit(token[0])) tokens_.push_back(token);
       at = end;
+      if (!tokens_.empty() || !is_column(token)) {
+        tokens_.push_back(token);
+      } else if (++columns > kColumns) {
+        fail(token, "an instruction begins with its name");
+      }
     }
+    if (columns > 0 && tokens_.empty()) fail(line, "a line of columns without an instruction");
   }
 
   // "@6:5 symbol" or "@ symbol"; the symbol goes to the end of the line.
@@ -106,23 +125,29 @@ class Assembler {
     placed_ = true;
     Token symbol = text.substr(std::min(end + 1, text.size()));
     if (symbol.ends_with('\r')) symbol.remove_suffix(1);
-    if (!unescape(symbol, place.symbol)) fail(symbol, "a backslash here must be followed by n, r, t, \\ or u00XX");
+    if (!unescape(symbol, place.symbol))
+      fail(symbol, "a backslash here must be followed by n, r, t, \\, \" or u00XX");
   }
 
-  void read_source(std::string_view quoted) {
-    const std::size_t end = quoted.rfind('"');
+  // Returns how long the text in quotes is.
+  std::size_t read_source(std::string_view line) {
     const bool alone = tokens_.size() == 1 && tokens_[0] == "source" && program_.words.empty();
-    if (!alone) return fail(quoted.substr(0, 1), "a text in quotes stands after `source` alone, before the code");
-    if (end == 0 || !unescape(quoted.substr(1, end - 1), program_.source_name)) {
-      return fail(quoted, "the text in quotes is not whole");
+    const std::size_t length = quoted_length(line);
+    if (!alone || named_) {
+      fail(line.substr(0, 1), "a text in quotes stands after `source`, once, before the code");
+    } else if (length == 0 || !unescape(line.substr(1, length - 2), program_.source_name)) {
+      fail(line, "the text in quotes is not whole");
     }
+    named_ = true;
     tokens_.clear();
+    return length;
   }
 
   void read_locals() {
     const auto count = tokens_.size() == 2 ? to_number<std::uint32_t>(tokens_[1]) : std::nullopt;
-    if (!count) return fail(tokens_[0], "`locals` takes a number: how many there are");
+    if (!count || counted_) return fail(tokens_[0], "`locals` stands once, with how many there are");
     program_.locals = *count;
+    counted_ = true;
   }
 
   void read_operands(const OpcodeInfo& row, Draft& draft) {
@@ -217,7 +242,7 @@ class Assembler {
 
   double number(Token token) {
     const auto value = to_number<double>(token);
-    if (!value || !std::isfinite(*value)) fail(token, fmt::format("`{}` is not a number", token));
+    if (!value || !std::isfinite(*value)) fail(token, fmt::format("`{}` is not a number that a double holds", token));
     return value.value_or(0);
   }
   double whole(Token token) {
@@ -234,8 +259,8 @@ class Assembler {
 
   std::string_view text_;
   Program program_;
-  bool placed_ = false;
-  std::vector<Token> tokens_;  // of the line
+  bool placed_ = false, named_ = false, counted_ = false;  // whether a place, `source`, `locals` was read
+  std::vector<Token> tokens_;                              // of the line
   std::optional<AssembleError> error_;
 };
 

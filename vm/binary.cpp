@@ -22,8 +22,6 @@ constexpr std::string_view kRows =
 #undef OP
     ;
 
-constexpr std::size_t kMostName = 1 << 16;  // bytes of a symbol or source name
-
 bool is_wide(const Program& program, std::size_t word) {
   return std::bit_cast<std::uint64_t>(program.wide[word]) !=
          std::bit_cast<std::uint64_t>(static_cast<double>(std::bit_cast<float>(program.words[word])));
@@ -107,9 +105,9 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
   return verified;
 }
 
-void write_debug(ByteWriter& out, const VerifiedProgram& verified) {
+void write_debug(ByteWriter& out, const VerifiedProgram& verified, std::string_view source_name) {
   const Program& program = verified.program();
-  out.text(program.source_name);
+  out.text(source_name);
   out.u32(static_cast<std::uint32_t>(program.debug.size()));
   for (const DebugEntry& entry : program.debug) {
     out.u32(entry.line);
@@ -119,13 +117,13 @@ void write_debug(ByteWriter& out, const VerifiedProgram& verified) {
 }
 
 DebugTable read_debug(ByteReader& in, const VerifiedProgram& program) {
-  DebugTable table{in.text(kMostName), {}};
+  DebugTable table{in.text(in.left()), {}};
   const std::size_t count = in.count(12);
   if (count != 0 && count != program.instructions()) in.fail();
   const std::vector<std::uint32_t>& words = program.program().words;
   for (std::size_t i = 0, at = 0; i < count && !in.failed(); ++i) {
     const std::uint32_t line = in.u32(), column = in.u32();
-    table.entries.push_back({static_cast<std::uint32_t>(at), line, column, in.text(kMostName)});
+    table.entries.push_back({static_cast<std::uint32_t>(at), line, column, in.text(in.left())});
     if (line == 0 && column != 0) in.fail();
     at += instruction_length(words[at]);
   }

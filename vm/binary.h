@@ -2,6 +2,7 @@
 // Tested by: tests/vm/binary_test.cpp
 #pragma once
 
+#include <string_view>
 #include <variant>
 
 #include "vm/bytes.h"
@@ -19,7 +20,7 @@ struct DebugTable {
   std::string source_name;
   std::vector<DebugEntry> entries;  // none, or one for each instruction
 };
-void write_debug(ByteWriter& out, const VerifiedProgram& program);
+void write_debug(ByteWriter& out, const VerifiedProgram& program, std::string_view source_name);
 // `in` fails when there is something else than a table for `program`.
 DebugTable read_debug(ByteReader& in, const VerifiedProgram& program);
 // The same program with that table.

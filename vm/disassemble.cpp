@@ -71,7 +71,7 @@ std::string disassemble(const VerifiedProgram& verified) {
                                  verified.instructions(), program.words.size(), verified.max_values(),
                                  verified.max_points(), program.locals, verified.cost());
   if (program.locals > 0) text += fmt::format("locals {}\n", program.locals);
-  if (!program.source_name.empty()) text += fmt::format("source \"{}\"\n", escape(program.source_name));
+  if (!program.source_name.empty()) text += fmt::format("source {}\n", quote(program.source_name));
   text += "; off  words  values  points  cost  op                                       ; source\n";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {

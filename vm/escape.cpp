@@ -7,14 +7,12 @@
 namespace fathom::vm {
 namespace {
 
-constexpr std::string_view kLetters = "nrt\\", kMeanings = "\n\r\t\\";
+constexpr std::string_view kLetters = "nrt\\\"", kMeanings = "\n\r\t\\\"";
 
-}  // namespace
-
-std::string escape(std::string_view text) {
+std::string escape(std::string_view text, bool quotes) {
   std::string out;
   for (const char c : text) {
-    if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos) {
+    if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos && (quotes || c != '"')) {
       out += '\\';
       out += kLetters[known];
     } else if (static_cast<unsigned char>(c) < 0x20) {
@@ -24,6 +22,20 @@ std::string escape(std::string_view text) {
     }
   }
   return out;
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) { return escape(text, false); }
+
+std::string quote(std::string_view text) { return '"' + escape(text, true) + '"'; }
+
+std::size_t quoted_length(std::string_view line) {
+  for (std::size_t i = 1; i < line.size() && line[i] != '\n'; ++i) {
+    if (line[i] == '"') return i + 1;
+    if (line[i] == '\\') ++i;
+  }
+  return 0;
 }
 
 bool unescape(std::string_view text, std::string& out) {

@@ -10,7 +10,13 @@ namespace fathom::vm {
 // What is no UTF-8 stays as it is.
 std::string escape(std::string_view text);
 
-// The opposite, added to `out`; false when there is a backslash that escape() would not write.
+// The same between quotes, with those in it escaped, too.
+std::string quote(std::string_view text);
+// How many bytes of a line that begins with a quote belong to the quoted text; 0 when it does not end.
+std::size_t quoted_length(std::string_view line);
+
+// The opposite of escape() and of what stands between the quotes, added to `out`; false when there is a backslash
+// that neither would write.
 bool unescape(std::string_view text, std::string& out);
 
 }  // namespace fathom::vm

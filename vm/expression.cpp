@@ -23,6 +23,7 @@ void Expression::begin(const Code& code) {
   choices_.clear(), tees_.clear(), places_.clear(), place_of_.clear();
   points_.assign(1, {kNone, 0});
   places_.push_back({kNone, kNone});
+  ++reading_;
   defined_.assign(code.locals, kNone);
   locals_ = code.locals;
 }
@@ -58,6 +59,7 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint3
       break;
     }
     case Form::Machine:
+      if (row.opcode == Opcode::Drop && height_ == 0) return false;
       sound = row.opcode == Opcode::Load ? use_local(operand_of(word), node.a) : take(node.a);
       if (row.opcode == Opcode::Tee) {
         defined_[operand_of(word)] = self;
@@ -94,18 +96,36 @@ bool Expression::use_local(std::uint32_t local, std::uint32_t& operand) {
 }
 
 std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
-  const std::uint32_t before = points_.back().place;
+  const Place place{points_.back().place, at};
+  const auto next = static_cast<std::uint32_t>(places_.size());
   if (locals_ > 0) {  // else no place is met twice
-    const std::size_t length = instruction_length(code.words[at]);
-    for (std::uint32_t i = 1; i < places_.size(); ++i) {
-      const Place& place = places_[i];
-      if (place.before == before && std::equal(code.words + at, code.words + at + length, code.words + place.at)) {
-        return i;
-      }
-    }
+    if (2 * places_.size() >= slots_.size()) grow_slots(code);
+    Slot& slot = slots_[slot_of(code, place)];
+    if (slot.reading == reading_) return slot.place;
+    slot = {reading_, next};
   }
-  places_.push_back({before, at});
-  return static_cast<std::uint32_t>(places_.size() - 1);
+  places_.push_back(place);
+  return next;
+}
+
+// Where an equal place is, or would be.
+std::size_t Expression::slot_of(const Code& code, const Place& place) const {
+  const std::size_t length = instruction_length(code.words[place.at]);
+  std::uint64_t hash = 0xcbf29ce484222325u ^ place.before;  // FNV-1a (Fowler, Noll, Vo, 1991)
+  for (std::size_t i = 0; i < length; ++i) hash = (hash ^ code.words[place.at + i]) * 0x100000001b3u;
+  for (std::size_t at = hash >> 20;; ++at) {
+    const std::size_t index = at & (slots_.size() - 1);
+    const Slot& slot = slots_[index];
+    if (slot.reading != reading_) return index;
+    const Place& other = places_[slot.place];
+    const std::uint32_t* words = code.words + place.at;
+    if (other.before == place.before && std::equal(words, words + length, code.words + other.at)) return index;
+  }
+}
+
+void Expression::grow_slots(const Code& code) {
+  slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), Slot());
+  for (std::uint32_t i = 1; i < places_.size(); ++i) slots_[slot_of(code, places_[i])] = {reading_, i};
 }
 
 }  // namespace fathom::vm

@@ -23,7 +23,8 @@ struct ExpressionNode {
 
 class Expression {
  public:
-  // Reads `code` anew; false when it is not an expression: a value computed at one point is used at another.
+  // Reads `code` anew; false when it is not an expression: a value computed at one point is used at another, or a
+  // point is dropped at which nothing was computed.
   bool read(const Code& code);
 
   const std::vector<ExpressionNode>& nodes() const { return nodes_; }
@@ -59,6 +60,14 @@ class Expression {
     std::uint32_t before, at;  // the place it is made of, and the instruction
   };
   std::vector<Place> places_;
+  // Places by hash, at the first free slot from theirs; a slot of another reading is free.
+  struct Slot {
+    std::uint32_t reading = 0, place = 0;
+  };
+  std::vector<Slot> slots_;
+  std::uint32_t reading_ = 0;
+  std::size_t slot_of(const Code& code, const Place& place) const;
+  void grow_slots(const Code& code);
 };
 
 }  // namespace fathom::vm

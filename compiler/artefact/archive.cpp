@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace fathom::compiler {
 
 void value(Archive& archive, double& number, double least, double most) {
@@ -38,6 +40,9 @@ void field(Archive& archive, std::string_view name, bool& flag) {
 void field(Archive& archive, std::string_view name, std::string& text) {
   archive.begin(name);
   archive.text(text);
+  const bool printable =
+      std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (!printable) archive.fail("a control character in a text");
   archive.end();
 }
 

@@ -29,7 +29,7 @@ void ByteArchiveReader::choice(std::size_t& value, std::span<const std::string_v
 
 void ByteArchiveReader::fail(std::string reason) {
   if (in_.failed()) return;
-  reason_ = fmt::format("`{}`: {}", name_, reason);
+  reason_ = name_.empty() ? reason : fmt::format("`{}`: {}", name_, reason);
   in_.fail();
 }
 

@@ -38,7 +38,7 @@ class ByteArchiveReader : public Archive {
   explicit ByteArchiveReader(vm::ByteReader& in) : in_(in) {}
 
   void begin(std::string_view name) override { name_ = name; }
-  void end() override {}
+  void end() override { name_.clear(); }
   void number(double& value) override { value = in_.f64(); }
   void whole(std::uint64_t& value) override { value = in_.u64(); }
   void text(std::string& value) override { value = in_.text(in_.left()); }
@@ -56,7 +56,7 @@ class ByteArchiveReader : public Archive {
 
  private:
   vm::ByteReader& in_;
-  std::string name_, reason_;  // the field at hand; why it failed
+  std::string name_, reason_;  // the field at hand, if one is; why it failed
 };
 
 }  // namespace fathom::compiler

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -22,7 +23,6 @@ constexpr std::string_view kSectionNames[] = {"code", "tables", "debug", "text"}
 
 // Magic, version, number of sections, digest of the opcodes; of each section size and digest; digest of the header.
 constexpr std::size_t kHeaderSize = 8 + 4 + 4 + 16 + kSections * (8 + 16) + 16;
-constexpr std::size_t kMostName = 1 << 16;  // bytes
 
 void write(vm::ByteWriter& out, vm::Digest digest) {
   out.u64(digest.low);
@@ -49,15 +49,20 @@ Bytes write_tables(const CompiledScene& scene) {
   return out.take();
 }
 
+// Without folders: a file does not depend on where its scene lay.
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
 Bytes write_debug(const CompiledScene& scene) {
   vm::ByteWriter out;
-  for (const NamedProgram& row : programs_of(scene)) vm::write_debug(out, *row.program);
+  for (const NamedProgram& row : programs_of(scene)) {
+    vm::write_debug(out, *row.program, file_name(row.program->program().source_name));
+  }
   return out.take();
 }
 
 Bytes write_text(const Source& source, const Definitions& definitions) {
   vm::ByteWriter out;
-  out.text(std::filesystem::path(source.name()).filename().string());
+  out.text(file_name(source.name()));
   out.u32(static_cast<std::uint32_t>(definitions.size()));
   for (const auto& [name, value] : definitions) {
     out.text(name);
@@ -101,7 +106,52 @@ std::optional<FileError> read_debug(std::span<const std::uint8_t> bytes, Program
     program = vm::with_debug(program, std::move(table));
   }
   if (in.left() > 0) return damaged("debug", "goes on after its last program");
-  return std::nullopt;
+  const bool says_anything = std::any_of(list.programs.begin(), list.programs.end(), has_debug);
+  return says_anything ? std::nullopt : std::optional(damaged("debug", "says nothing, and should be empty"));
+}
+
+struct Header {
+  vm::Digest opcodes;
+  std::array<std::uint64_t, kSections> sizes;  // bytes
+  std::array<vm::Digest, kSections> digests;
+};
+
+std::variant<Header, FileError> read_header(vm::ByteReader& in, std::span<const std::uint8_t> bytes) {
+  const FileError broken{"its header is damaged or cut off", "compile the scene again"};
+  const auto magic = in.raw(kFileMagic.size());
+  if (!std::equal(magic.begin(), magic.end(), kFileMagic.begin(), kFileMagic.end())) {
+    return FileError{"it is no compiled scene: the first bytes are others", "`fathom compile` writes one"};
+  }
+  const std::uint32_t version = in.u32(), sections = in.u32();
+  if (in.failed()) return broken;
+  if (version != kFileVersion || sections != kSections) {
+    return FileError{fmt::format("it is of version {} of the format with {} sections; this program reads version {}, "
+                                 "which has {}",
+                                 version, sections, kFileVersion, int{kSections}),
+                     "compile the scene again with this program"};
+  }
+  Header header{};
+  header.opcodes = read_digest(in);
+  for (int i = 0; i < kSections; ++i) {
+    header.sizes[static_cast<std::size_t>(i)] = in.u64();
+    header.digests[static_cast<std::size_t>(i)] = read_digest(in);
+  }
+  const std::span<const std::uint8_t> read = bytes.first(in.offset());
+  if (read_digest(in) != vm::digest(read) || in.failed()) return broken;
+  return header;
+}
+
+bool read_text(std::span<const std::uint8_t> bytes, CompiledFile& file) {
+  vm::ByteReader in(bytes);
+  std::string name = in.text(in.left());
+  for (std::size_t left = in.count(12); left > 0; --left) {
+    std::string parameter = in.text(in.left());
+    file.definitions.emplace_back(std::move(parameter), in.f64());
+  }
+  std::string content = in.text(in.left());
+  if (in.failed() || in.left() > 0 || content.empty() || name != file_name(name)) return false;
+  file.text = Source(std::move(name), std::move(content));
+  return true;
 }
 
 }  // namespace
@@ -131,27 +181,9 @@ std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileConte
 
 std::variant<CompiledFile, FileError> open_file(std::span<const std::uint8_t> bytes) {
   vm::ByteReader in(bytes);
-  const auto magic = in.raw(kFileMagic.size());
-  if (!std::equal(magic.begin(), magic.end(), kFileMagic.begin(), kFileMagic.end())) {
-    return FileError{"it is no compiled scene: the first bytes are others", "`fathom compile` writes one"};
-  }
-  if (const std::uint32_t version = in.u32(); version != kFileVersion) {
-    return FileError{fmt::format("it is of version {} of the format; this program reads {}", version, kFileVersion),
-                     "compile the scene again with this program"};
-  }
-  const bool four = in.u32() == kSections;
-  CompiledFile file;
-  file.opcodes = read_digest(in);
-  std::uint64_t sizes[kSections];
-  vm::Digest digests[kSections];
-  for (int i = 0; i < kSections; ++i) {
-    sizes[i] = in.u64();
-    digests[i] = read_digest(in);
-  }
-  const std::span<const std::uint8_t> header = bytes.first(in.offset());
-  if (read_digest(in) != vm::digest(header) || in.failed() || !four) {
-    return FileError{"its header is damaged or cut off", "compile the scene again"};
-  }
+  auto header = read_header(in, bytes);
+  if (auto* error = std::get_if<FileError>(&header)) return std::move(*error);
+  const auto& [opcodes, sizes, digests] = std::get<Header>(header);
   std::span<const std::uint8_t> sections[kSections];
   for (int i = 0; i < kSections; ++i) {
     if (sizes[i] > in.left()) return damaged(kSectionNames[i], "is cut off");
@@ -159,19 +191,8 @@ std::variant<CompiledFile, FileError> open_file(std::span<const std::uint8_t> by
     if (vm::digest(sections[i]) != digests[i]) return damaged(kSectionNames[i], "has another digest than it should");
   }
   if (in.left() > 0) return FileError{fmt::format("{} bytes follow its last section", in.left()), ""};
-  file.code = sections[kCode];
-  file.tables = sections[kTables];
-  file.debug = sections[kDebug];
-  if (sections[kText].empty()) return file;
-  vm::ByteReader text(sections[kText]);
-  std::string name = text.text(kMostName);
-  for (std::size_t left = text.count(12); left > 0; --left) {
-    std::string parameter = text.text(kMostName);
-    file.definitions.emplace_back(std::move(parameter), text.f64());
-  }
-  std::string content = text.text(text.left());
-  if (text.failed() || text.left() > 0) return damaged("text", "makes no sense");
-  file.text = Source(std::move(name), std::move(content));
+  CompiledFile file{opcodes, sections[kCode], sections[kTables], sections[kDebug], std::nullopt, {}};
+  if (!sections[kText].empty() && !read_text(sections[kText], file)) return damaged("text", "makes no sense");
   return file;
 }
 

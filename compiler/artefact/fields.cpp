@@ -43,18 +43,6 @@ void signed_whole(Archive& a, std::string_view name, int& number, int least, int
   number = static_cast<int>(wide);
 }
 
-// Under the name that the scene has for it, from the scene's own folder. (A reader does not know the folder yet:
-// place_picture() adds it.)
-void picture(Archive& a, CompiledScene& scene) {
-  std::string& file = scene.background.image.file;
-  if (a.reading()) return field(a, "picture", file);
-  const std::filesystem::path folder = std::filesystem::path(scene.source.name()).parent_path();
-  const bool known = !file.empty() && !folder.empty();
-  const std::string beside = known ? std::filesystem::path(file).lexically_relative(folder).string() : "";
-  std::string name = beside.empty() ? file : beside;
-  field(a, "picture", name);
-}
-
 // A parameter of materials by its name, which is that of its field below.
 struct Numbered {
   std::string_view name;
@@ -100,7 +88,7 @@ void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
   field(a, "least", t.least, -kAny, kAny);
   field(a, "most", t.most, -kAny, kAny);
   if (!a.reading() || a.failed()) return;
-  if (t.least > t.most || t.least < std::min(kNumbers[at].least, 1e-3) || t.most > kNumbers[at].most) {
+  if (t.least > t.most || t.least < kNumbers[at].least || t.most > kNumbers[at].most) {
     a.fail(fmt::format("`{}` cannot be from {} to {}", names[at], t.least, t.most));
   }
 }
@@ -159,6 +147,9 @@ void kind(Archive& a, std::string_view name, Variant& v, Names names) {
 }
 
 constexpr std::string_view kPatterns[] = {"checker", "stripes", "gradient", "noise", "bricks"};
+constexpr std::string_view kRows[] = {"x_row", "y_row", "z_row"};
+constexpr std::string_view kChannels[] = {"red", "green", "blue"};
+constexpr std::string_view kCorners[] = {"corner0", "corner1", "corner2", "corner3"};
 constexpr std::string_view kTextures[] = {"color", "formula", "pattern"};
 
 // `textures` is how many come before this one.
@@ -166,8 +157,7 @@ void fields(Archive& a, Pattern& p, std::size_t textures) {
   kind(a, "pattern", p.kind, kPatterns);
   std::visit([&](auto& own) { fields(a, own); }, p.kind);
   for (int row = 0; row < 3; ++row) {
-    field(a, std::string_view("x_row y_row z_row").substr(static_cast<std::size_t>(6 * row), 5),
-          p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
+    field(a, kRows[row], p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
   }
   field(a, "translation", p.to_pattern.translation, -kAny, kAny);
   index(a, "a", p.a, textures);
@@ -180,8 +170,7 @@ void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) 
   if (auto* pattern = std::get_if<Pattern>(&t)) fields(a, *pattern, textures);
   if (auto* formula = std::get_if<TextureFormula>(&t)) {
     for (std::size_t i = 0; i < 3; ++i) {
-      index(a, std::string_view("redgreenblue").substr(i == 0 ? 0 : 3 * i + (i == 2 ? 2 : 0), i == 0 ? 3 : 6 - i),
-            formula->programs[i], formulas);
+      index(a, kChannels[i], formula->programs[i], formulas);
     }
   }
 }
@@ -194,7 +183,7 @@ void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
   field(a, "half_height", l.half_height, 0, kAny);
   field(a, "half_size", l.half_size, 0, kAny);
   for (std::size_t i = 0; i < 4; ++i) {
-    field(a, std::string_view("corner0corner1corner2corner3").substr(7 * i, 7), l.corners[i], -kAny, kAny);
+    field(a, kCorners[i], l.corners[i], -kAny, kAny);
   }
   index(a, "surface", l.surface, scene.surfaces.size());
   index(a, "material", l.material, scene.materials.size());
@@ -300,6 +289,7 @@ void fields(Archive& a, Background& b) {
   field(a, "ground_albedo", b.sky.ground_albedo, 0, 1);
   field(a, "sky_strength", b.sky.strength, 0, kAny);
   field(a, "sun_disc", b.sky.sun_disc);
+  field(a, "picture", b.image.name);
   field(a, "rotate", b.image.rotate, -kAny, kAny);
   field(a, "strength", b.image.strength, 0, kAny);
 }
@@ -333,7 +323,6 @@ void fields(Archive& a, CompiledScene& scene) {
   record(a, "film", scene.film);
   record(a, "render", scene.settings);
   record(a, "background", scene.background);
-  picture(a, scene);
   list(a, "lights", scene.lights);
   textures(a, scene);
   list(a, "materials", scene.materials,
@@ -350,8 +339,9 @@ void fields(Archive& a, CompiledScene& scene) {
 }
 
 void place_picture(CompiledScene& scene) {
-  std::string& file = scene.background.image.file;
-  if (!file.empty()) file = (std::filesystem::path(scene.source.name()).parent_path() / file).string();
+  Background::Image& image = scene.background.image;
+  const std::filesystem::path folder = std::filesystem::path(scene.source.name()).parent_path();
+  image.file = image.name.empty() ? "" : (folder / image.name).string();
 }
 
 }  // namespace fathom::compiler

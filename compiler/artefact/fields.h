@@ -20,7 +20,7 @@ void fields(Archive& archive, Parameter& parameter);
 void fields(Archive& archive, Camera& camera);
 void fields(Archive& archive, Film& film);
 void fields(Archive& archive, RenderSettings& settings);
-void fields(Archive& archive, Background& background);  // but for its picture's name
+void fields(Archive& archive, Background& background);
 void fields(Archive& archive, Light& light);
 void fields(Archive& archive, CompiledField& field);
 

@@ -72,20 +72,31 @@ class ListingReader {
     list.add(std::move(*program));
     CompiledScene scene = std::move(list).scene();
     scene.bound = Box::everything();
-    scene.surfaces.push_back({"program", 0, false});
+    if (!name_surfaces(scene)) return std::nullopt;
     scene.materials.emplace_back().name = "white";
     scene.background.bottom = scene.background.top = glm::dvec3(1);
     scene.summary = "a program, nothing is proved";
-    if (const auto fault = check_tags(scene)) return refuse_tag(span(0, text_.size()), *fault);
     contents = {has_debug(scene.distance), false, {}};
     return scene;
   }
 
  private:
-  static bool has_debug(const vm::VerifiedProgram& program) {
-    return !program.program().debug.empty() || !program.program().source_name.empty();
+  // As many as the tags of a program alone name.
+  bool name_surfaces(CompiledScene& scene) {
+    constexpr std::size_t kMostSurfaces = 65536;
+    scene.surfaces.push_back({"surface 0", 0, false});
+    while (const auto fault = check_tags(scene)) {
+      const std::size_t needed = std::size_t{vm::operand_of(scene.distance.program().words[fault->word])} + 1;
+      if (needed > kMostSurfaces) {
+        return report(line_of_word(0, text_.size(), fault->word),
+                      fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
+      }
+      while (scene.surfaces.size() < needed) {
+        scene.surfaces.push_back({fmt::format("surface {}", scene.surfaces.size()), 0, false});
+      }
+    }
+    return true;
   }
-
   void read_head(TextArchiveReader& in) {
     in.expect(kHead);
     in.expect(std::to_string(kFileVersion));
@@ -100,7 +111,8 @@ class ListingReader {
     programs_begin_ = text_.size();
     for (std::size_t at = 0; at < text_.size();) {
       const std::size_t end = std::min(text_.find('\n', at), text_.size());
-      const std::string_view line = std::string_view(text_).substr(at, end - at);
+      std::string_view line = std::string_view(text_).substr(at, end - at);
+      line.remove_suffix(line.size() - std::min(line.find_last_not_of(" \t\r") + 1, line.size()));
       if (line.starts_with("program ") && line.ends_with(" {")) {
         const std::size_t close = std::min(text_.find("\n}", end), text_.size());
         if (close == text_.size())
@@ -142,7 +154,8 @@ class ListingReader {
       list.add(std::move(*program));
     }
     if (list.full()) return list;
-    return error_at<ProgramList>({}, fmt::format("program `{}` is missing", list.next()));
+    return error_at<ProgramList>(span(text_.size(), text_.size()),
+                                 fmt::format("program `{}` is missing before the end", list.next()));
   }
 
   std::optional<vm::VerifiedProgram> assemble(std::size_t begin, std::size_t end) {
@@ -266,9 +279,9 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
     out += fmt::format("program {} {{\n{}}}\n", row.name, listing);
   }
   if (!contents.text) return out;
-  out += fmt::format("text \"{}\"\n", vm::escape(file_name(scene.source)));
+  out += fmt::format("text {}\n", vm::quote(file_name(scene.source)));
   for (const auto& [name, value] : contents.definitions) {
-    out += fmt::format("define \"{}\" {}\n", vm::escape(name), value);
+    out += fmt::format("define {} {}\n", vm::quote(name), value);
   }
   return out + barred(scene.source.text());
 }

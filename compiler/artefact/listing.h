@@ -14,8 +14,7 @@
 //     |  "version": 1,
 //     ...
 //
-// A listing of one program alone is read, too: a scene of it with one white surface, the default camera and nothing
-// proved.
+// A listing of one program alone is read, too: a scene of it in white, with the default camera and nothing proved.
 // Tested by: tests/compiler/artefact_test.cpp
 #pragma once
 

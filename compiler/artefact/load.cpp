@@ -1,10 +1,13 @@
 #include "compiler/artefact/load.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
 #include "vm/evaluate.h"
+#include "vm/opcode.h"
 
 namespace fathom::compiler {
 namespace {
@@ -31,7 +34,23 @@ void distrust(CompiledField& field) {
   field.certified = false;
   const bool known = field.bound.finite() && !field.bound.empty();
   const Box grown = field.bound.grown(known ? kRounding * glm::length(field.bound.hi - field.bound.lo) : 0);
-  field.bound = known && is_outside_free(field.distance, grown) ? grown : Box::everything();
+  const bool bounded = known && is_outside_free(field.distance, grown);
+  field.bound = bounded ? grown : Box::everything();
+  field.contents = bounded ? grown : Box();
+  vm::Workspace workspace;
+  const Box all = Box::everything();
+  const double steepest = vm::evaluate_slope(field.distance, all.lo, all.hi, workspace).lipschitz;
+  const bool shown = steepest > 0 && std::isfinite(steepest);
+  field.lipschitz = shown ? steepest : std::max(field.lipschitz, 1.0);
+  const double error = vm::evaluate_slope(field.distance, field.bound.lo, field.bound.hi, workspace).float_error;
+  if (std::isfinite(error)) field.magnitude = std::max(field.magnitude, error / vm::kFloatError);
+}
+
+// "... (proved)" becomes what it is here.
+std::string as_claimed(std::string summary) {
+  constexpr std::string_view kProved = " (proved)";
+  for (std::size_t at; (at = summary.find(kProved)) != summary.npos;) summary.erase(at, kProved.size());
+  return "not proved, but said by the file: " + summary;
 }
 
 }  // namespace
@@ -41,8 +60,9 @@ std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> b
   if (auto* error = std::get_if<FileError>(&file)) return std::move(*error);
   auto scene = read_file(std::get<CompiledFile>(file), path);
   if (auto* error = std::get_if<FileError>(&scene)) return std::move(*error);
-  return StoredScene{std::get<CompiledScene>(std::move(scene)), std::get<CompiledFile>(file).text.has_value(),
-                     std::get<CompiledFile>(file).definitions};
+  auto& opened = std::get<CompiledFile>(file);
+  FileContents contents{!opened.debug.empty(), opened.text.has_value(), std::move(opened.definitions)};
+  return StoredScene{std::get<CompiledScene>(std::move(scene)), std::move(contents)};
 }
 
 std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_t> bytes, const std::string& path) {
@@ -57,7 +77,7 @@ CompiledScene unproved(CompiledScene stored) {
   distrust(stored);
   for (Medium& medium : stored.media) distrust(medium);
   stored.lamps.clear();
-  stored.summary += " (as its file says; not proved)";
+  stored.summary = as_claimed(std::move(stored.summary));
   return stored;
 }
 

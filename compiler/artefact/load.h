@@ -13,9 +13,8 @@ namespace fathom::compiler {
 
 // What a file of compiled programs, `path`, holds.
 struct StoredScene {
-  CompiledScene scene;      // claims, not proofs
-  bool has_text;            // scene.source is what it was compiled from
-  Definitions definitions;  // with these values
+  CompiledScene scene;    // claims, not proofs
+  FileContents contents;  // with text, scene.source is what it was compiled from, with these definitions
 };
 [[nodiscard]] std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes,
                                                                const std::string& path);
@@ -28,8 +27,9 @@ struct StoredText {
 [[nodiscard]] std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_t> bytes,
                                                                    const std::string& path);
 
-// The stored scene for use without a proof: its constants count as estimates, its bound as unknown unless the machine
-// shows that nothing is outside it, and its lamps are found by the rays that hit them alone.
+// The stored scene for use without a proof. Its constants are those that intervals show, which is seldom the best, or
+// estimates where they show nothing; its bound counts where they show that nothing is outside, and its lamps are
+// found by the rays that hit them alone.
 CompiledScene unproved(CompiledScene stored);
 
 }  // namespace fathom::compiler

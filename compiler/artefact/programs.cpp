@@ -18,6 +18,10 @@ std::vector<NamedProgram> programs_of(const CompiledScene& scene) {
   return all;
 }
 
+bool has_debug(const vm::VerifiedProgram& program) {
+  return !program.program().debug.empty() || !program.program().source_name.empty();
+}
+
 std::string ProgramList::name(std::size_t index) const {
   const std::string which = index % 2 == 0 ? "distance" : "surface";
   if (index < 2) return which;

@@ -19,6 +19,9 @@ struct NamedProgram {
 
 std::vector<NamedProgram> programs_of(const CompiledScene& scene);
 
+// Whether a program says where its instructions come from, or of which source.
+bool has_debug(const vm::VerifiedProgram& program);
+
 // Collects them, in that order.
 class ProgramList {
  public:

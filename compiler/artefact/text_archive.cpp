@@ -18,7 +18,7 @@ void TextArchiveWriter::number(double& value) { out_ += fmt::format(" {}", value
 
 void TextArchiveWriter::whole(std::uint64_t& value) { out_ += fmt::format(" {}", value); }
 
-void TextArchiveWriter::text(std::string& value) { out_ += fmt::format(" \"{}\"", vm::escape(value)); }
+void TextArchiveWriter::text(std::string& value) { out_ += " " + vm::quote(value); }
 
 void TextArchiveWriter::choice(std::size_t& value, std::span<const std::string_view> names) {
   out_ += fmt::format(" {}", names[value]);
@@ -61,9 +61,7 @@ std::string_view TextArchiveReader::next() {
   skip_blank();
   fault_begin_ = at_;
   if (at_ < in_.size() && in_[at_] == '"') {
-    // The text ends at the last quote of its line: within, quotes need no escape.
-    const std::size_t line_end = std::min(in_.find('\n', at_), in_.size());
-    at_ += std::max<std::size_t>(in_.substr(at_, line_end - at_).rfind('"') + 1, 1);
+    at_ += std::max<std::size_t>(vm::quoted_length(in_.substr(at_)), 1);
   } else {
     at_ = std::min(in_.find_first_of(" \t\r\n;", at_), in_.size());
   }

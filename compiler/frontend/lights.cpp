@@ -66,7 +66,7 @@ Background read_background(const syntax::Value& value, const Scope& scope, Diagn
   } else if (row->type == "image") {
     background.type = Background::Type::Image;
     if (const syntax::Value* file = reader.value("file")) {
-      background.image.file = std::get<std::string>(file->data);
+      background.image.name = background.image.file = std::get<std::string>(file->data);
       background.image.span = file->span;
     }
     background.image.rotate = reader.number("rotate");

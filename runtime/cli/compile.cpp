@@ -60,7 +60,7 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   auto input = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
   const auto compiled =
-      compile_scene({std::get<compiler::Source>(std::move(input)), std::nullopt}, scene_arguments, streams);
+      compile_scene({std::get<SceneText>(std::move(input)).source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   return write_compiled(std::get<compiler::CompiledScene>(compiled), {!strip, !no_text, scene_arguments.definitions},
                         *output, streams);

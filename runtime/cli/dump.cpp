@@ -172,19 +172,16 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
 
 std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const DumpRequest& request,
                                      const Streams& streams) {
-  const std::uint32_t length = program_of(scene, request).instructions();
-  if (!request.run || length <= kMostTraced) return std::nullopt;
-  return fail(streams, kUsage, fmt::format("--run is for {} instructions at most; these are {}", kMostTraced, length),
+  if (!request.run || trace_work(program_of(scene, request)) <= kMostTraceWork) return std::nullopt;
+  return fail(streams, kUsage, "the program is too long to be run once for each of its instructions",
               {"--region lists the few of them that matter in the region at a point"});
 }
 
 // What is printed of a compiled scene alone, without the way to it.
 std::string print_compiled(const compiler::CompiledScene& scene, const DumpRequest& request,
-                           const compiler::Definitions& definitions) {
+                           const compiler::FileContents& contents) {
   if (request.stage == kBytecode) return print_bytecode(scene, request);
-  const vm::Program& program = scene.distance.program();
-  return compiler::write_listing(
-      scene, {!program.debug.empty() || !program.source_name.empty(), !scene.source.text().empty(), definitions});
+  return compiler::write_listing(scene, contents);
 }
 
 // The stages that are made on the way from the text to the programs.
@@ -219,7 +216,7 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     streams.out << *listing;
   } else if (request.stage >= kBytecode) {
     if (const auto code = check_length(scene, request, streams)) return *code;
-    streams.out << print_compiled(scene, request, request.scene.definitions);
+    streams.out << print_compiled(scene, request, {true, true, request.scene.definitions});
   }
   return kDone;
 }
@@ -263,10 +260,12 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
     if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
-    streams.out << print_compiled(input.stored->scene, request, input.stored->definitions);
+    const bool whole = request.stage == kFile;  // claims and all
+    streams.out << print_compiled(whole ? input.stored->scene : proved_or_claimed(input), request,
+                                  input.stored->contents);
     return kDone;
   }
-  if (input.stored && !input.stored->has_text) {
+  if (input.stored && !input.stored->contents.text) {
     return fail(
         streams, kUsage,
         fmt::format("{} holds programs without the scene they were compiled from", quoted(request.scene.path)),
@@ -274,7 +273,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   }
   if (input.stored) {
     compiler::Definitions& own = request.scene.definitions;
-    own.insert(own.begin(), input.stored->definitions.begin(), input.stored->definitions.end());
+    own.insert(own.begin(), input.stored->contents.definitions.begin(), input.stored->contents.definitions.end());
   }
   return dump_compiling(request, input.source, streams);
 }

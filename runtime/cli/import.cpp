@@ -40,11 +40,12 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (output) {
     if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
   }
-  auto source = read_scene(scene_arguments, streams);
-  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-
-  const bool compiled_file = std::get<SceneInput>(source).stored.has_value();
-  const std::string own_text = std::get<SceneInput>(source).source.text();
+  auto read = read_scene_text(scene_arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  const auto& [source, compiled_file] = std::get<SceneText>(read);
+  if (compiled_file && !scene_arguments.definitions.empty()) {
+    note(streams, "the text says nothing of the values that -D gave to parameters");
+  }
   bool foreign = false;
   std::string text;
   compiler::CompileOptions options;
@@ -52,12 +53,12 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
     foreign = scene.format != compiler::SceneFormat::Scene;
     if (foreign) text = compiler::write_json(scene.file);
   };
-  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), scene_arguments, streams, options);
+  const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   if (!foreign && !compiled_file) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
   }
-  text = foreign ? fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text : own_text;
+  text = foreign ? fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text : source.text();
   if (!output) {
     streams.out << text;
     return kDone;

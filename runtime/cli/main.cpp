@@ -26,9 +26,9 @@ const Verb* find_verb(std::string_view name) {
 std::string overview() {
   std::string text = "Fathom renders scenes made of signed distance fields.\n\nUsage:\n";
   for (const Verb& verb : kVerbs) {
-    text += fmt::format("  {:38}{}\n", fmt::format("fathom {} {}", verb.name, verb.arguments), verb.summary);
+    text += fmt::format("  {:41}{}\n", fmt::format("fathom {} {}", verb.name, verb.arguments), verb.summary);
   }
-  text += "  fathom help VERB                      the options of a verb\n";
+  text += "  fathom help VERB                         the options of a verb\n";
   text += "  fathom --version\n\nExit status:\n";
   for (const ExitCodeInfo& row : kExitCodes) text += fmt::format("  {:<3} {}\n", int{row.code}, row.meaning);
   return text;

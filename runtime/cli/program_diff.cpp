@@ -10,11 +10,8 @@ namespace {
 
 std::string instructions_of(const vm::Program& program) {
   std::string text;
-  for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
-    const std::string operation = vm::instruction_text(program, at);
-    const std::string symbol = i < program.debug.size() ? program.debug[i].symbol : "";
-    text += symbol.empty() ? operation + "\n" : fmt::format("{:<40} ; {}\n", operation, symbol);
-    at += vm::instruction_length(program.words[at]);
+  for (std::size_t at = 0; at < program.words.size(); at += vm::instruction_length(program.words[at])) {
+    text += vm::instruction_text(program, at) + "\n";
   }
   return text;
 }

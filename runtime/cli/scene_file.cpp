@@ -94,6 +94,8 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
                 fmt::format("{} holds programs without the scene they were compiled from", quoted(arguments.path)),
                 help);
   }
+  note(streams,
+       fmt::format("{} holds programs without their scene: nothing is proved of them", quoted(arguments.path)));
   return compiler::unproved(std::move(stored.scene));
 }
 
@@ -106,7 +108,9 @@ bool about_definitions(const compiler::Diagnostics& diagnostics) {
 }  // namespace
 
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required) {
-  arguments.positional("scene", "The scene, a JSON file or another format it knows; - reads standard input",
+  arguments.positional("scene",
+                       "The scene: a JSON file, what `fathom compile` wrote, or another format it knows; - reads "
+                       "standard input",
                        scene.path, required);
   arguments.option("-D,--define", "NAME=VALUE", "A parameter's value: a number, or a formula such as pi/4",
                    append_to(read_definition, scene.definitions));
@@ -138,27 +142,28 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
   return SceneInput{scene.scene.source, std::move(scene)};
 }
 
-std::variant<compiler::Source, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams) {
+std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams) {
   auto read = read_any(arguments.path, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& source = std::get<compiler::Source>(read);
-  if (!compiler::is_compiled_file(source.text())) return std::move(source);
+  if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
   auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
   if (const auto* error = std::get_if<compiler::FileError>(&text)) return bad_file(arguments.path, *error, streams);
   auto& stored = std::get<compiler::StoredText>(text);
   arguments.definitions = both(stored.definitions, arguments.definitions);
-  return std::move(stored.source);
+  return SceneText{std::move(stored.source), true};
 }
 
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options) {
-  if (input.stored && !input.stored->has_text) {
+  if (input.stored && !input.stored->contents.text) {
     return take_stored(*std::move(input.stored), arguments, streams, options);
   }
   const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
   compiler::Diagnostics diagnostics;
-  options.definitions = input.stored ? both(input.stored->definitions, arguments.definitions) : arguments.definitions;
+  options.definitions =
+      input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   auto scene = compiler::compile(input.source, diagnostics, options);
   streams.err << diagnostics.print(input.source, format, streams.color);
   const std::size_t errors = diagnostics.errors(), warnings = diagnostics.all().size() - errors;
@@ -175,6 +180,16 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     return compiler::unproved(std::move(input.stored->scene));
   }
   return std::move(*scene);
+}
+
+compiler::CompiledScene proved_or_claimed(const SceneInput& input) {
+  const compiler::StoredScene& stored = *input.stored;
+  compiler::Diagnostics ignored;
+  compiler::CompileOptions options;
+  options.definitions = stored.contents.definitions;
+  const auto compiled = stored.contents.text ? compiler::compile(input.source, ignored, options) : std::nullopt;
+  if (compiled && compiler::scene_digest(*compiled) == compiler::scene_digest(stored.scene)) return stored.scene;
+  return compiler::unproved(stored.scene);
 }
 
 Setter pass_name(std::optional<std::string>& target) {

@@ -40,9 +40,13 @@ struct SceneInput {
 // The scene's text and programs, or the exit code after a message.
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
 
-// The text alone, also of a file whose programs are for another machine.
+// The text alone, also of a compiled file whose programs are for another machine.
+struct SceneText {
+  compiler::Source source;
+  bool compiled = false;  // it came in such a file
+};
 // What the file was compiled with comes before the command line's definitions.
-std::variant<compiler::Source, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams);
+std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams);
 
 // Compiles and prints the diagnostics, warnings too. When there were errors, kBadScene, or kUsage for values that the
 // scene's parameters cannot have. The programs of a compiled file that are not those of its text, or came without,
@@ -50,6 +54,9 @@ std::variant<compiler::Source, ExitCode> read_scene_text(SceneArguments& argumen
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options = {});
+
+// A stored scene as its file has it, places and names of instructions too, but with proofs or without, as they are.
+compiler::CompiledScene proved_or_claimed(const SceneInput& input);
 
 // A Setter for the name of a pass, or "graph" for "before the first pass".
 Setter pass_name(std::optional<std::string>& target);

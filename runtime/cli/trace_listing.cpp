@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "vm/disassemble.h"
+#include "vm/opcode.h"
 #include "vm/trace.h"
 
 namespace fathom::cli {
@@ -38,6 +39,24 @@ std::optional<float> not_finite(const vm::TraceStep& step) {
 }
 
 }  // namespace
+
+double trace_work(const vm::VerifiedProgram& program) {
+  constexpr double kDispatch = 8;  // of an instruction, in multiply-adds
+  const std::vector<std::uint32_t>& words = program.program().words;
+  double prefix = 0, work = 0;
+  for (std::size_t at = 0; at < words.size(); at += vm::instruction_length(words[at])) {
+    const vm::OpcodeInfo& row = *vm::find_opcode(words[at] & 0xff);
+    double rounds = 1;  // of loops within the shape
+    for (int i = 0; row.form != vm::Form::Outline && i < row.immediates; ++i) {
+      const std::size_t own = at + 1 + static_cast<std::size_t>(vm::leading_immediates(words[at]));
+      if (vm::is_integer_immediate(row, i))
+        rounds = std::max(rounds, static_cast<double>(words[own + static_cast<std::size_t>(i)]));
+    }
+    prefix += kDispatch + static_cast<double>(vm::instruction_cost(words[at])) * rounds;
+    work += prefix;
+  }
+  return work;
+}
 
 std::string trace_listing(const vm::VerifiedProgram& program, glm::dvec3 point) {
   const std::string listing = vm::disassemble(program);

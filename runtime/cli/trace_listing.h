@@ -9,8 +9,9 @@
 
 namespace fathom::cli {
 
-// Longer programs are not traced: the work grows with the square of the length.
-inline constexpr std::uint32_t kMostTraced = 20000;  // instructions
+// What a trace takes, in multiply-adds: it grows with the square of the length. More than a second or two is refused.
+double trace_work(const vm::VerifiedProgram& program);
+inline constexpr double kMostTraceWork = 1e9;
 
 // `point` is in the program's coordinates. The stacks stand in comments, so the assembler reads the listing as ever.
 // It ends with the first instruction that left a NaN or an infinity, if one did.

@@ -10,11 +10,14 @@
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/load.h"
 #include "compiler/artefact/programs.h"
+#include "runtime/field.h"
+#include "runtime/render.h"
 #include "tests/support/compiled.h"
 #include "tests/support/effort.h"
 #include "tests/support/golden.h"
 #include "tests/support/sealed_file.h"
 #include "vm/evaluate.h"
+#include "vm/expression.h"
 
 namespace fathom::test {
 namespace {
@@ -96,6 +99,19 @@ Sections without_text(const Bytes& file) {
   Sections sections = sections_of(file);
   sections.text.clear();
   return sections;
+}
+
+// What a stranger's scene is used for, small: no matter what it looks like, it must not break anything.
+void draw(const CompiledScene& scene) {
+  if (scene.distance.cost() > 2000) return;
+  runtime::RenderOptions options;
+  options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.bounces = 1;
+  if (scene.background.type == compiler::Background::Type::Image) return;  // there is no picture
+  runtime::render(scene, options);
+  runtime::Field field = runtime::make_field(scene);
+  runtime::RegionOptions regions;
+  regions.always = true, regions.memory = 1 << 20;
+  runtime::add_regions(field, scene, regions);
 }
 
 }  // namespace
@@ -184,7 +200,9 @@ TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]
     }
     for (const compiler::NamedProgram& row : compiler::programs_of(good->scene)) {
       if (row.program->cost() < 100000) vm::evaluate_surface(*row.program, glm::dvec3(0.1, 0.2, 0.3), workspace);
+      vm::Expression().read(*row.program);
     }
+    if (accepted % 16 == 0) draw(compiler::unproved(good->scene));
   };
   const std::size_t stride = few(8) == 8 ? 1 : 8;
   for (std::size_t at = 0; at < parts.code.size(); at += stride) {
@@ -214,7 +232,9 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   CHECK_THAT(reason_of({'{', '}'}), Contains("no compiled scene"));
   Bytes other = good;
   other[8] = 2;
-  CHECK(reason_of(other) == "it is of version 2 of the format; this program reads 1");
+  CHECK_THAT(reason_of(other),
+             Contains("it is of version 2 of the format with 4 sections; this program reads version 1"));
+  CHECK_THAT(reason_of({good.begin(), good.begin() + 10}), Contains("header is damaged or cut off"));
   CHECK_THAT(reason_of(sealed(parts, vm::Digest{1, 2})), Contains("another machine"));
   CHECK_THAT(with([](Sections& s) { s.code.push_back(0); }), Contains("goes on for 1 bytes after its last program"));
   CHECK_THAT(with([](Sections& s) { s.code.resize(4); }), Contains("`code` is cut off"));
@@ -226,6 +246,15 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   CHECK_THAT(with([](Sections& s) { s.debug.pop_back(); }), Contains("`debug` makes no sense"));
   CHECK_THAT(with([](Sections& s) { s.debug.push_back(0); }), Contains("`debug` goes on"));
   CHECK_THAT(with([](Sections& s) { s.text = {1, 0, 0, 0}; }), Contains("`text` makes no sense"));
+  const auto text = [](const std::string& name, const std::string& content) {
+    vm::ByteWriter out;
+    out.text(name), out.u32(0), out.text(content);
+    return out.take();
+  };
+  CHECK(with([&](Sections& s) { s.text = text("a.json", "{}"); }).empty());
+  CHECK_THAT(with([&](Sections& s) { s.text = text("../a.json", "{}"); }), Contains("`text` makes no sense"));
+  CHECK_THAT(with([&](Sections& s) { s.text = text("a.json", ""); }), Contains("`text` makes no sense"));
+  CHECK_THAT(with([](Sections& s) { s.debug.assign(8 * 5, 0); }), Contains("`debug`"));
 }
 
 TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
@@ -254,6 +283,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
   CHECK_THAT(refused("sphere 0.5", "sphere 0.5 7"), Contains("`sphere` takes 1 numbers (radius), not 2"));
   CHECK_THAT(refused("tag 0", "tag 99"), Contains("tag 99: the scene has 4 surfaces"));
   CHECK_THAT(refused("|{", "{"), Contains("begins with |"));
+  CHECK_THAT(refused("name \"ball\"", "name \"ba\\nll\""), Contains("a control character"));
 }
 
 TEST_CASE("a program alone becomes a scene of one surface, of which nothing is proved", "[artefact]") {
@@ -274,13 +304,38 @@ TEST_CASE("what a file claims counts for nothing without the text", "[artefact]"
   const CompiledScene honest = compiler::unproved(liar);
   CHECK_FALSE(honest.certified);
   CHECK(honest.bound.finite());  // interval arithmetic shows that there is nothing outside
-  CHECK_THAT(honest.summary, Contains("not proved"));
+  CHECK(honest.lipschitz == Approx(1));  // as intervals show
+  CHECK_THAT(honest.summary, Contains("not proved") && !Contains("(proved)"));
+  liar.lipschitz = 0.02;
+  CHECK(compiler::unproved(liar).lipschitz == Approx(1));
+  liar.contents = compiler::Box::centred(glm::dvec3(1e-3));
+  CHECK(compiler::unproved(liar).contents.hi.x > 0.9);
   liar.bound = compiler::Box::centred(glm::dvec3(0.5));  // the ball is larger
   CHECK_FALSE(compiler::unproved(liar).bound.finite());
   const CompiledScene lit = tests::compiled(kEverything);
   REQUIRE(lit.lamps.size() == 1);
   CHECK(compiler::unproved(lit).lamps.empty());
   CHECK_FALSE(compiler::unproved(lit).media[0].certified);
+}
+
+TEST_CASE("a listing may come from a system that ends lines in two characters", "[artefact]") {
+  const std::string listing = compiler::write_listing(tests::compiled(kEverything));
+  std::string other;
+  for (const char c : listing) other += c == '\n' ? "\r\n" : std::string(1, c);
+  FileContents contents, same;
+  CHECK(
+      (compiler::write_file(reread(other, contents), contents) == compiler::write_file(reread(listing, same), same)));
+}
+
+TEST_CASE("names of any length and with any printable characters read back", "[artefact]") {
+  const std::string odd = R"(; \" @3:4 | } program x { )" + std::string(70000, 'n') + "\u00e4";
+  const CompiledScene scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1, "name": ")" + odd + R"("})");
+  check_round_trips(scene);
+}
+
+TEST_CASE("a program alone has as many surfaces as its tags name", "[artefact]") {
+  FileContents contents;
+  CHECK(reread("sphere 1\ntag 0\nsphere 1 at 3 0 0\ntag 2\nmin\n", contents).surfaces.size() == 3);
 }
 
 }  // namespace fathom::test

@@ -100,7 +100,40 @@ TEST_CASE("import gives back the text that a compiled scene carries", "[cli]") {
   REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
   CHECK(folder.run("import two.fbc").out == kTwo);
   REQUIRE(folder.run("compile two.json --no-text -o bare.fbc").code == 0);
-  CHECK(folder.run("import bare.fbc").code == 2);
+  CHECK(folder.run("import bare.fbc").code == 65);
+}
+
+TEST_CASE("a compiled scene's picture lies beside it under the name that the scene has", "[cli]") {
+  const Folder folder;
+  folder.run_script("mkdir a b && cp " FATHOM_SOURCE_DIR "/tests/data/one-pixel.hdr a/sky.hdr && cp a/sky.hdr b/");
+  const auto scene = [](const std::string& file) {
+    return R"({"version": 1, "film": {"width": 8, "height": 8}, "background": {"type": "image", "file": ")" + file +
+           R"("}, "objects": [{"type": "sphere", "radius": 1}]})";
+  };
+  folder.write("a/near.json", scene("sky.hdr"));
+  folder.write("a/far.json", scene((folder.path() / "a/sky.hdr").string()));
+  for (const char* name : {"near", "far"}) {
+    CAPTURE(name);
+    const Result script =
+        folder.run_script(std::string("set -e; n=") + name +
+                          "; $fathom compile a/$n.json -o a/$n.fbc; cd a; $fathom compile $n.json -o same.fbc; cmp "
+                          "same.fbc $n.fbc; cd ..;"
+                          "$fathom compile $PWD/a/$n.json -o same.fbc; cmp same.fbc a/$n.fbc; cp a/$n.fbc b/;"
+                          "$fathom render a/$n.json -q -s 1 -o one.exr; $fathom render b/$n.fbc -q -s 1 -o two.exr; "
+                          "cmp one.exr two.exr;"
+                          "$fathom dump --stage file b/$n.fbc | $fathom asm - -o - | cmp - a/$n.fbc");
+    CHECK(script.code == 0);
+    CHECK(script.err.find("proved") == std::string::npos);
+  }
+}
+
+TEST_CASE("of programs without their text it is said that nothing is proved", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile ball.json --no-text -o bare.fbc").code == 0);
+  CHECK_THAT(folder.run("eval bare.fbc --at 0,0,0").err, Contains("nothing is proved of them"));
+  CHECK_THAT(folder.run("dump bare.fbc").out, Contains("not proved, but said by the file"));
+  REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
+  CHECK_THAT(folder.run("dump ball.fbc").out, Contains("Lipschitz <= 1 (proved)"));
 }
 
 TEST_CASE("a damaged file is refused with its name, and nothing is written", "[cli]") {
@@ -128,6 +161,7 @@ TEST_CASE("programs that the text in their file does not make are run, but not b
               .code == 0);
   const Result other = folder.run("eval other.fbc --at 3,0,0");
   CHECK(other.out.starts_with("2.75 "));
+  CHECK_THAT(folder.run("dump other.fbc").out, Contains("not proved, but said by the file"));
   CHECK_THAT(other.err, Contains("makes other programs of the scene in it"));
   // compile makes it anew of the text.
   REQUIRE(folder.run("compile other.fbc -o again.fbc").code == 0);

@@ -39,7 +39,7 @@ TEST_CASE("random programs read back from their bytes", "[binary]") {
     const vm::VerifiedProgram program = program_of(random, seed);
     vm::ByteWriter out;
     vm::write_program(out, program);
-    vm::write_debug(out, program);
+    vm::write_debug(out, program, program.program().source_name);
     vm::ByteReader in(out.bytes());
     auto read = vm::read_program(in);
     INFO("seed " << seed);

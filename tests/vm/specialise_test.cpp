@@ -7,11 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <variant>
 
 #include "compiler/fuse.h"
 #include "tests/support/compiled.h"
 #include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
+#include "tests/support/random_program.h"
 #include "tests/support/random_scene.h"
 #include "tests/vm/formula.h"
 
@@ -290,6 +292,55 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
   }
   CHECK(wrong == 0);
   CHECK(cut > 3000);
+}
+
+// Once, a drop with no value on the stack wrote before the beginning of the reader's own.
+TEST_CASE("a program that drops a point at which nothing was computed is no expression", "[specialise]") {
+  vm::Program program;
+  program.append(vm::Opcode::Translate, 0, {1, 0, 0}, {});
+  program.append(vm::Opcode::Drop, 0, {}, {});
+  program.append(vm::Opcode::Sphere, 0, {1}, {});
+  const auto verified = vm::verify(program);
+  REQUIRE(std::holds_alternative<vm::VerifiedProgram>(verified));
+  vm::Expression expression;
+  CHECK_FALSE(expression.read(std::get<vm::VerifiedProgram>(verified)));
+}
+
+TEST_CASE("any sound program can be read as an expression or is refused", "[specialise]") {
+  vm::Expression expression;
+  int expressions = 0;
+  for (int seed = 0; seed < few(4000); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    const vm::VerifiedProgram program = random_program(random, 1 + seed % 30);
+    if (!expression.read(program)) continue;
+    ++expressions;
+    REQUIRE(expression.nodes().size() == program.instructions());
+    for (const vm::ExpressionNode& node : expression.nodes()) {
+      for (const std::uint32_t operand : {node.a, node.b, node.point}) {
+        REQUIRE((operand == vm::kNone || operand <= expression.root()));
+      }
+    }
+  }
+  CHECK(expressions > 10);
+}
+
+// Once, each moved shape of a program with locals was compared with all before it: minutes for what takes no time.
+TEST_CASE("places that are met again are found among a hundred thousand", "[specialise]") {
+  vm::Program program;
+  program.locals = 1;
+  program.append(vm::Opcode::Sphere, 0, {1}, {});
+  program.append(vm::Opcode::Tee, 0, {}, {});
+  const int places = 100000;
+  for (int i = 0; i < 2 * places; ++i) {
+    program.append(vm::Opcode::Revolve, 0, {static_cast<double>(i % places)}, {});
+    program.append(vm::Opcode::Sphere, 0, {1}, {});
+    program.append(vm::Opcode::Drop, 0, {}, {});
+    program.append(vm::Opcode::Min, 0, {}, {});
+  }
+  const auto verified = vm::verify(program);
+  REQUIRE(std::holds_alternative<vm::VerifiedProgram>(verified));
+  vm::Expression expression;
+  CHECK(expression.read(std::get<vm::VerifiedProgram>(verified)));
 }
 
 }  // namespace fathom::test
