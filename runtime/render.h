@@ -9,8 +9,8 @@
 
 namespace fathom::runtime {
 
-struct RenderResult {
-  Film film;
+// The film, and what of the work is in it.
+struct RenderResult : PartialRender {
   Settings settings;  // those used
   Stats stats;
 };
