@@ -42,7 +42,7 @@ std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b);
 
 class Coverage {
  public:
-  // The block must be apart from all that were added before; tidy() is due before anything is asked.
+  // tidy() is due before anything is asked.
   void add(const SampleBlock& block) { blocks_.push_back(block); }
   void add(const Coverage& other);
   void tidy();

@@ -126,6 +126,11 @@ void Film::restart(PixelRect area) {
   denoised_.clear();
 }
 
+void Film::begin_halves() {
+  begin_second_stage(0.5);
+  stages_.resize(4, empty_stage());
+}
+
 bool Film::add(int x, int y, const PathSample& sample) {
   const std::size_t at = area_.index(x, y);
   Stage& stage = stages_.back();
@@ -176,6 +181,7 @@ bool Film::merge(const Film& part, std::size_t stage) {
     for (int x = rows.x0; x < rows.x1; ++x) {
       const std::size_t from = rows.index(x, y), to = area_.index(x, y);
       room &= merge_stage(part, stages_[stage], from, to);
+      if (stage >= kSeenStages) continue;
       room &= merge_first_hit(part, from, to);
       if (layers_.cost) {
         costs_[to].evaluations += part.costs_[from].evaluations;
@@ -215,7 +221,7 @@ bool Film::merge_first_hit(const Film& part, std::size_t from, std::size_t to) {
 PixelMeans Film::means(int x, int y) const {
   const std::size_t at = area_.index(x, y);
   PixelMeans means;
-  for (const Stage& stage : stages_) {
+  for (const Stage& stage : seen_stages()) {
     means.hits += stage.pixels[at].hits;
     means.samples += stage.pixels[at].samples;
   }
@@ -231,13 +237,13 @@ PixelMeans Film::means(int x, int y) const {
 
 std::uint32_t Film::samples(int x, int y) const {
   std::uint32_t sum = 0;
-  for (const Stage& stage : stages_) sum += stage.pixels[area_.index(x, y)].samples;
+  for (const Stage& stage : seen_stages()) sum += stage.pixels[area_.index(x, y)].samples;
   return sum;
 }
 
 std::uint64_t Film::samples() const {
   std::uint64_t sum = 0;
-  for (const Stage& stage : stages_) {
+  for (const Stage& stage : seen_stages()) {
     for (const Pixel& pixel : stage.pixels) sum += pixel.samples;
   }
   return sum;

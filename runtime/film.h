@@ -16,10 +16,12 @@
 // Tested by: tests/runtime/film_test.cpp
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "runtime/pixel_rect.h"
@@ -106,6 +108,8 @@ class Film {
   // What is added from now on is of stage 2, and stage 1 counts `first_share` of radiance, in [0,1]. Where stage 2
   // has no samples stage 1 counts all. Once, and while no thread adds.
   void begin_second_stage(double first_share);
+  // For runtime/noise.h: two stages that weigh the same, and two more that means() does not look at. Likewise.
+  void begin_halves();
   std::size_t stages() const { return stages_.size(); }
   double first_share() const { return first_share_; }
 
@@ -116,7 +120,7 @@ class Film {
   // threads at once. False when some sum is full.
   bool add(int x, int y, const PathSample& sample);
   // Everything that `part` has, which is a film of one stage with the same layers and lies within area(), is added to
-  // the given stage. False when some sum is full.
+  // the given stage; its radiance alone, where means() does not look at that. False when some sum is full.
   bool merge(const Film& part, std::size_t stage = 0);
 
   PixelMeans means(int x, int y) const;
@@ -175,6 +179,10 @@ class Film {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
+  static constexpr std::size_t kSeenStages = 2;  // of those that means() looks at
+  std::span<const Stage> seen_stages() const {
+    return std::span(stages_).first(std::min(kSeenStages, stages_.size()));
+  }
   Stage empty_stage() const;
   template <class Self, class Sink>
   static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
@@ -188,7 +196,7 @@ class Film {
 
   PixelRect area_;
   FilmLayers layers_;
-  std::vector<Stage> stages_;  // one or two
+  std::vector<Stage> stages_;  // one, two, or the halves' four
   double first_share_ = 1;
   // [y][x], of both stages; a layer that is not kept has none.
   std::vector<FirstHit> first_hits_;

@@ -126,6 +126,7 @@ bool has_all_sums(const FilmShape& shape, Input& in) {
 bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   film = Film(shape.area, shape.layers);
   if (shape.stages == 2) film.begin_second_stage(shape.first_share);
+  if (shape.stages == kNoiseStages) film.begin_halves();
   const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
   const Tiles tiles(shape.area, kTileSide);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {

@@ -43,6 +43,8 @@ struct FilmShape {
   FilmLayers layers;
   std::size_t stages = 1;
   double first_share = 1;
+
+  bool operator==(const FilmShape&) const = default;
 };
 
 struct FilmFile {

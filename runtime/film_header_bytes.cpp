@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/tiles.h"
 
 namespace fathom::runtime {
 namespace {
 
 constexpr std::size_t kMostText = 1 << 16;  // bytes of a name or value
-constexpr std::size_t kMostStages = 2;
 
 // The bits of a film's layers.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
@@ -113,13 +113,32 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   return covered;
 }
 
+// As many tiles as the picture has, of a film that has their stages.
+NoiseState read_noise(const FilmShape& shape, vm::ByteReader& in) {
+  NoiseState noise;
+  noise.judged = in.u32();
+  noise.tiles.resize(in.count(8));
+  for (NoiseTile& tile : noise.tiles) {
+    for (std::uint32_t& end : tile.ends) {
+      end = in.u32();
+      if (end > noise.judged) in.fail();
+    }
+  }
+  const std::int64_t wanted = shape.stages == kNoiseStages ? Tiles(shape.area, kNoiseTile).count() : 0;
+  const bool fits = static_cast<std::int64_t>(noise.tiles.size()) == wanted &&
+                    noise.judged <= static_cast<std::uint32_t>(compiler::kMaxSpp);
+  if (!fits) in.fail();
+  return noise;
+}
+
 bool makes_sense(const FilmFile& head) {
   const FilmHeader& header = head.header;
   const auto side = [](int length) { return length >= 1 && length <= compiler::kMaxSide; };
   return side(header.width) && side(header.height) && is_range(header.samples) &&
          std::int64_t{header.width} * header.height <= kMostPixels &&
-         is_within(head.shape.area, {0, 0, header.width, header.height}) && head.shape.stages >= 1 &&
-         head.shape.stages <= kMostStages && head.shape.first_share >= 0 && head.shape.first_share <= 1;
+         is_within(head.shape.area, {0, 0, header.width, header.height}) &&
+         (head.shape.stages == 1 || head.shape.stages == 2 || head.shape.stages == kNoiseStages) &&
+         head.shape.first_share >= 0 && head.shape.first_share <= 1;
 }
 
 }  // namespace
@@ -153,6 +172,11 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
       out.u32(block.samples.last);
     }
   }
+  out.u32(render.noise.judged);
+  out.u32(static_cast<std::uint32_t>(render.noise.tiles.size()));
+  for (const NoiseTile& tile : render.noise.tiles) {
+    for (const std::uint32_t end : tile.ends) out.u32(end);
+  }
 }
 
 std::variant<FilmFile, std::string> read_head(vm::ByteReader& in) {
@@ -181,6 +205,7 @@ std::variant<FilmFile, std::string> read_head(vm::ByteReader& in) {
   for (std::size_t i = 0; i < head.shape.stages; ++i) {
     head.render.covered.push_back(read_coverage(head.shape.area, in));
   }
+  head.render.noise = read_noise(head.shape, in);
   if (in.failed() || in.left() > 0) return "its head makes no sense";
   return head;
 }

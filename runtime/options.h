@@ -61,8 +61,12 @@ struct RenderOptions {
   // The picture that the scene's background names, when it names one (Background::Type::Image).
   std::shared_ptr<const EnvironmentImage> environment;
 
+  // Where the picture's noise is below this, no more samples are taken (runtime/noise.h): at least `min_spp` and at
+  // most `spp` of a pixel. Of the whole picture only, and not with `adaptive`.
+  std::optional<double> noise;
+  std::optional<int> min_spp;
   // Of each pixel these samples alone, of the `spp` there are in all; films of other ranges add up to the whole. Not
-  // with `adaptive`.
+  // with `adaptive` or `noise`.
   std::optional<SampleRange> sample_range;
   // What an earlier render with the same settings, but for threads and tile, has done.
   std::shared_ptr<const PartialRender> resume_from;
@@ -96,6 +100,8 @@ struct Settings {
   std::optional<double> far;
   std::optional<int> cut_after;
   bool adaptive;  // asked for, and spp suffices; layers.variance then is kept
+  std::optional<double> noise;
+  int min_spp;  // of `noise`
   LightSampling light_sampling;
   std::optional<double> clamp;  // radiance
   Marching marching;

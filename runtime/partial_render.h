@@ -6,12 +6,14 @@
 
 #include "runtime/coverage.h"
 #include "runtime/film.h"
+#include "runtime/noise.h"
 
 namespace fathom::runtime {
 
 struct PartialRender {
   Film film;
   std::vector<Coverage> covered;  // [stage of the film]; the samples counted from 0 in each
+  NoiseState noise;               // of a render that stops where there is little
 };
 
 }  // namespace fathom::runtime

@@ -15,6 +15,10 @@ struct RenderResult : PartialRender {
   Stats stats;
 };
 
+// Whether a render with these settings can go on from `render`: films of others are refused before by their identity
+// (runtime/film_file.h), so a file that says no was made up.
+bool can_resume(const PartialRender& render, const Settings& settings);
+
 // The film's bits depend on the scene and on the settings but for `threads` and `tile`.
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options = {});
 

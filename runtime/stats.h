@@ -35,9 +35,9 @@ struct MarchCounters {
 };
 
 // Why a render ended.
-enum class RenderEnd : std::uint8_t { Done, TimeLimit, Cancelled };
-inline constexpr std::array<std::string_view, 3> kRenderEnds = {"all samples taken", "time limit",
-                                                                "interrupted"};  // [RenderEnd]
+enum class RenderEnd : std::uint8_t { Done, Noise, TimeLimit, Cancelled };
+inline constexpr std::array<std::string_view, 4> kRenderEnds = {"all samples taken", "noise below limit",
+                                                                "time limit", "interrupted"};  // [RenderEnd]
 
 struct Stats {
   MarchCounters march;

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <ostream>
 
+#include "runtime/render.h"
+
 namespace fathom::cli {
 namespace {
 
@@ -31,8 +33,8 @@ bool exists(const std::string& path) {
 
 }  // namespace
 
-std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, runtime::RenderOptions& options,
-                                           const Streams& streams) {
+std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, const runtime::Settings& settings,
+                                           runtime::RenderOptions& options, const Streams& streams) {
   if (!exists(path_)) {
     note(streams, fmt::format("there is no checkpoint `{}`: the render begins at its beginning", path_));
     return std::nullopt;
@@ -43,12 +45,13 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, ru
                 {"without --resume the render begins at its beginning"});
   }
   auto& file = std::get<runtime::FilmFile>(read);
-  const runtime::PixelRect whole{0, 0, header.width, header.height};
-  const runtime::PixelRect area = options.crop.value_or(whole);
   const auto problems = runtime::differences(with_part(file.header.identity, file.shape.area, file.header.samples),
-                                             with_part(header.identity, area, header.samples));
+                                             with_part(header.identity, settings.crop, header.samples));
   if (!problems.empty()) {
     return fail(streams, kBadScene, fmt::format("`{}` is the checkpoint of another render", path_), problems);
+  }
+  if (!runtime::can_resume(file.render, settings)) {
+    return fail(streams, kBadScene, fmt::format("`{}` makes no sense: its sums are not what its head says", path_));
   }
   options.resume_from = std::make_shared<runtime::PartialRender>(std::move(file.render));
   ours_ = true;

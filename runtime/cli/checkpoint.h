@@ -27,8 +27,8 @@ class Checkpoint {
 
   // For --resume: what there is, into `options`. An ExitCode, after a message, when it is of another render or cannot
   // be read; a note when there is none.
-  std::optional<ExitCode> resume(const runtime::FilmHeader& header, runtime::RenderOptions& options,
-                                 const Streams& streams);
+  std::optional<ExitCode> resume(const runtime::FilmHeader& header, const runtime::Settings& settings,
+                                 runtime::RenderOptions& options, const Streams& streams);
   // Without it: a note when an earlier one would be replaced. An ExitCode, after a message, when the file is
   // something else.
   std::optional<ExitCode> begin_afresh(const Streams& streams);

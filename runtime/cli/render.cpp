@@ -142,7 +142,8 @@ class Job {
  private:
   std::optional<ExitCode> begin() {
     if (!checkpoint_) return std::nullopt;
-    if (request_.long_render.resume) return checkpoint_->resume(header_, request_.options, streams_);
+    if (request_.long_render.resume)
+      return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_);
     return checkpoint_->begin_afresh(streams_);
   }
 
@@ -196,6 +197,9 @@ class Job {
     if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
     if (request_.denoise) runtime::denoise(result.film, result.settings.threads);
     if (const auto problem = write_all(result)) return fail_to_write(*problem, result, keep);
+    if (ended == End::Noise && !request_.quiet) {
+      note(streams_, "the noise is below the limit: " + samples_in(result.film));
+    }
     if (ended == End::TimeLimit) note(streams_, "the time limit ended the render: " + samples_in(result.film));
     if (ended == End::Cancelled) {
       note(streams_, "interrupted: " + samples_in(result.film));
@@ -203,7 +207,7 @@ class Job {
       note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
       return kInterrupted;
     }
-    if (checkpoint_ && !checkpoint_->named() && ended == End::Done) checkpoint_->remove();
+    if (checkpoint_ && !checkpoint_->named() && ended != End::TimeLimit) checkpoint_->remove();
     return keep && checkpoint_->failed() ? kIo : kDone;
   }
 

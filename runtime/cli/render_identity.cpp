@@ -111,6 +111,8 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
       {"filter", name(compiler::kFilterNames, settings.filter)},
       {"filter width", maybe(settings.filter_width, "the filter's own")},
       {"adaptive", settings.adaptive ? "yes" : "no"},
+      {"noise", maybe(settings.noise, "any")},
+      {"min spp", settings.noise ? std::to_string(settings.min_spp) : "none"},
       {"far", maybe(settings.far, "the scene's size")},
       {"cut after", maybe(settings.cut_after, "never")},
       {"light sampling", name(runtime::kLightSamplingNames, settings.light_sampling)},

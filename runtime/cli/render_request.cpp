@@ -333,6 +333,10 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
   if (const auto code = check_adaptive(request, scene, streams)) return code;
   if (const auto code = apply(request.long_render, scene, request.options, streams)) return code;
   if (!request.crop) return std::nullopt;
+  if (request.options.noise) {
+    return fail(streams, kUsage, "--crop does not go with --noise, which judges tiles of the whole picture",
+                {"leave out --noise, or render the whole"});
+  }
   const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
   if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;
   request.options.crop = std::get<runtime::PixelRect>(crop);
