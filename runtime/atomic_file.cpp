@@ -13,6 +13,8 @@
 namespace fathom::runtime {
 namespace {
 
+constexpr const char* kOpenFiles = "/proc/self/fd";
+
 std::string reason() { return std::strerror(errno); }
 
 std::string folder_of(const std::string& path) {
@@ -54,7 +56,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 
 bool AtomicFile::open_beside() {
 #ifdef O_TMPFILE
-  file_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (::access(kOpenFiles, X_OK) == 0)
+    file_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
   if (file_ >= 0) return true;
 #endif
   beside_ = path_ + ".XXXXXX";
@@ -66,7 +69,7 @@ bool AtomicFile::open_beside() {
 // Renaming needs a name to rename; whoever has taken this one was killed, or is another program.
 bool AtomicFile::name_beside() {
   if (!beside_.empty()) return true;
-  const std::string file = fmt::format("/proc/self/fd/{}", file_);
+  const std::string file = fmt::format("{}/{}", kOpenFiles, file_);
   for (int i = 0; i < 1000; ++i) {
     std::string name = fmt::format("{}.{}-{}", path_, ::getpid(), i);
     if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {

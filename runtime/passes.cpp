@@ -68,6 +68,16 @@ std::uint64_t samples_of(const Settings& settings) {
   return std::uint64_t{settings.crop.pixels()} * settings.samples.size();
 }
 
+// That the open tiles may take at most.
+std::uint64_t samples_left(const NoiseState& state, const Settings& settings) {
+  const Tiles tiles(settings.crop, kNoiseTile);
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < state.tiles.size(); ++i) {
+    if (state.tiles[i].open()) pixels += tiles.at(static_cast<std::int64_t>(i)).pixels();
+  }
+  return pixels * 2 * (static_cast<std::uint64_t>(settings.spp / 2) - state.judged);
+}
+
 }  // namespace
 
 Passes::Passes(const World& world, const RenderOptions& options, PartialRender& render,
@@ -137,7 +147,10 @@ Stats Passes::run_noise() {
     if (end == 0) break;
     stats.merge(run_halves(end));
     if (picture_.stopped()) break;
-    picture_.change([&] { open = judge(render_.film, end, *settings.noise, state); });
+    picture_.change([&] {
+      open = judge(render_.film, end, *settings.noise, state);
+      picture_.expect(samples_left(state, settings));
+    });
   }
   return stats;
 }
@@ -176,8 +189,8 @@ Stats Passes::run_pass(std::size_t stage, const Pass& pass, SampleRange samples,
   const Settings& settings = world_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);
-  Coverage done = render_.covered[stage];
-  done.add(besides);
+  Coverage done = besides;
+  picture_.change([&] { done.add(render_.covered[stage]); });  // who looks may be tidying it
   done.tidy();
   // Who sets a limit wants a whole picture early, whatever it is worth.
   UnitQueue units(crop, side, rounds_of(samples, options_.time_limit ? 1 : kFirstRound), done);

@@ -31,6 +31,9 @@ class SharedPicture {
   // Does to the render what no one may look at meanwhile.
   void change(const std::function<void()>& make);
 
+  // How many samples there are to be from now on, where that shows late; to be called within change().
+  void expect(std::uint64_t left) { samples_ = static_cast<double>(done_ + left); }
+
   // To be asked when there is more to do: whether it is to be left. That is then how the render ended.
   bool stopped();
   RenderEnd end() const { return end_; }
@@ -39,7 +42,7 @@ class SharedPicture {
  private:
   PartialRender& render_;
   const RenderOptions& options_;
-  const double samples_;
+  double samples_;
   const std::uint64_t resumed_;
   const Clock::time_point start_;
   std::atomic<RenderEnd> end_ = RenderEnd::Done;
