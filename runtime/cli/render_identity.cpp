@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/artefact/compiled_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/version.h"
 #include "vm/bytes.h"
@@ -74,14 +75,12 @@ std::string layers_of(const runtime::Settings& settings) {
 
 }  // namespace
 
+// Film and settings have rows of their own, for the command line may say otherwise, or change no sample.
 std::string scene_hash(const compiler::CompiledScene& scene) {
-  vm::ByteWriter bytes;
-  bytes.text(scene.source.text());
-  for (const compiler::Parameter& parameter : scene.parameters) {
-    bytes.text(parameter.name);
-    bytes.f64(parameter.value);
-  }
-  return vm::digest(bytes.bytes()).text();
+  compiler::CompiledScene rest = scene;
+  rest.film = {};
+  rest.settings = {};
+  return compiler::scene_digest(rest).text();
 }
 
 std::string program_hash(const compiler::CompiledScene& scene) {

@@ -11,7 +11,7 @@
 
 namespace fathom::cli {
 
-// Digests in hexadecimal: of the scene's text and the values of its parameters; of all programs made of it.
+// Digests in hexadecimal: of all that the scene was compiled to, but for its film and settings; of its programs.
 std::string scene_hash(const compiler::CompiledScene& scene);
 std::string program_hash(const compiler::CompiledScene& scene);
 

@@ -98,7 +98,9 @@ TEST_CASE("cli checkpoint: a finished one is kept where it was asked for, and re
 TEST_CASE("cli checkpoint: that of another render is refused, and what differs is named") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
-  folder.write("other.json", std::string(kSlow) + " ");
+  std::string brighter = kSlow;
+  brighter.replace(brighter.find("[8, 8, 8]"), 9, "[8, 8, 9]");
+  folder.write("other.json", brighter);
   struct Other {
     const char *arguments, *message;
   };
@@ -122,6 +124,8 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
   // What changes no sample makes no difference.
   CHECK(folder.run("render slow.json -s 4 -o b.exr --checkpoint done.film --resume -t 5 --threads 3 --exposure 1")
             .code == 0);
+  folder.write("spaced.json", std::string(kSlow) + "\n\n");
+  CHECK(folder.run("render spaced.json -s 4 -o a.exr --checkpoint done.film --resume").code == 0);
 }
 
 TEST_CASE("cli checkpoint: without --resume an earlier one is not lost in silence, and what is no film stays") {

@@ -63,6 +63,18 @@ TEST_CASE("cli merge: a part of the samples is a render of those, weighted by ho
   CHECK_THAT(holes.err, Contains("there are no samples"));
 }
 
+TEST_CASE("cli merge: parts of a scene and of its compiled file go together") {
+  const Folder folder;
+  REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
+  REQUIRE(folder.run("render ball.json -s 8 -q -o a.film --sample-range 0:2").code == 0);
+  REQUIRE(folder.run("render ball.fbc -s 8 -q -o b.film --sample-range 2:8").code == 0);
+  REQUIRE(folder.run("render ball.json -s 8 -q -o whole.exr").code == 0);
+  const Result merged = folder.run("merge a.film b.film -o m.exr");
+  INFO(merged.err);
+  CHECK(merged.code == 0);
+  CHECK(folder.read("m.exr") == folder.read("whole.exr"));
+}
+
 TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -s 8 -q -o a.film --sample-range 0:5").code == 0);
