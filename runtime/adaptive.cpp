@@ -97,10 +97,10 @@ std::vector<PixelEstimate> estimates_of(const Film& film) {
   const PixelRect area = film.area();
   for (int y = area.y0; y < area.y1; ++y) {
     for (int x = area.x0; x < area.x1; ++x) {
-      const PixelMeans pixel = film.means(x, y);
+      const RadianceMeans pixel = film.radiance_of({0}, x, y);
       const float deviation = luminance(glm::vec3(glm::sqrt(pixel.variance)));  // of the mean
       const double variance = static_cast<double>(deviation) * static_cast<double>(deviation);
-      estimates.push_back({static_cast<double>(luminance(glm::vec3(pixel.noisy))), pixel.samples * variance});
+      estimates.push_back({static_cast<double>(luminance(glm::vec3(pixel.radiance))), pixel.samples * variance});
     }
   }
   return estimates;

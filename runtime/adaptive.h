@@ -37,8 +37,9 @@ int first_samples(int spp);
 // The weight w of stage 1's mean; 1 - w is that of stage 2's.
 double first_share(int spp);
 
-// What a film of stage 1, which keeps `variance`, says of its pixels' luminance, [y][x]. The variance is what it
-// would be if the colours of a pixel's samples differed in brightness alone: at most too large.
+// What stage 1 of a film, which keeps `variance`, says of its pixels' luminance, [y][x]; whether there is a stage 2
+// makes no difference. The variance is what it would be if the colours of a pixel's samples differed in brightness
+// alone: at most too large.
 std::vector<PixelEstimate> estimates_of(const Film& film);
 
 std::uint64_t second_seed(std::uint64_t seed);

@@ -13,6 +13,8 @@
 namespace fathom::runtime {
 namespace {
 
+constexpr const char* kOpenFiles = "/proc/self/fd";
+
 std::string reason() { return std::strerror(errno); }
 
 std::string folder_of(const std::string& path) {
@@ -28,6 +30,14 @@ void grant_usual_access(int file) {
   (void)!::fchmod(file, 0666 & ~mask);
 }
 
+// So that the new name outlives a loss of power. The file is there either way: what cannot be synced is no failure.
+void sync_folder(const std::string& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
@@ -37,19 +47,44 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     give_up("it is not a regular file");
     return;
   }
+  if (open_beside()) {
+    grant_usual_access(file_);
+  } else {
+    give_up(reason());
+  }
+}
+
+bool AtomicFile::open_beside() {
+#ifdef O_TMPFILE
+  if (::access(kOpenFiles, X_OK) == 0)
+    file_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (file_ >= 0) return true;
+#endif
   beside_ = path_ + ".XXXXXX";
   file_ = ::mkstemp(beside_.data());
-  if (file_ < 0) {
-    give_up(reason());
-  } else {
-    grant_usual_access(file_);
+  if (file_ < 0) beside_.clear();
+  return file_ >= 0;
+}
+
+// Renaming needs a name to rename; whoever has taken this one was killed, or is another program.
+bool AtomicFile::name_beside() {
+  if (!beside_.empty()) return true;
+  const std::string file = fmt::format("{}/{}", kOpenFiles, file_);
+  for (int i = 0; i < 1000; ++i) {
+    std::string name = fmt::format("{}.{}-{}", path_, ::getpid(), i);
+    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      beside_ = std::move(name);
+      return true;
+    }
+    if (errno != EEXIST) return false;
   }
+  return false;
 }
 
 AtomicFile::~AtomicFile() {
   if (file_ < 0) return;
   ::close(file_);
-  ::unlink(beside_.c_str());
+  if (!beside_.empty()) ::unlink(beside_.c_str());
 }
 
 bool AtomicFile::give_up(std::string_view why) {
@@ -77,10 +112,11 @@ bool AtomicFile::seek(std::uint64_t position) {
 
 std::optional<std::string> AtomicFile::commit() {
   if (problem_) return problem_;
-  if (::fsync(file_) != 0) give_up(reason());
+  if (::fsync(file_) != 0 || !name_beside()) give_up(reason());
   if (::close(std::exchange(file_, -1)) != 0) give_up(reason());
   if (!problem_ && ::rename(beside_.c_str(), path_.c_str()) != 0) give_up(reason());
-  if (problem_) ::unlink(beside_.c_str());
+  if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
+  if (!problem_) sync_folder(folder_of(path_));
   return problem_;
 }
 

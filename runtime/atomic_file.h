@@ -1,4 +1,5 @@
-// Files that appear whole or not at all: written beside their target, synced, and renamed.
+// Files that appear whole or not at all: written beside their target, synced, and renamed. Where the file system can,
+// what is written has no name until it is whole: a program that is killed leaves nothing behind.
 //
 //     AtomicFile file(path);
 //     file.write(bytes);
@@ -34,8 +35,11 @@ class AtomicFile {
 
  private:
   bool give_up(std::string_view why);  // false
+  bool open_beside();
+  bool name_beside();
 
-  std::string path_, beside_;
+  std::string path_;
+  std::string beside_;  // the name of what is written; empty: it has none yet
   int file_ = -1;
   std::uint64_t position_ = 0;
   std::optional<std::string> problem_;

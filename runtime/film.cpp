@@ -20,8 +20,8 @@ std::int64_t to_fixed(double value) {
   return static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }
 
-bool accumulate(std::int64_t& sum, double value) {
-  const std::int64_t term = to_fixed(value);
+// A full sum stays full, and says so.
+bool add_to(std::int64_t& sum, std::int64_t term) {
   std::int64_t result;
   if (!__builtin_add_overflow(sum, term, &result)) {
     sum = result;
@@ -30,6 +30,21 @@ bool accumulate(std::int64_t& sum, double value) {
   sum = term > 0 ? kFull : -kFull;
   return false;
 }
+
+bool add_to(WideSum& sum, WideSum term) {
+  if (!__builtin_add_overflow(sum, term, &sum)) return true;
+  sum = ~WideSum{0};
+  return false;
+}
+
+template <typename Sum>
+bool add_to(Sum (&sums)[3], const Sum (&terms)[3]) {
+  bool room = true;
+  for (int i = 0; i < 3; ++i) room &= add_to(sums[i], terms[i]);
+  return room;
+}
+
+bool accumulate(std::int64_t& sum, double value) { return add_to(sum, to_fixed(value)); }
 
 template <typename Vector>
 bool accumulate(std::int64_t (&sums)[3], Vector values) {
@@ -45,7 +60,8 @@ glm::dvec3 mean(const std::int64_t (&sums)[3], std::uint32_t count) {
 }
 
 WideSum square(std::int64_t value) {
-  const WideSum magnitude = static_cast<std::uint64_t>(value < 0 ? -value : value);
+  const auto bits = static_cast<std::uint64_t>(value);
+  const WideSum magnitude = value < 0 ? -bits : bits;
   return magnitude * magnitude;
 }
 
@@ -92,6 +108,29 @@ void Film::begin_second_stage(double first_share) {
   first_share_ = first_share;
 }
 
+void Film::restart(PixelRect area) {
+  const auto empty = [&](auto& sums, bool kept) {
+    sums.clear();
+    if (kept) sums.resize(area.pixels());
+  };
+  area_ = area;
+  first_share_ = 1;
+  stages_.resize(1);
+  empty(stages_.front().pixels, true);
+  empty(stages_.front().squares, layers_.variance);
+  empty(stages_.front().odd_halves, layers_.halves);
+  empty(first_hits_, layers_.first_hit);
+  empty(positions_, layers_.position);
+  empty(ids_, layers_.ids);
+  empty(costs_, layers_.cost);
+  denoised_.clear();
+}
+
+void Film::begin_halves() {
+  begin_second_stage(0.5);
+  stages_.resize(4, empty_stage());
+}
+
 bool Film::add(int x, int y, const PathSample& sample) {
   const std::size_t at = area_.index(x, y);
   Stage& stage = stages_.back();
@@ -116,10 +155,7 @@ bool Film::add(int x, int y, const PathSample& sample) {
 bool Film::add_squares(Squares& squares, glm::vec3 radiance) {
   bool room = true;
   for (int i = 0; i < 3; ++i) {
-    WideSum& sum = squares.sums[i];
-    if (!__builtin_add_overflow(sum, square(to_fixed(static_cast<double>(radiance[i]))), &sum)) continue;
-    sum = ~WideSum{0};
-    room = false;
+    room &= add_to(squares.sums[i], square(to_fixed(static_cast<double>(radiance[i]))));
   }
   return room;
 }
@@ -137,15 +173,60 @@ bool Film::add_first_hit(std::size_t at, const PathSample& sample) {
   return room;
 }
 
+bool Film::merge(const Film& part, std::size_t stage) {
+  CHECK(part.stages_.size() == 1 && part.layers_ == layers_ && stage < stages_.size(), "films that do not fit");
+  const PixelRect rows = part.area_;
+  bool room = true;
+  for (int y = rows.y0; y < rows.y1; ++y) {
+    for (int x = rows.x0; x < rows.x1; ++x) {
+      const std::size_t from = rows.index(x, y), to = area_.index(x, y);
+      room &= merge_stage(part, stages_[stage], from, to);
+      if (stage >= kSeenStages) continue;
+      room &= merge_first_hit(part, from, to);
+      if (layers_.cost) {
+        costs_[to].evaluations += part.costs_[from].evaluations;
+        costs_[to].instructions += part.costs_[from].instructions;
+      }
+    }
+  }
+  return room;
+}
+
+bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to) {
+  const Stage& other = part.stages_.front();
+  stage.pixels[to].samples += other.pixels[from].samples;
+  stage.pixels[to].hits += other.pixels[from].hits;
+  bool room = add_to(stage.pixels[to].radiance, other.pixels[from].radiance);
+  if (layers_.variance) room &= add_to(stage.squares[to].sums, other.squares[from].sums);
+  if (layers_.halves) {
+    stage.odd_halves[to].samples += other.odd_halves[from].samples;
+    room &= add_to(stage.odd_halves[to].radiance, other.odd_halves[from].radiance);
+  }
+  return room;
+}
+
+bool Film::merge_first_hit(const Film& part, std::size_t from, std::size_t to) {
+  bool room = true;
+  if (layers_.first_hit) {
+    const FirstHit& other = part.first_hits_[from];
+    room &= add_to(first_hits_[to].albedo, other.albedo);
+    room &= add_to(first_hits_[to].normal, other.normal);
+    room &= add_to(first_hits_[to].depth, other.depth);
+  }
+  if (layers_.position) room &= add_to(positions_[to].sums, part.positions_[from].sums);
+  if (layers_.ids) ids_[to] = std::min(ids_[to], part.ids_[from]);
+  return room;
+}
+
 PixelMeans Film::means(int x, int y) const {
   const std::size_t at = area_.index(x, y);
   PixelMeans means;
-  for (const Stage& stage : stages_) {
+  for (const Stage& stage : seen_stages()) {
     means.hits += stage.pixels[at].hits;
     means.samples += stage.pixels[at].samples;
   }
   if (means.samples == 0) return means;
-  read_radiance(at, means);
+  read_radiance(x, y, means);
   if (layers_.cost) {
     means.evaluations = static_cast<double>(costs_[at].evaluations) / means.samples;
     means.instructions = static_cast<double>(costs_[at].instructions) / means.samples;
@@ -154,11 +235,42 @@ PixelMeans Film::means(int x, int y) const {
   return means;
 }
 
+std::uint32_t Film::samples(int x, int y) const {
+  std::uint32_t sum = 0;
+  for (const Stage& stage : seen_stages()) sum += stage.pixels[area_.index(x, y)].samples;
+  return sum;
+}
+
+std::uint64_t Film::samples() const {
+  std::uint64_t sum = 0;
+  for (const Stage& stage : seen_stages()) {
+    for (const Pixel& pixel : stage.pixels) sum += pixel.samples;
+  }
+  return sum;
+}
+
+RadianceMeans Film::radiance_of(std::initializer_list<std::size_t> stages, int x, int y) const {
+  const std::size_t at = area_.index(x, y);
+  Pixel pixel;
+  Squares squares;
+  OddHalf odd;
+  for (const std::size_t number : stages) {
+    const Stage& stage = stages_[number];
+    add_to(pixel.radiance, stage.pixels[at].radiance);
+    pixel.samples += stage.pixels[at].samples;
+    if (layers_.variance) add_to(squares.sums, stage.squares[at].sums);
+    if (!layers_.halves) continue;
+    add_to(odd.radiance, stage.odd_halves[at].radiance);
+    odd.samples += stage.odd_halves[at].samples;
+  }
+  return means_of(pixel, squares, odd);
+}
+
 // The stages' means are independent, given how many samples each has: their variances add up by the squares of the
 // weights.
-void Film::read_radiance(std::size_t at, PixelMeans& means) const {
-  const StageMeans first = stage_means(stages_.front(), at);
-  const StageMeans second = stages_.size() > 1 ? stage_means(stages_.back(), at) : StageMeans();
+void Film::read_radiance(int x, int y, PixelMeans& means) const {
+  const RadianceMeans first = radiance_of({0}, x, y);
+  const RadianceMeans second = stages_.size() > 1 ? radiance_of({1}, x, y) : RadianceMeans();
   const double w = second.samples == 0 ? 1 : first.samples == 0 ? 0 : first_share_;
   means.noisy = w * first.radiance + (1 - w) * second.radiance;
   means.variance = w * w * first.variance + (1 - w) * (1 - w) * second.variance;
@@ -167,20 +279,19 @@ void Film::read_radiance(std::size_t at, PixelMeans& means) const {
     means.halves[i] = share * first.halves[i] + (1 - share) * second.halves[i];
   }
   means.radiance = means.noisy;
+  const std::size_t at = area_.index(x, y);
   if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
 }
 
-Film::StageMeans Film::stage_means(const Stage& stage, std::size_t at) const {
-  const Pixel& pixel = stage.pixels[at];
-  StageMeans means;
+RadianceMeans Film::means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const {
+  RadianceMeans means;
   means.samples = pixel.samples;
   if (pixel.samples == 0) return means;
   means.radiance = mean(pixel.radiance, pixel.samples);
   for (int i = 0; layers_.variance && i < 3; ++i) {
-    means.variance[i] = variance_of_mean(pixel.radiance[i], stage.squares[at].sums[i], pixel.samples);
+    means.variance[i] = variance_of_mean(pixel.radiance[i], squares.sums[i], pixel.samples);
   }
   if (!layers_.halves) return means;
-  const OddHalf& odd = stage.odd_halves[at];
   means.half_samples[0] = pixel.samples - odd.samples;
   means.half_samples[1] = odd.samples;
   for (int i = 0; i < 3; ++i) {

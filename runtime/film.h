@@ -11,15 +11,25 @@
 //     film.begin_second_stage(first_share);
 //     film.add(...);                        // stage 2; means() now are of both
 //
+// So films of any parts of the work add up to the film of the whole: merge(). As bytes: film_bytes.cpp.
+//
 // Tested by: tests/runtime/film_test.cpp
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "runtime/pixel_rect.h"
+
+namespace fathom::vm {
+class ByteReader;
+class ByteWriter;
+}  // namespace fathom::vm
 
 namespace fathom::runtime {
 
@@ -75,6 +85,12 @@ struct PixelMeans {
   std::uint32_t hits = 0, samples = 0;
 };
 
+// The mean radiance of a pixel's samples of some stages, all weighing the same; a half without samples has none.
+struct RadianceMeans {
+  glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // as PixelMeans has them
+  std::uint32_t samples = 0, half_samples[2] = {0, 0};
+};
+
 __extension__ typedef unsigned __int128 WideSum;  // C++ has no name of its own for it
 
 class Film {
@@ -92,11 +108,31 @@ class Film {
   // What is added from now on is of stage 2, and stage 1 counts `first_share` of radiance, in [0,1]. Where stage 2
   // has no samples stage 1 counts all. Once, and while no thread adds.
   void begin_second_stage(double first_share);
+  // For runtime/noise.h: two stages that weigh the same, and two more that means() does not look at. Likewise.
+  void begin_halves();
+  std::size_t stages() const { return stages_.size(); }
+  double first_share() const { return first_share_; }
 
-  // (x, y) is a pixel of the whole picture, within area(). Not to be called for one pixel by two threads at once.
-  // False when some sum is full.
+  // Empty again, and of another area.
+  void restart(PixelRect area);
+
+  // (x, y) is a pixel of the whole picture, within area(). To the last stage. Not to be called for one pixel by two
+  // threads at once. False when some sum is full.
   bool add(int x, int y, const PathSample& sample);
+  // Everything that `part` has, which is a film of one stage with the same layers and lies within area(), is added to
+  // the given stage; its radiance alone, where means() does not look at that. False when some sum is full.
+  bool merge(const Film& part, std::size_t stage = 0);
+
   PixelMeans means(int x, int y) const;
+  std::uint32_t samples(int x, int y) const;  // as means() has them
+  std::uint64_t samples() const;              // of all pixels
+  RadianceMeans radiance_of(std::initializer_list<std::size_t> stages, int x, int y) const;
+
+  // The sums of the pixels in a rectangle within area(), for a file; read_sums() is false when the bytes end before.
+  void write_sums(PixelRect rect, vm::ByteWriter& out) const;
+  bool read_sums(PixelRect rect, vm::ByteReader& in);
+  // How many bytes a pixel takes there.
+  static std::size_t bytes_per_pixel(FilmLayers layers, std::size_t stages);
 
   // From now on means().radiance is this, [y][x][rgb] over area(); no sum changes.
   void set_denoised(std::vector<float> radiance);
@@ -133,11 +169,6 @@ class Film {
     std::vector<Squares> squares;
     std::vector<OddHalf> odd_halves;
   };
-  // Of one stage; a half without samples has none.
-  struct StageMeans {
-    glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};
-    std::uint32_t samples = 0, half_samples[2] = {0, 0};
-  };
   // Of the sample `number`; all bits set when none hit.
   struct Ids {
     std::uint32_t number = ~0u, surface = ~0u, material = ~0u;
@@ -148,16 +179,24 @@ class Film {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
+  static constexpr std::size_t kSeenStages = 2;  // of those that means() looks at
+  std::span<const Stage> seen_stages() const {
+    return std::span(stages_).first(std::min(kSeenStages, stages_.size()));
+  }
   Stage empty_stage() const;
+  template <class Self, class Sink>
+  static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
   bool add_squares(Squares& squares, glm::vec3 radiance);
   bool add_first_hit(std::size_t at, const PathSample& sample);
-  StageMeans stage_means(const Stage& stage, std::size_t at) const;
-  void read_radiance(std::size_t at, PixelMeans& means) const;
+  bool merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to);
+  bool merge_first_hit(const Film& part, std::size_t from, std::size_t to);
+  RadianceMeans means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const;
+  void read_radiance(int x, int y, PixelMeans& means) const;
   void read_first_hit(std::size_t at, PixelMeans& means) const;
 
   PixelRect area_;
   FilmLayers layers_;
-  std::vector<Stage> stages_;  // one or two
+  std::vector<Stage> stages_;  // one, two, or the halves' four
   double first_share_ = 1;
   // [y][x], of both stages; a layer that is not kept has none.
   std::vector<FirstHit> first_hits_;

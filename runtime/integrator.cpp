@@ -21,7 +21,8 @@ std::size_t under_way(const Marcher& marcher) {
 
 }  // namespace
 
-Integrator::Integrator(const World& world, const Pass& pass, Film& film) : world_(world), pass_(pass), film_(film) {
+Integrator::Integrator(const World& world, const Pass& pass, PathExchange& exchange)
+    : world_(world), pass_(pass), exchange_(exchange) {
   marchers_.push_back(make_marcher(world.field, world.settings.marching));
   int paths = marchers_[0]->capacity();
   for (std::size_t i = 0; i < world.media.size(); ++i) {
@@ -34,12 +35,12 @@ Integrator::Integrator(const World& world, const Pass& pass, Film& film) : world
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
-void Integrator::run(const NextPaths& next) {
+void Integrator::run() {
   StageClock& clock = marchers_[0]->clock();
   if (world_.settings.profile) clock.start(Stage::Shading);
   bool more = true;
   while (true) {
-    while (more && !free_ids_.empty()) more = start_paths(next);
+    while (more && !free_ids_.empty()) more = start_paths();
     if (idle()) break;
     for (std::size_t field = 0; field < marchers_.size(); ++field) {
       if (due(field)) advance(field);
@@ -68,11 +69,11 @@ void Integrator::advance(std::size_t field) {
 }
 
 // False when there are no more.
-bool Integrator::start_paths(const NextPaths& next) {
+bool Integrator::start_paths() {
   marchers_[0]->clock().enter(Stage::Shading);
   std::array<PathKey, kStartBatch> keys;
   const std::size_t wanted = std::min(kStartBatch, free_ids_.size());
-  const std::size_t given = next(std::span(keys).first(wanted));
+  const std::size_t given = exchange_.next(std::span(keys).first(wanted));
   start(std::span(keys).first(given));
   return given == wanted;
 }
@@ -133,7 +134,7 @@ void Integrator::follow(std::uint32_t id, const Ray& ray) {
 void Integrator::settle_arrivals(std::size_t field) {
   StageClock& clock = marchers_[0]->clock();
   marchers_[field]->take_arrivals(settled_);
-  if (film_.layers().cost) {
+  if (world_.settings.layers.cost) {
     for (const Arrival& arrival : settled_) {
       paths_[arrival.id].result.evaluations += arrival.evaluations;
       paths_[arrival.id].result.instructions += arrival.instructions;
@@ -162,7 +163,7 @@ void Integrator::settle_arrivals(std::size_t field) {
   in_batches({shadows_end, hits_end}, [&](std::span<const Arrival> some) { shade(field, some); });
   for (const Arrival& arrival : std::span(hits_end, settled_.end())) leave_scene(arrival);
   clock.enter(Stage::Film);
-  for (const std::uint32_t id : ended_) add_to_film(id);
+  for (const std::uint32_t id : ended_) hand_in(id);
   ended_.clear();
 }
 
@@ -216,14 +217,14 @@ void Integrator::pass_shadows(std::size_t number, std::span<const Arrival> arriv
   for (std::size_t i = 0; i < arrivals.size(); ++i) pass_shadow(arrivals[i], places.hits[i], places.points[i]);
 }
 
-void Integrator::add_to_film(std::uint32_t id) {
+void Integrator::hand_in(std::uint32_t id) {
   Path& path = paths_[id];
   if (!finite(path.result.radiance)) {
     ++stats_.dropped_samples;
     path.result.radiance = glm::vec3(0);
   }
   path.result.radiance *= path.weight;
-  if (!film_.add(path.key.x, path.key.y, path.result)) ++stats_.saturated;
+  if (!exchange_.add(path.key, path.result)) ++stats_.saturated;
   free_ids_.push_back(id);
 }
 

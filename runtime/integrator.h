@@ -5,8 +5,8 @@
 // light is looked for in two ways, whose shares add up to 1 (multiple importance sampling): a light is chosen and a
 // shadow ray sent to it (shade.cpp), and the path's next ray may hit one.
 //
-//     Integrator integrator(world, {plan}, film);
-//     integrator.run([&](std::span<PathKey> keys) { fill keys; return how many; });
+//     Integrator integrator(world, {plan}, exchange);   // that gives keys of paths and takes what they bring
+//     integrator.run();
 //
 // Source: Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapters 8 and 9; Russian roulette: Arvo and Kirk, "Particle Transport and Image Synthesis", 1990. Tested by:
@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -58,16 +57,23 @@ struct Pass {
   std::uint32_t first_number = 0;  // PathSample::number of the pass's sample 0
 };
 
-class Integrator {
+// Where paths come from, and what they bring home goes to.
+class PathExchange {
  public:
+  virtual ~PathExchange() = default;
   // Asked for the next paths: fills `keys` from the front and returns how many; fewer than asked for, and there are
   // no more.
-  using NextPaths = std::function<std::size_t(std::span<PathKey> keys)>;
+  virtual std::size_t next(std::span<PathKey> keys) = 0;
+  // A path has ended, in no order. False when some sum is full.
+  virtual bool add(const PathKey& key, const PathSample& sample) = 0;
+};
 
-  Integrator(const World& world, const Pass& pass, Film& film);
+class Integrator {
+ public:
+  Integrator(const World& world, const Pass& pass, PathExchange& exchange);
 
-  // Follows all paths `next` gives to their end, and adds them to the film.
-  void run(const NextPaths& next);
+  // Follows all paths there are to their end.
+  void run();
   Stats stats() const;
 
  private:
@@ -89,7 +95,7 @@ class Integrator {
     LightSample light;
   };
 
-  bool start_paths(const NextPaths& next);
+  bool start_paths();
   void start(std::span<const PathKey> keys);
   bool idle() const;
   bool due(std::size_t field) const;
@@ -105,7 +111,7 @@ class Integrator {
   void pass_shadows(std::size_t field, std::span<const Arrival> arrivals);
   void follow(std::uint32_t id, const Ray& ray);
   void leave_scene(const Arrival& arrival);
-  void add_to_film(std::uint32_t id);  // and frees the id
+  void hand_in(std::uint32_t id);  // and frees the id
 
   const Field& field(std::size_t number) const { return number == 0 ? world_.field : world_.media.field(number - 1); }
 
@@ -143,7 +149,7 @@ class Integrator {
 
   const World& world_;
   const Pass pass_;
-  Film& film_;
+  PathExchange& exchange_;
   std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]
   std::vector<Path> paths_;                         // [id]
   std::vector<ShadowRay> shadows_;                  // [id], where surfaces may let light straight through

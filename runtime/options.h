@@ -16,12 +16,14 @@
 #include "runtime/environment_file.h"
 #include "runtime/film.h"
 #include "runtime/method.h"
+#include "runtime/partial_render.h"
 #include "runtime/pixel_rect.h"
 
 namespace fathom::runtime {
 
 struct Progress {
-  double fraction;     // of the camera paths that are begun, in [0,1]
+  double fraction;     // of the camera paths that are done, in [0,1]
+  double resumed;      // the same before the render began: of what it goes on from
   std::uint64_t rays;  // marched so far
   double seconds;      // since the render began
 };
@@ -59,18 +61,37 @@ struct RenderOptions {
   // The picture that the scene's background names, when it names one (Background::Type::Image).
   std::shared_ptr<const EnvironmentImage> environment;
 
-  // Called now and then, by one thread at a time, from the threads that render.
+  // Where the picture's noise is below this, no more samples are taken (runtime/noise.h): at least `min_spp` and at
+  // most `spp` of a pixel. Of the whole picture only, and not with `adaptive`.
+  std::optional<double> noise;
+  std::optional<int> min_spp;
+  // Of each pixel these samples alone, of the `spp` there are in all; films of other ranges add up to the whole. Not
+  // with `adaptive` or `noise`.
+  std::optional<SampleRange> sample_range;
+  // What an earlier render with the same settings, but for threads and tile, has done.
+  std::shared_ptr<const PartialRender> resume_from;
+  // After so many seconds no unit of work is begun, and render() returns what there is.
+  std::optional<double> time_limit;
+
+  // Called when a unit of work is done, by one thread at a time, from the threads that render.
   std::function<void(const Progress&)> on_progress;
-  // When it becomes true, no new path is started and render() returns what there is.
+  // Called every kTickSeconds from a thread of its own. What it is given calls its argument with what is done so far,
+  // which does not change meanwhile: threads that have finished a unit wait.
+  using Look = std::function<void(const std::function<void(const PartialRender&)>&)>;
+  std::function<void(const Look&)> on_tick;
+  // When it becomes true, no unit of work is begun and render() returns what there is.
   const std::atomic<bool>* cancel = nullptr;
 };
+
+inline constexpr double kTickSeconds = 0.05;
 
 // What a render uses: the scene's values under the options'.
 struct Settings {
   int width, height;  // of the whole picture, pixels
   PixelRect crop;     // what of it is rendered
   int spp, bounces;
-  int tile;  // pixels a side
+  SampleRange samples;  // of the spp
+  int tile;             // pixels a side
   int threads;
   std::uint64_t seed;
   compiler::SamplerKind sampler;
@@ -79,6 +100,8 @@ struct Settings {
   std::optional<double> far;
   std::optional<int> cut_after;
   bool adaptive;  // asked for, and spp suffices; layers.variance then is kept
+  std::optional<double> noise;
+  int min_spp;  // of `noise`
   LightSampling light_sampling;
   std::optional<double> clamp;  // radiance
   Marching marching;

@@ -16,6 +16,7 @@ namespace fathom::runtime {
 struct PathKey {
   int x, y;              // pixel
   std::uint32_t sample;  // of the pixel's, in the plan that draws them
+  std::uint32_t unit;    // whose film it goes to (runtime/unit_worker.h)
 };
 
 struct Path {

@@ -9,11 +9,15 @@
 
 namespace fathom::runtime {
 
-struct RenderResult {
-  Film film;
+// The film, and what of the work is in it.
+struct RenderResult : PartialRender {
   Settings settings;  // those used
   Stats stats;
 };
+
+// Whether a render with these settings can go on from `render`: films of others are refused before by their identity
+// (runtime/film_file.h), so a file that says no was made up.
+bool can_resume(const PartialRender& render, const Settings& settings);
 
 // The film's bits depend on the scene and on the settings but for `threads` and `tile`.
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options = {});

@@ -133,9 +133,11 @@ std::string to_table(const Stats& stats) {
   if (stats.peak_memory > 0) {
     text += fmt::format("{:<24}{:>16.1f}\n", "peak memory, MB", static_cast<double>(stats.peak_memory) * 1e-6);
   }
+  if (stats.resumed_samples > 0) text += fmt::format("{:<24}{:>16}\n", "samples resumed", stats.resumed_samples);
+  if (stats.checkpoints > 0) text += fmt::format("{:<24}{:>16}\n", "checkpoints written", stats.checkpoints);
   text += fmt::format("{:<24}{:>16.3f}\n", "seconds", stats.seconds);
   text += fmt::format("{:<24}{:>16}\n", "threads", stats.threads);
-  if (stats.cancelled) text += "stopped before the end\n";
+  text += fmt::format("{:<24}{:>16}\n", "ended by", kRenderEnds[static_cast<std::size_t>(stats.end)]);
   return text;
 }
 
@@ -146,10 +148,13 @@ std::string to_json(const Stats& stats) {
   if (stats.stages) text += fmt::format("  \"stage_seconds\": {},\n", stage_json(*stats.stages));
   text += fmt::format("  \"region_bytes\": {},\n", stats.region_bytes);
   text += fmt::format("  \"region_seconds\": {:.6g},\n", stats.region_seconds);
+  text += fmt::format("  \"resumed_samples\": {},\n", stats.resumed_samples);
+  text += fmt::format("  \"checkpoints\": {},\n", stats.checkpoints);
   text += fmt::format("  \"peak_memory\": {},\n", stats.peak_memory);
   text += fmt::format("  \"seconds\": {:.6g},\n", stats.seconds);
   text += fmt::format("  \"threads\": {},\n", stats.threads);
-  text += fmt::format("  \"cancelled\": {}\n}}\n", stats.cancelled ? "true" : "false");
+  text += fmt::format("  \"ended_by\": \"{}\",\n", kRenderEnds[static_cast<std::size_t>(stats.end)]);
+  text += fmt::format("  \"cancelled\": {}\n}}\n", stats.end == RenderEnd::Cancelled ? "true" : "false");
   return text;
 }
 

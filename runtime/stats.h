@@ -2,9 +2,11 @@
 // Tested by: tests/runtime/stats_test.cpp
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runtime/stage_clock.h"
 
@@ -32,6 +34,11 @@ struct MarchCounters {
   void merge(const MarchCounters& other);
 };
 
+// Why a render ended.
+enum class RenderEnd : std::uint8_t { Done, Noise, TimeLimit, Cancelled };
+inline constexpr std::array<std::string_view, 4> kRenderEnds = {"all samples taken", "noise below limit",
+                                                                "time limit", "interrupted"};  // [RenderEnd]
+
 struct Stats {
   MarchCounters march;
   std::uint64_t primary_rays = 0;      // camera rays
@@ -46,7 +53,9 @@ struct Stats {
   double region_seconds = 0;           // to build them, part of `seconds`
   double seconds = 0;                  // wall clock
   int threads = 0;
-  bool cancelled = false;
+  std::uint64_t resumed_samples = 0;  // of all pixels, that the render went on from
+  std::uint64_t checkpoints = 0;      // written
+  RenderEnd end = RenderEnd::Done;
 
   void merge(const Stats& other);  // the counts and stages; not memory, regions, seconds, threads
   double evaluations_per_ray() const;

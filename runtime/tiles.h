@@ -29,16 +29,21 @@ class Tiles {
  public:
   Tiles(PixelRect area, int side) : area_(area), side_(side) {}
 
-  std::optional<PixelRect> take() {
-    const std::int64_t columns = (area_.width() + side_ - 1) / side_, rows = (area_.height() + side_ - 1) / side_;
-    const std::int64_t index = next_.fetch_add(1, std::memory_order_relaxed);
-    if (index >= columns * rows) return std::nullopt;
-    const int x = area_.x0 + static_cast<int>(index % columns) * side_;
-    const int y = area_.y0 + static_cast<int>(index / columns) * side_;
+  std::int64_t count() const { return std::int64_t{columns()} * ((area_.height() + side_ - 1) / side_); }
+  PixelRect at(std::int64_t index) const {
+    const int x = area_.x0 + static_cast<int>(index % columns()) * side_;
+    const int y = area_.y0 + static_cast<int>(index / columns()) * side_;
     return PixelRect{x, y, std::min(area_.x1, x + side_), std::min(area_.y1, y + side_)};
   }
 
+  std::optional<PixelRect> take() {
+    const std::int64_t index = next_.fetch_add(1, std::memory_order_relaxed);
+    return index < count() ? std::optional(at(index)) : std::nullopt;
+  }
+
  private:
+  int columns() const { return (area_.width() + side_ - 1) / side_; }
+
   PixelRect area_;
   int side_;
   std::atomic<std::int64_t> next_{0};

@@ -59,6 +59,11 @@ void Arguments::positional(const std::string& name, const std::string& doc, std:
   app_->add_option(name, target, doc)->required(required)->type_name(value);
 }
 
+void Arguments::positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
+                            const std::string& value) {
+  app_->add_option(name, targets, doc)->required()->type_name(value);
+}
+
 void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {
   app_->add_flag_callback(
           names, [&target] { target = true; }, doc)

@@ -38,6 +38,9 @@ class Arguments {
   // Names as CLI11 takes them: "-s,--spp".
   void positional(const std::string& name, const std::string& doc, std::string& target, bool required = true,
                   const std::string& value = "FILE");
+  // One or more.
+  void positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
+                   const std::string& value = "FILE");
   void flag(const std::string& names, const std::string& doc, bool& target);
   void counter(const std::string& names, const std::string& doc, int& target);  // how often the flag was given
   void option(const std::string& names, const std::string& value, const std::string& doc, Setter setter);

@@ -15,6 +15,7 @@ enum ExitCode : int {
   kBadScene = 65,
   kInternal = 70,
   kIo = 74,
+  kInterrupted = 75,
 };
 
 struct ExitCodeInfo {
@@ -31,6 +32,7 @@ inline constexpr std::array kExitCodes = {
     ExitCodeInfo{kBadScene, "the scene, a list of points or a picture has errors; trying again will not help"},
     ExitCodeInfo{kInternal, "a defect of fathom, or not enough memory"},
     ExitCodeInfo{kIo, "a file could not be read or written; trying again may help"},
+    ExitCodeInfo{kInterrupted, "a signal ended the render and a checkpoint was written; `--resume` goes on"},
 };
 
 }  // namespace fathom::cli

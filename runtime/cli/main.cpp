@@ -89,6 +89,7 @@ int main(int argc, char** argv) {
   const bool dumb = term == nullptr || std::string_view(term) == "dumb";
   const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
   std::ios::sync_with_stdio(false);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, not the end
   std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // how a failed CHECK ends, after its message
   const Streams streams{std::cin, std::cout, std::cerr, terminal && !dumb, color};
   try {

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes 32 to 188 bytes
 
+constexpr std::string_view kFilmEnding = ".film";
+
 // One name for a file however it is written, whether it exists or not.
 std::filesystem::path canonical_name(const std::string& path) {
   std::error_code ignored;
@@ -24,9 +26,9 @@ std::filesystem::path canonical_name(const std::string& path) {
 
 Verdict read_output(std::string_view text, std::string& path) {
   path = text;
-  if (runtime::image_format_of(path)) return std::nullopt;
+  if (runtime::image_format_of(path) || is_film(path)) return std::nullopt;
   return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
-                   "valid endings: " + runtime::image_endings()};
+                   fmt::format("valid endings: {}, {}", runtime::image_endings(), kFilmEnding)};
 }
 
 Verdict read_shown_output(std::string_view text, std::string& path) {
@@ -36,6 +38,13 @@ Verdict read_shown_output(std::string_view text, std::string& path) {
   const char* problem = format ? "`{}`: this format holds numbers, not a picture to be shown"
                                : "`{}` does not end in a picture format's name";
   return Complaint{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
+}
+
+bool is_film(const std::string& path) { return path.ends_with(kFilmEnding); }
+
+bool holds_layers(const std::string& output) {
+  const runtime::ImageFormatInfo* format = runtime::image_format_of(output);
+  return is_film(output) || (format != nullptr && format->format == runtime::ImageFormat::Exr);
 }
 
 std::string default_output(const std::string& scene) {

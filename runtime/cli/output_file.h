@@ -13,9 +13,15 @@
 
 namespace fathom::cli {
 
-// A file name with the ending of a picture format; of one that holds what a display shows.
+// A file name with the ending of a film or of a picture format; of one that holds what a display shows.
 Verdict read_output(std::string_view text, std::string& path);
 Verdict read_shown_output(std::string_view text, std::string& path);
+
+// Whether the name is that of a film file (runtime/film_file.h).
+bool is_film(const std::string& path);
+
+// Whether the output holds all layers in one file, so that none is written beside it.
+bool holds_layers(const std::string& output);
 
 // "scenes/ball.json" -> "ball.png", in the current folder; "out.png" for standard input.
 std::string default_output(const std::string& scene);

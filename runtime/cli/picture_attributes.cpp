@@ -3,36 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "runtime/camera.h"
+#include "runtime/cli/render_identity.h"
 #include "runtime/cli/version.h"
 
 namespace fathom::cli {
 namespace {
-
-// FNV-1a (Fowler, Noll, Vo, 1991).
-class Hash {
- public:
-  template <typename Words>
-  Hash& absorb(const Words& words) {
-    for (const auto word : words) {
-      for (std::size_t i = 0; i < sizeof(word); ++i) {
-        state_ = (state_ ^ (static_cast<std::uint64_t>(word) >> (8 * i) & 0xff)) * 0x100000001b3u;
-      }
-    }
-    return *this;
-  }
-  std::string text() const { return fmt::format("{:016x}", state_); }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325u;
-};
-
-std::string program_hash(const compiler::CompiledScene& scene) {
-  return Hash().absorb(scene.distance.program().words).absorb(scene.surface.program().words).text();
-}
 
 // Columns of the matrix that acts on row vectors: of (p - eye) along each axis.
 using Column = glm::dvec4;
@@ -50,8 +30,7 @@ runtime::Matrix4 matrix_of(const Column (&columns)[4]) {
 
 }  // namespace
 
-runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings,
-                                       std::optional<double> seconds) {
+runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
   const runtime::Camera camera(scene.camera, settings.width, settings.height);
   const glm::dvec3 eye = camera.position() + scene.origin;
   const Column x = along(camera.right(), eye), y = along(camera.up(), eye), z = along(camera.forward(), eye);
@@ -62,13 +41,11 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
   // 0 to 1 from the left and from the bottom; 1 - 1/depth in perspective, which no finite depth brings to 1.
   const Column depth = orthographic ? z : z - one;
   runtime::Attributes attributes = {
-      {"samplesPerPixel", settings.spp},
       {"worldToCamera", matrix_of({x, y, z, one})},
       {"fathom.version", std::string(kVersion)},
-      {"fathom.sceneHash", Hash().absorb(scene.source.text()).text()},
+      {"fathom.sceneHash", scene_hash(scene)},
       {"fathom.programHash", program_hash(scene)},
       {"fathom.seed", std::to_string(settings.seed)},
-      {"fathom.sampleRange", fmt::format("0:{}", settings.spp)},
       {"fathom.exposure", static_cast<float>(scene.film.exposure)},
       {"fathom.tone", std::string(compiler::kToneCurves[static_cast<std::size_t>(scene.film.tone)])},
   };
@@ -81,8 +58,20 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
   for (const compiler::Material& material : scene.materials) materials.push_back(material.name);
   attributes["fathom.objects"] = std::move(objects);
   attributes["fathom.materials"] = std::move(materials);
-  if (seconds) attributes["renderTimeSeconds"] = static_cast<float>(*seconds);
   return attributes;
+}
+
+void describe_samples(const runtime::PartialRender& render, runtime::Attributes& attributes) {
+  const auto pixels = static_cast<double>(render.film.area().pixels());
+  const int mean = static_cast<int>(std::lround(static_cast<double>(render.film.samples()) / pixels));
+  attributes["samplesPerPixel"] = mean;
+  attributes["fathom.sampleRange"] = fmt::format("0:{}", mean);
+  if (render.covered.size() != 1) return;
+  std::vector<std::string> ranges;
+  for (const runtime::SampleRange range : render.covered.front().ranges()) {
+    ranges.push_back(fmt::format("{}:{}", range.first, range.last));
+  }
+  attributes["fathom.sampleRange"] = fmt::format("{}", fmt::join(ranges, ","));
 }
 
 runtime::ToneMapping tone_in(const runtime::Attributes& attributes) {

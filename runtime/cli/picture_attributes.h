@@ -3,18 +3,20 @@
 // Tested by: tests/runtime/cli_layers_test.cpp
 #pragma once
 
-#include <optional>
-
 #include "compiler/compiled_scene.h"
 #include "runtime/float_image.h"
 #include "runtime/options.h"
+#include "runtime/partial_render.h"
 #include "runtime/tone.h"
 
 namespace fathom::cli {
 
-// Without `seconds`, the time it took, they are the same for every run.
-runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings,
-                                       std::optional<double> seconds);
+// The same for every run, and for every part of a render.
+runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings);
+
+// Adds how many samples a pixel has on average, and which of them some pixel has: "0:16", "0:4,8:12". Of a render
+// whose samples were shared out the numbers of the average pixel's.
+void describe_samples(const runtime::PartialRender& render, runtime::Attributes& attributes);
 
 // The exposure and tone curve among them; those of a file that says nothing where they are missing.
 runtime::ToneMapping tone_in(const runtime::Attributes& attributes);

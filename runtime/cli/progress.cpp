@@ -16,8 +16,9 @@ constexpr double kTrustedSeconds = 0.5;  // before that a guess of the time left
 std::string describe(const runtime::Progress& progress) {
   const double rate = progress.seconds > 0 ? static_cast<double>(progress.rays) / progress.seconds : 0;
   std::string line = fmt::format("{:3.0f} %   {:.2f} Mray/s", std::floor(progress.fraction * 100), rate * 1e-6);
-  if (progress.fraction > 0 && progress.fraction < 1 && progress.seconds > kTrustedSeconds) {
-    line += "   about " + duration(progress.seconds * (1 - progress.fraction) / progress.fraction) + " left";
+  const double done = progress.fraction - progress.resumed;
+  if (done > 0 && progress.fraction < 1 && progress.seconds > kTrustedSeconds) {
+    line += "   about " + duration(progress.seconds * (1 - progress.fraction) / done) + " left";
   }
   return line;
 }
@@ -31,8 +32,11 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { wipe(); }
+
+void ProgressLine::wipe() {
   if (drawn_ && streams_.terminal) streams_.err << "\r\033[K" << std::flush;
+  drawn_ = false;
 }
 
 bool ProgressLine::due(const runtime::Progress& progress) const {

@@ -21,6 +21,7 @@ class ProgressLine {
   ~ProgressLine();  // wipes the line
 
   void update(const runtime::Progress& progress);
+  void wipe();  // what a terminal shows of it
 
  private:
   bool due(const runtime::Progress& progress) const;

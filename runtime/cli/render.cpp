@@ -4,46 +4,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <ostream>
 #include <system_error>
 #include <thread>
 
+#include "runtime/cli/checkpoint.h"
 #include "runtime/cli/cost_map.h"
+#include "runtime/cli/interruption.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/cli/picture_attributes.h"
+#include "runtime/cli/picture_files.h"
 #include "runtime/cli/progress.h"
+#include "runtime/cli/render_identity.h"
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/verbosity.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise.h"
 #include "runtime/file_watch.h"
-#include "runtime/film_channels.h"
-#include "runtime/image_exr.h"
-#include "runtime/image_io.h"
 
 namespace fathom::cli {
 namespace {
-
-// The layers that an output is of, and the file of each.
-struct LayerFile {
-  runtime::Layer layer;
-  std::string path;
-};
-std::vector<LayerFile> layer_files(const RenderRequest& request, const std::string& output) {
-  std::vector<LayerFile> files = {{runtime::Layer::Beauty, output}};
-  if (holds_layers(output)) return files;
-  const auto add = [&](bool wanted, runtime::Layer layer) {
-    if (wanted) files.push_back({layer, beside(output, std::string(runtime::info(layer).name))});
-  };
-  add(request.albedo, runtime::Layer::Albedo);
-  add(request.depth, runtime::Layer::Depth);
-  add(request.normal, runtime::Layer::Normal);
-  add(request.denoise, runtime::Layer::Noisy);
-  return files;
-}
 
 // Devices and pipes are written to as they are; only files appear whole or not at all.
 bool is_special(const std::string& path) {
@@ -58,18 +43,29 @@ std::optional<std::string> check_stats_path(const std::string& path) {
   return runtime::check_file_path(path);
 }
 
+PictureFiles pictures_of(const RenderRequest& request) {
+  return {request.outputs, request.albedo, request.depth, request.normal, request.denoise, request.bits != 0};
+}
+
+// --watch begins again with every change, so there is nothing to keep.
+std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
+  if (request.watch) return std::nullopt;
+  const LongRender& asked = request.long_render;
+  return std::optional<Checkpoint>(std::in_place,
+                                   asked.checkpoint.value_or(request.outputs.front() + kCheckpointEnding),
+                                   asked.checkpoint.has_value(), asked.interval.value_or(kCheckpointInterval));
+}
+
 // Every file the run will write, but for streams.
 std::vector<std::string> output_files(const RenderRequest& request) {
-  std::vector<std::string> files;
-  for (const std::string& path : request.outputs) {
-    for (const LayerFile& file : layer_files(request, path)) files.push_back(file.path);
-  }
+  std::vector<std::string> files = files_of(pictures_of(request));
   if (request.cost_map) {
     for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
   }
   if (request.stats_json && *request.stats_json != "-" && !is_special(*request.stats_json)) {
     files.push_back(*request.stats_json);
   }
+  if (const auto checkpoint = checkpoint_of(request)) files.push_back(checkpoint->path());
   return files;
 }
 
@@ -88,10 +84,9 @@ std::optional<ExitCode> read_background(const compiler::Background& background, 
 
 // Whether every file could be written, as far as can be known before there is anything to write.
 std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
-  for (const std::string& path : request.outputs) {
-    for (const LayerFile& file : layer_files(request, path)) {
-      if (const auto problem = runtime::check_image_path(file.path)) return fail(streams, kIo, *problem);
-    }
+  if (const auto code = check_paths(pictures_of(request), streams)) return code;
+  if (const auto checkpoint = checkpoint_of(request)) {
+    if (const auto code = checkpoint->check_path(streams)) return code;
   }
   if (request.cost_map) {
     for (const std::string& map : cost_map_files(*request.cost_map)) {
@@ -110,46 +105,6 @@ struct Watching {
   std::atomic<bool> changed = false;
 };
 
-// `watching`, when given, ends the render as soon as there is a new file.
-runtime::RenderResult render_with_progress(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                           const Streams& streams, Watching* watching) {
-  runtime::RenderOptions options = request.options;
-  if (watching) options.cancel = &watching->changed;
-  ProgressLine line(streams);
-  options.on_progress = [&](const runtime::Progress& progress) {
-    if (!request.quiet) line.update(progress);
-    if (watching && watching->files.changed()) watching->changed = true;
-  };
-  return runtime::render(scene, options);
-}
-
-std::string written(const std::string& path, const runtime::Film& film) {
-  return fmt::format("wrote {} ({}x{})", path, film.width(), film.height());
-}
-
-// One -o, in all its files. `lines` collects what was written.
-std::optional<std::string> write_output(const RenderRequest& request, const std::string& path,
-                                        const compiler::CompiledScene& scene, const runtime::RenderResult& result,
-                                        std::vector<std::string>& lines) {
-  const runtime::Film& film = result.film;
-  const runtime::Settings& settings = result.settings;
-  if (holds_layers(path)) {
-    std::optional<double> seconds;
-    if (request.options.profile) seconds = result.stats.seconds;
-    const auto rows = runtime::rows_of(film, settings.width, settings.height, scene.origin,
-                                       picture_attributes(scene, settings, seconds));
-    if (auto problem = runtime::write_exr(rows, path)) return problem;
-    lines.push_back(written(path, film) + fmt::format(": {} channels", rows.channels.size()));
-    return std::nullopt;
-  }
-  const runtime::PictureOptions options{{scene.film.exposure, scene.film.tone}, request.bits == 0 ? 8 : 16};
-  for (const LayerFile& file : layer_files(request, path)) {
-    if (auto problem = runtime::write_layer(runtime::layer_of(film, file.layer), options, file.path)) return problem;
-    lines.push_back(written(file.path, film));
-  }
-  return std::nullopt;
-}
-
 std::optional<std::string> write_stats(const std::string& path, const runtime::Stats& stats, const Streams& streams) {
   const std::string text = runtime::to_json(stats);
   if (path == "-") {
@@ -162,24 +117,154 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
-// Writes everything and prints the closing numbers, whose memory is that of writing, too.
-std::optional<ExitCode> write_all(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                  runtime::RenderResult& result, const Streams& streams) {
-  std::vector<std::string> lines;
-  std::optional<std::string> problem;
-  for (const std::string& path : request.outputs) {
-    if (!problem) problem = write_output(request, path, scene, result, lines);
+// A render from its compiled scene to its files.
+class Job {
+ public:
+  Job(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams, Watching* watching)
+      : request_(request),
+        scene_(scene),
+        streams_(streams),
+        watching_(watching),
+        header_(film_header(scene, runtime::resolve(scene, request.options), request.options)),
+        checkpoint_(checkpoint_of(request)),
+        line_(streams) {}
+
+  ExitCode run() {
+    if (const auto code = begin()) return *code;
+    std::optional<Interruption> interruption;
+    if (!watching_) interruption.emplace();
+    runtime::RenderResult result = render(interruption);
+    line_.wipe();
+    if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
+    return end(result);
   }
-  if (request.cost_map && !problem) problem = write_cost_maps(*request.cost_map, result.film, lines);
-  result.stats.peak_memory = runtime::peak_memory();
-  if (request.stats_json && !problem) problem = write_stats(*request.stats_json, result.stats, streams);
-  if (!request.quiet) {
-    streams.err << runtime::to_table(result.stats);
-    for (const std::string& line : lines) streams.err << line << '\n';
+
+ private:
+  std::optional<ExitCode> begin() {
+    if (!checkpoint_) return std::nullopt;
+    if (request_.long_render.resume)
+      return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_);
+    return checkpoint_->begin_afresh(streams_);
   }
-  if (problem) return fail(streams, kIo, *problem);
-  return std::nullopt;
-}
+
+  // All that is printed meanwhile comes from the thread that ticks.
+  runtime::RenderResult render(std::optional<Interruption>& interruption) {
+    runtime::RenderOptions options = request_.options;
+    options.cancel = watching_ ? &watching_->changed : &interruption->stop();
+    std::mutex mutex;
+    std::optional<runtime::Progress> latest;
+    options.on_progress = [&](const runtime::Progress& progress) {
+      const std::lock_guard lock(mutex);
+      latest = progress;
+    };
+    const auto start = std::chrono::steady_clock::now();
+    options.on_tick = [&](const runtime::RenderOptions::Look& look) {
+      std::optional<runtime::Progress> progress;
+      {
+        const std::lock_guard lock(mutex);
+        progress = latest;
+      }
+      if (progress && !request_.quiet) line_.update(*progress);
+      if (watching_ && watching_->files.changed()) watching_->changed = true;
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (checkpoint_) checkpoint_->tick(header_, look, seconds, streams_);
+      if (interruption && interruption->picture_wanted()) write_so_far(look);
+    };
+    return runtime::render(scene_, options);
+  }
+
+  // For SIGUSR1: the render goes on, so what cannot be written now is no failure.
+  void write_so_far(const runtime::RenderOptions::Look& look) {
+    runtime::PartialRender so_far;
+    look([&](const runtime::PartialRender& render) { so_far = render; });
+    if (request_.denoise) runtime::denoise(so_far.film, 1);
+    std::vector<std::string> lines;
+    const auto problem = write_pictures(pictures_of(request_), header_, so_far, std::nullopt, lines);
+    line_.wipe();
+    if (problem) streams_.err << "warning: " << *problem << '\n';
+    for (const std::string& line : lines) note(streams_, line + ", so far");
+    streams_.err.flush();
+  }
+
+  // The checkpoint before the pictures: those can be made of it.
+  ExitCode end(runtime::RenderResult& result) {
+    using End = runtime::RenderEnd;
+    const End ended = result.stats.end;
+    warn_of_lost(result.stats);
+    const bool keep = checkpoint_ && (ended == End::Cancelled || checkpoint_->named() ||
+                                      (ended == End::TimeLimit && checkpoint_->is_ours()));
+    if (keep) checkpoint_->write(header_, result, streams_);
+    if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
+    if (request_.denoise) runtime::denoise(result.film, result.settings.threads);
+    if (const auto problem = write_all(result)) return fail_to_write(*problem, result, keep);
+    if (ended == End::Noise && !request_.quiet) {
+      note(streams_, "the noise is below the limit: " + samples_in(result.film));
+    }
+    if (ended == End::TimeLimit) note(streams_, "the time limit ended the render: " + samples_in(result.film));
+    if (ended == End::Cancelled) {
+      note(streams_, "interrupted: " + samples_in(result.film));
+      if (checkpoint_->failed()) return kIo;
+      note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
+      return kInterrupted;
+    }
+    if (checkpoint_ && !checkpoint_->named() && ended != End::TimeLimit) checkpoint_->remove();
+    return keep && checkpoint_->failed() ? kIo : kDone;
+  }
+
+  void warn_of_lost(const runtime::Stats& stats) {
+    if (stats.saturated == 0) return;
+    streams_.err << fmt::format(
+        "warning: {} lost: a pixel's samples add up to {:.2g} at most; scale the lights down\n",
+        count_of(stats.saturated, "sample"), runtime::kFullPixel);
+  }
+
+  // "a pixel has 3 samples at least, 5.20 on average, 8 at most"
+  static std::string samples_in(const runtime::Film& film) {
+    std::uint32_t least = ~0u, most = 0;
+    const runtime::PixelRect area = film.area();
+    for (int y = area.y0; y < area.y1; ++y) {
+      for (int x = area.x0; x < area.x1; ++x) {
+        least = std::min(least, film.samples(x, y));
+        most = std::max(most, film.samples(x, y));
+      }
+    }
+    return fmt::format("a pixel has {} at least, {:.2f} on average, {} at most", count_of(least, "sample"),
+                       static_cast<double>(film.samples()) / static_cast<double>(area.pixels()), most);
+  }
+
+  // Writes everything and prints the closing numbers, whose memory is that of writing, too.
+  std::optional<std::string> write_all(runtime::RenderResult& result) {
+    std::vector<std::string> lines;
+    std::optional<double> seconds;
+    if (request_.options.profile) seconds = result.stats.seconds;
+    auto problem = write_pictures(pictures_of(request_), header_, result, seconds, lines);
+    if (request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
+    result.stats.peak_memory = runtime::peak_memory();
+    if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
+    if (!request_.quiet) {
+      streams_.err << runtime::to_table(result.stats);
+      for (const std::string& line : lines) streams_.err << line << '\n';
+    }
+    return problem;
+  }
+
+  // What was rendered is not lost with the picture.
+  ExitCode fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
+    Help help;
+    if (checkpoint_ && (kept ? !checkpoint_->failed() : checkpoint_->write(header_, result, streams_))) {
+      help.push_back(fmt::format("what was rendered is in {}; --resume writes the pictures", checkpoint_->path()));
+    }
+    return fail(streams_, kIo, problem, help);
+  }
+
+  RenderRequest& request_;
+  const compiler::CompiledScene& scene_;
+  const Streams& streams_;
+  Watching* watching_;
+  const runtime::FilmHeader header_;
+  std::optional<Checkpoint> checkpoint_;
+  ProgressLine line_;
+};
 
 // One picture of the file as it is now.
 ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching) {
@@ -200,17 +285,7 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   if (request.options.clamp && !request.quiet) {
     note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
   }
-
-  runtime::RenderResult result = render_with_progress(request, scene, streams, watching);
-  if (result.stats.cancelled) return kDone;
-  if (result.stats.saturated > 0) {
-    streams.err << fmt::format(
-        "warning: {} lost: a pixel's samples add up to {:.2g} at most; scale the lights down\n",
-        count_of(result.stats.saturated, "sample"), runtime::kFullPixel);
-  }
-  if (request.denoise) runtime::denoise(result.film, result.settings.threads);
-  if (const auto code = write_all(request, scene, result, streams)) return *code;
-  return kDone;
+  return Job(request, scene, streams, watching).run();
 }
 
 // Until a signal ends the program: files are written whole or not at all, so any moment will do.
@@ -235,6 +310,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
+  if (const auto code = check_bits(pictures_of(request), streams)) return *code;
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   if (request.watch) render_on_change(request, streams);

@@ -20,7 +20,9 @@ constexpr const char* kExamples =
     "fathom render scene.json -o out.exr -o out.png --tone agx --crop 25%,25%,75%,75%\n"
     "fathom render scene.json -o out.png -s 64 --denoise         # and out-noisy.png\n"
     "fathom render scene.json -o out.png --preview --watch       # draws again whenever the file is saved\n"
-    "fathom render scene.json -o out.png --profile --cost-map cost.png";
+    "fathom render scene.json -o out.png --profile --cost-map cost.png\n"
+    "fathom render scene.json -o out.png -s 4096 --resume        # goes on where it was interrupted\n"
+    "fathom render scene.json -o b.film -s 64 --sample-range 32:64   # a part for `fathom merge`";
 
 // Of --preview.
 constexpr int kPreviewShrink = 4;  // each side
@@ -28,10 +30,12 @@ constexpr int kPreviewSpp = 4;
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
-  arguments.option("-o,--output", "FILE",
-                   "Picture to write: png, jpg, jpeg or bmp; numbers: exr (all layers), pfm or hdr; may be repeated "
-                   "(default: the scene's name with .png)",
-                   append_to(read_output, request.outputs));
+  arguments.option(
+      "-o,--output", "FILE",
+      "Picture to write: png, jpg, jpeg or bmp; numbers: exr (all layers), pfm or hdr; sums to be merged: film; "
+      "may be repeated "
+      "(default: the scene's name with .png)",
+      append_to(read_output, request.outputs));
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));
   arguments.option("--aspect", "W:H", "Width to height, as 16:9 or 4x3; the width stays",
@@ -188,18 +192,6 @@ std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& reque
   return marching;
 }
 
-// Of the formats that are shown only some have 16 bits.
-std::optional<ExitCode> check_bits(const RenderRequest& request, const Streams& streams) {
-  if (request.bits == 0) return std::nullopt;
-  for (const std::string& path : request.outputs) {
-    const runtime::ImageFormatInfo& format = *runtime::image_format_of(path);
-    if (!format.shown || format.deep) continue;
-    return fail(streams, kUsage, fmt::format("--bits 16: `{}` can have 8 bits a sample only", path),
-                {"16 bits go into .png; .exr, .pfm and .hdr hold the numbers themselves"});
-  }
-  return std::nullopt;
-}
-
 int pixel_of(const CropSides::Side& side, int length) {
   return static_cast<int>(std::min(side.percent ? std::round(side.value * length / 100) : side.value, 1e9));
 }
@@ -241,11 +233,6 @@ std::optional<ExitCode> check_adaptive(const RenderRequest& request, const compi
 
 }  // namespace
 
-bool holds_layers(const std::string& output) {
-  const runtime::ImageFormatInfo* format = runtime::image_format_of(output);
-  return format != nullptr && format->format == runtime::ImageFormat::Exr;
-}
-
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
   RenderRequest request;
   Arguments arguments("render", "Renders a scene to image files.", kExamples);
@@ -255,6 +242,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   add_output_options(arguments, request);
   bool no_denoise = false;
   add_renderer_options(arguments, request, no_denoise);
+  add_long_render_options(arguments, request.long_render);
   add_comparing_options(arguments, request);
   add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
@@ -271,9 +259,11 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;
   }
-  if (const auto code = check_bits(request, streams)) return *code;
   if (request.watch && request.scene.path == "-") {
     return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
+  }
+  if (request.watch && (request.long_render.checkpoint || request.long_render.resume)) {
+    return fail(streams, kUsage, "--watch begins again with every change: it goes with no checkpoint");
   }
   if (request.denoise && no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
   if (request.adaptive && request.no_adaptive) {
@@ -341,7 +331,12 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
   if (const auto code = check_adaptive(request, scene, streams)) return code;
+  if (const auto code = apply(request.long_render, scene, request.options, streams)) return code;
   if (!request.crop) return std::nullopt;
+  if (request.options.noise) {
+    return fail(streams, kUsage, "--crop does not go with --noise, which judges tiles of the whole picture",
+                {"leave out --noise, or render the whole"});
+  }
   const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
   if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;
   request.options.crop = std::get<runtime::PixelRect>(crop);

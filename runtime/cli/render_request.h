@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/cli/long_render.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/options.h"
 
@@ -39,15 +40,13 @@ struct RenderRequest {
   int light_sampling = -1;  // a runtime::LightSampling; -1: not given
   bool adaptive = false, no_adaptive = false;
   bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
+  LongRender long_render;
   bool preview = false, watch = false;
   bool quiet = false;
 };
 
 // The request, or the exit code after help or a message.
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
-
-// Whether the output holds all layers in one file, so that none is written beside it.
-bool holds_layers(const std::string& output);
 
 // Puts the request's camera, size, tone and crop over the scene's. An ExitCode, after a message, when they do not fit
 // together.

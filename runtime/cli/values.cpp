@@ -153,6 +153,24 @@ Verdict read_crop(std::string_view text, CropSides& crop) {
   return std::nullopt;
 }
 
+Verdict read_duration(std::string_view text, double& seconds) {
+  std::string_view digits = text;
+  double unit = 1;
+  if (cut_suffix(digits, "h")) {
+    unit = 3600;
+  } else if (cut_suffix(digits, "m")) {
+    unit = 60;
+  } else {
+    cut_suffix(digits, "s");
+  }
+  const auto number = to_number(digits);
+  if (!number || *number <= 0 || !std::isfinite(*number * unit)) {
+    return complain(fmt::format("`{}` is not a time", text), "write 90s, 10m or 1.5h; a number alone is seconds");
+  }
+  seconds = *number * unit;
+  return std::nullopt;
+}
+
 Verdict read_exposure(std::string_view text, double& stops) {
   const auto value = to_number(text);
   if (!value || std::abs(*value) > 100) return complain(fmt::format("`{}` is not a number from -100 to 100", text));

@@ -71,6 +71,9 @@ Verdict read_rectangle(std::string_view text, Rectangle& rectangle);
 // "0,0,640,360", "25%,25%,75%,75%": whole pixels or percent, two opposite corners.
 Verdict read_crop(std::string_view text, CropSides& crop);
 
+// "90", "90s", "10m", "1.5h" to seconds, more than 0.
+Verdict read_duration(std::string_view text, double& seconds);
+
 // Stops within -100 and 100.
 Verdict read_exposure(std::string_view text, double& stops);
 

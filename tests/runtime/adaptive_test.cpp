@@ -5,6 +5,7 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "runtime/render.h"
@@ -267,7 +268,7 @@ TEST_CASE("adaptive: stopped after the first stage, a picture is that stage's", 
   options.cancel = &cancel;
   options.on_progress = [&](const Progress& progress) { cancel = progress.fraction >= 0.25; };
   const RenderResult stopped = render(scene, options);
-  CHECK(stopped.stats.cancelled);
+  CHECK(stopped.stats.end == RenderEnd::Cancelled);
   const RenderResult first = render(scene, [] {
     RenderOptions even = adaptive_options(16, 16, first_samples(16));
     even.adaptive = false;
@@ -275,6 +276,32 @@ TEST_CASE("adaptive: stopped after the first stage, a picture is that stage's", 
     return even;
   }());
   CHECK(stopped.film.hash() == first.film.hash());
+}
+
+TEST_CASE("adaptive: what was stopped in either stage goes on to the same bits", "[render]") {
+  const auto scene = floor_and_sky();
+  RenderOptions options = adaptive_options(30, 20, 40);
+  options.layers = kAllLayers;
+  const RenderResult whole = render(scene, options);
+  int second_stages = 0;
+  for (const double fraction : {0.05, 0.2, 0.25, 0.3, 0.5, 0.7}) {
+    RenderOptions stopping = options;
+    std::atomic<bool> cancel = false;
+    stopping.cancel = &cancel;
+    stopping.on_progress = [&](const Progress& progress) { cancel = progress.fraction >= fraction; };
+    const RenderResult stopped = render(scene, stopping);
+    REQUIRE(stopped.stats.end == RenderEnd::Cancelled);
+    second_stages += stopped.film.stages() == 2;
+    RenderOptions going_on = options;
+    going_on.resume_from = std::make_shared<PartialRender>(stopped);
+    going_on.tile = 7;
+    const RenderResult resumed = render(scene, going_on);
+    INFO("stopped at " << fraction);
+    CHECK(resumed.film.hash() == whole.film.hash());
+    CHECK(resumed.covered == whole.covered);
+  }
+  CHECK(second_stages >= 2);
+  CHECK(second_stages <= 4);
 }
 
 // The mean square error of renders of the scene, from the spread between seeds, for both are unbiased; and relative

@@ -171,8 +171,8 @@ TEST_CASE("cli layers: the attributes say what was rendered, and where the camer
   CHECK(text("fathom.seed") == "9");
   CHECK(text("fathom.sampleRange") == "0:4");
   CHECK(text("fathom.tone") == "agx");
-  CHECK(text("fathom.sceneHash").size() == 16);
-  CHECK(text("fathom.programHash").size() == 16);
+  CHECK(text("fathom.sceneHash").size() == 32);
+  CHECK(text("fathom.programHash").size() == 32);
   CHECK(std::get<std::vector<std::string>>(image.attributes.at("fathom.objects")) ==
         std::vector<std::string>{"ball"});
   const auto materials = std::get<std::vector<std::string>>(image.attributes.at("fathom.materials"));

@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 namespace fathom::runtime {
 namespace {
@@ -164,6 +165,48 @@ void add_count(Film& film, std::uint32_t first, int n) {
     sample.surface = sample.number;
     film.add(0, 0, sample);
   }
+}
+
+FilmLayers every_layer() {
+  FilmLayers layers = kAllLayers;
+  layers.halves = true;
+  return layers;
+}
+
+TEST_CASE("film: films of parts add up to the film of the whole, in any order") {
+  constexpr std::uint32_t kSamples = 60;
+  const PixelRect area{2, 1, 7, 5}, left{2, 1, 4, 5}, right{4, 1, 7, 5};
+  Film whole(area, every_layer());
+  // Left and right, even numbers and odd ones, those below 20 apart.
+  std::vector<Film> parts;
+  for (int i = 0; i < 6; ++i) parts.emplace_back(i % 2 == 0 ? left : right, every_layer());
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      for (std::uint32_t s = 0; s < kSamples; ++s) {
+        const PathSample sample = numbered(s + static_cast<std::uint32_t>(x * y));
+        whole.add(x, y, sample);
+        parts[(s < 20 ? 0 : s % 2 == 0 ? 2 : 4) + (x < left.x1 ? 0 : 1)].add(x, y, sample);
+      }
+    }
+  }
+  for (const std::array<std::size_t, 6>& order : {std::array<std::size_t, 6>{0, 1, 2, 3, 4, 5}, {5, 3, 1, 0, 2, 4}}) {
+    Film sum(area, every_layer());
+    for (const std::size_t i : order) CHECK(sum.merge(parts[i]));
+    CHECK(sum.hash() == whole.hash());
+    CHECK(sum.means(3, 2).evaluations == whole.means(3, 2).evaluations);
+    CHECK(sum.samples() == area.pixels() * kSamples);
+  }
+  parts[0].restart(right);
+  CHECK(parts[0].hash() == Film(right, every_layer()).hash());
+}
+
+TEST_CASE("film: merging fills a sum and says so") {
+  Film sum(1, 1), part(1, 1);
+  part.add(0, 0, sample_of(1e9f, 0));
+  CHECK(sum.merge(part));
+  CHECK_FALSE(sum.merge(part));
+  CHECK_FALSE(sum.merge(part));
+  CHECK(sum.means(0, 0).radiance.y == Approx(0x1p31 / 3));
 }
 
 TEST_CASE("film: of two stages radiance is weighted, the rest is of all samples", "[runtime]") {

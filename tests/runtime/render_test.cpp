@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <vector>
 
 #include "runtime/film_channels.h"
@@ -251,6 +252,44 @@ TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[
   }
 }
 
+TEST_CASE("render: ranges of samples add up to the whole, and what was stopped goes on", "[render]") {
+  const auto scene = scene_of(kVaried);
+  RenderOptions options = options_of(40, 24, 24);
+  options.layers = kAllLayers;
+  options.layers.halves = true;
+  for (const compiler::SamplerKind sampler : {compiler::SamplerKind::Blue, compiler::SamplerKind::Independent}) {
+    options.sampler = sampler;
+    const RenderResult whole = render(scene, options);
+    CHECK(whole.covered[0].blocks() == std::vector<SampleBlock>{{{0, 0, 40, 24}, {0, 24}}});
+    Film sum({0, 0, 40, 24}, options.layers);
+    for (const SampleRange range : {SampleRange{17, 24}, {0, 5}, {5, 17}}) {
+      RenderOptions some = options;
+      some.sample_range = range;
+      sum.merge(render(scene, some).film);
+    }
+    CHECK(sum.hash() == whole.film.hash());
+    for (int stop = 1; stop < 40; stop += 6) {
+      RenderOptions stopping = options;
+      std::atomic<bool> cancel = false;
+      stopping.cancel = &cancel;
+      stopping.tile = 5;
+      int units = 0;
+      stopping.on_progress = [&](const Progress&) { cancel = ++units >= stop; };
+      const RenderResult stopped = render(scene, stopping);
+      REQUIRE(stopped.stats.end == RenderEnd::Cancelled);
+      REQUIRE(stopped.film.samples() == stopped.covered[0].size());
+      RenderOptions going_on = options;
+      going_on.resume_from = std::make_shared<PartialRender>(stopped);
+      going_on.threads = 1 + stop % 3;
+      const RenderResult resumed = render(scene, going_on);
+      CHECK(resumed.film.hash() == whole.film.hash());
+      CHECK(resumed.covered == whole.covered);
+      CHECK(resumed.stats.resumed_samples == stopped.film.samples());
+      CHECK(resumed.stats.primary_rays == 40u * 24u * 24u - stopped.film.samples());
+    }
+  }
+}
+
 TEST_CASE("render: a position lies on the surface that its ids name", "[render]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 0, 5]},
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "diffuse", "color": [0, 0, 1]}},
@@ -292,13 +331,13 @@ TEST_CASE("render: progress ends at one, and a cancelled render returns", "[rend
     CHECK(progress.fraction > last);
     last = progress.fraction;
   };
-  CHECK_FALSE(render(scene, options).stats.cancelled);
+  CHECK(render(scene, options).stats.end == RenderEnd::Done);
   CHECK(last == 1);
 
   const std::atomic<bool> cancel = true;
   options.cancel = &cancel;
   const RenderResult nothing = render(scene, options);
-  CHECK(nothing.stats.cancelled);
+  CHECK(nothing.stats.end == RenderEnd::Cancelled);
   CHECK(nothing.stats.primary_rays == 0);
 }
 

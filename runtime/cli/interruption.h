@@ -1,0 +1,30 @@
+// Signals while a render is under way: SIGINT and SIGTERM ask it to stop, and a second one ends the program at once;
+// SIGUSR1 asks for the picture so far. Outside the object's life signals do what they did before.
+// Tested by: tests/runtime/cli_checkpoint_test.cpp
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <csignal>
+
+namespace fathom::cli {
+
+// One at a time.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  // Becomes true with the first SIGINT or SIGTERM.
+  const std::atomic<bool>& stop() const;
+  // Whether a picture was asked for since the last call.
+  bool picture_wanted();
+
+ private:
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGUSR1};
+  std::array<struct sigaction, kSignals.size()> before_{};
+};
+
+}  // namespace fathom::cli

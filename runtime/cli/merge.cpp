@@ -1,0 +1,199 @@
+// fathom merge: the films of parts of a render become the film, or the pictures, of the whole. Sums of whole numbers:
+// neither the order of the parts nor how the work was split leaves a trace.
+// Tested by: tests/runtime/cli_merge_test.cpp
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <ostream>
+
+#include "runtime/cli/arguments.h"
+#include "runtime/cli/output_file.h"
+#include "runtime/cli/picture_attributes.h"
+#include "runtime/cli/picture_files.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/denoise.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "fathom render scene.json -s 64 --sample-range 0:32 -o a.film    # on one machine\n"
+    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # on another\n"
+    "fathom merge a.film b.film -o out.exr -o out.png\n"
+    "fathom merge left.film right.film -o whole.film                  # parts by --crop, to be merged again";
+
+struct MergeRequest {
+  std::vector<std::string> inputs;
+  PictureFiles pictures;
+  std::optional<double> exposure;
+  int tone = -1;  // a compiler::ToneCurve; -1: not given
+  int bits = 0;   // an index into 8, 16
+  bool denoise = false, quiet = false;
+};
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MergeRequest& request) {
+  Arguments arguments("merge", "Adds up the films of parts of a render.", kExamples);
+  arguments.positionals("film", "The films to read, each of a part that no other has", request.inputs);
+  arguments.option("-o,--output", "FILE", "What to write: film, or a picture as of `fathom render`; may be repeated",
+                   append_to(read_output, request.pictures.outputs));
+  arguments.option("--exposure", "STOPS", "Brightness of pictures: 1 is twice as bright (what the films say)",
+                   into(read_exposure, request.exposure));
+  arguments.option("--tone", "CURVE",
+                   "How light becomes a display's: none, filmic, aces, agx or neutral (what the films say)",
+                   one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
+  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  arguments.flag("--denoise", "Take the noise out of the pictures; FILE-noisy beside each is without",
+                 request.denoise);
+  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  if (const auto code = arguments.parse(args, streams)) return code;
+  request.pictures.deep = request.bits != 0;
+  request.pictures.noisy = request.denoise;
+  if (request.pictures.outputs.empty()) return fail(streams, kUsage, "no file to write", {"name it with -o FILE"});
+  if (const auto code = check_bits(request.pictures, streams)) return code;
+  std::vector<std::string> files = files_of(request.pictures);
+  for (const std::string& input : request.inputs) {
+    if (const auto code = check_collisions(input, files, streams)) return code;
+  }
+  return check_paths(request.pictures, streams);
+}
+
+// A file of the command line, without its sums.
+struct Part {
+  std::string path;
+  runtime::FilmFile file;
+};
+
+std::variant<std::vector<Part>, ExitCode> read_parts(const std::vector<std::string>& paths, const Streams& streams) {
+  std::vector<Part> parts;
+  for (const std::string& path : paths) {
+    auto read = runtime::read_film_header(path);
+    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
+      return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
+    }
+    parts.push_back({path, std::get<runtime::FilmFile>(std::move(read))});
+  }
+  // What the sum takes from the first of them does not depend on the order either.
+  const auto place = [](const Part& part) {
+    const runtime::PixelRect area = part.file.shape.area;
+    return std::array<std::int64_t, 3>{area.y0, area.x0, part.file.header.samples.first};
+  };
+  std::stable_sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return place(a) < place(b); });
+  return parts;
+}
+
+std::string text_of(const runtime::SampleBlock& block) {
+  return fmt::format("samples {}:{} of the pixels {},{},{},{}", block.samples.first, block.samples.last,
+                     block.area.x0, block.area.y0, block.area.x1, block.area.y1);
+}
+
+// Whether the parts are of one render and apart.
+std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Streams& streams) {
+  const Part& first = parts.front();
+  for (const Part& part : parts) {
+    const auto problems = runtime::differences(first.file.header.identity, part.file.header.identity);
+    if (!problems.empty()) {
+      return fail(streams, kBadScene, fmt::format("`{}` and `{}` are of different renders", first.path, part.path),
+                  problems);
+    }
+    const bool alike = first.file.shape.layers == part.file.shape.layers &&
+                       first.file.header.width == part.file.header.width &&
+                       first.file.header.height == part.file.header.height;
+    if (!alike || (parts.size() > 1 && part.file.shape.stages > 1)) {
+      return fail(
+          streams, kBadScene,
+          fmt::format("`{}` cannot be merged: {}", part.path,
+                      alike ? "its pixels' samples depend on the whole picture" : "its layers or size differ"));
+    }
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto both = parts[j].file.render.covered.front().overlap(parts[i].file.render.covered.front());
+      if (!both) continue;
+      return fail(
+          streams, kBadScene, fmt::format("`{}` and `{}` both have {}", parts[j].path, parts[i].path, text_of(*both)),
+          {"counted twice they would weigh too much: leave one out, or render another --sample-range or --crop"});
+    }
+  }
+  return std::nullopt;
+}
+
+// The sum, read part by part; the parts' heads are known to fit.
+std::variant<runtime::FilmFile, ExitCode> sum_of(const std::vector<Part>& parts, const Streams& streams) {
+  if (parts.size() == 1) {
+    auto read = runtime::read_film(parts.front().path);
+    if (auto* file = std::get_if<runtime::FilmFile>(&read)) return std::move(*file);
+    return fail(streams, kBadScene, std::get<runtime::UnreadFilm>(read).problem);
+  }
+  runtime::FilmFile sum = parts.front().file;
+  runtime::PixelRect& area = sum.shape.area;
+  runtime::SampleRange& samples = sum.header.samples;
+  for (const Part& part : parts) {
+    const runtime::FilmShape& shape = part.file.shape;
+    area = {std::min(area.x0, shape.area.x0), std::min(area.y0, shape.area.y0), std::max(area.x1, shape.area.x1),
+            std::max(area.y1, shape.area.y1)};
+    samples.first = std::min(samples.first, part.file.header.samples.first);
+    samples.last = std::max(samples.last, part.file.header.samples.last);
+  }
+  sum.render = {runtime::Film(area, sum.shape.layers), std::vector<runtime::Coverage>(1), {}};
+  for (const Part& part : parts) {
+    auto read = runtime::read_film(part.path);
+    const auto* file = std::get_if<runtime::FilmFile>(&read);
+    if (!file) return fail(streams, kBadScene, std::get<runtime::UnreadFilm>(read).problem);
+    if (!(file->shape == part.file.shape) || !(file->render.covered == part.file.render.covered)) {
+      return fail(streams, kIo, fmt::format("`{}` changed while it was read", part.path));
+    }
+    sum.render.film.merge(file->render.film);
+    sum.render.covered.front().add(file->render.covered.front());
+  }
+  sum.render.covered.front().tidy();
+  return sum;
+}
+
+void put_tone(const MergeRequest& request, runtime::Attributes& attributes) {
+  if (request.exposure) attributes["fathom.exposure"] = static_cast<float>(*request.exposure);
+  if (request.tone >= 0) {
+    attributes["fathom.tone"] = std::string(compiler::kToneCurves[static_cast<std::size_t>(request.tone)]);
+  }
+}
+
+std::optional<ExitCode> denoise(runtime::FilmFile& sum, const Streams& streams) {
+  const runtime::FilmLayers kept = sum.shape.layers;
+  if (!kept.first_hit || !kept.halves) {
+    return fail(streams, kBadScene, "--denoise: the films lack what it takes", {"render them with --denoise, too"});
+  }
+  runtime::denoise(sum.render.film, 1);
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_merge(std::span<const std::string> args, const Streams& streams) {
+  MergeRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  auto read = read_parts(request.inputs, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  const auto& parts = std::get<std::vector<Part>>(read);
+  if (const auto code = check_parts(parts, streams)) return *code;
+  auto summed = sum_of(parts, streams);
+  if (const auto* code = std::get_if<ExitCode>(&summed)) return *code;
+  auto& sum = std::get<runtime::FilmFile>(summed);
+  const runtime::SampleBlock all{sum.shape.area, sum.header.samples};
+  const auto missing = sum.render.covered.front().missing(all);
+  if (sum.shape.stages == 1 && !missing.empty() && !request.quiet) {
+    note(streams, "the films are not all of it: there are no " + text_of(missing.front()) +
+                      (missing.size() > 1 ? ", among others" : ""));
+  }
+  put_tone(request, sum.header.attributes);
+  if (request.denoise) {
+    if (const auto code = denoise(sum, streams)) return *code;
+  }
+  std::vector<std::string> lines;
+  const auto problem = write_pictures(request.pictures, sum.header, sum.render, std::nullopt, lines);
+  for (const std::string& line : lines) {
+    if (!request.quiet) streams.err << line << '\n';
+  }
+  return problem ? fail(streams, kIo, *problem) : kDone;
+}
+
+}  // namespace fathom::cli

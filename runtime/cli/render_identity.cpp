@@ -1,0 +1,134 @@
+#include "runtime/cli/render_identity.h"
+
+#include <fmt/format.h>
+
+#include "compiler/artefact/compiled_file.h"
+#include "runtime/cli/picture_attributes.h"
+#include "runtime/cli/version.h"
+#include "vm/bytes.h"
+#include "vm/digest.h"
+
+namespace fathom::cli {
+namespace {
+
+void absorb(const vm::VerifiedProgram& program, vm::ByteWriter& bytes) {
+  bytes.u64(program.program().words.size());
+  for (const std::uint32_t word : program.program().words) bytes.u32(word);
+  for (const double wide : program.program().wide) bytes.f64(wide);
+}
+
+void absorb(const compiler::CompiledField& field, vm::ByteWriter& bytes) {
+  absorb(field.distance, bytes);
+  absorb(field.surface, bytes);
+}
+
+std::string number(double value) { return fmt::format("{}", value); }
+
+template <typename T>
+std::string maybe(const std::optional<T>& value, const char* otherwise) {
+  return value ? fmt::format("{}", *value) : otherwise;
+}
+
+// What the camera sees may come from the command line.
+std::string view_of(const compiler::Camera& camera) {
+  if (camera.projection != compiler::Camera::Projection::Perspective) return "the scene's";
+  if (camera.vertical_fov || camera.focal_length) return "the scene's";
+  return number(camera.fov) + " rad";
+}
+
+std::string environment_of(const runtime::RenderOptions& options) {
+  if (!options.environment) return "none";
+  vm::ByteWriter bytes;
+  bytes.u32(static_cast<std::uint32_t>(options.environment->width));
+  bytes.u32(static_cast<std::uint32_t>(options.environment->height));
+  for (const glm::vec3 pixel : options.environment->pixels) {
+    for (int i = 0; i < 3; ++i) bytes.f64(static_cast<double>(pixel[i]));
+  }
+  return vm::digest(bytes.bytes()).text();
+}
+
+std::string marching_of(const runtime::Marching& marching) {
+  const runtime::MethodInfo& method = runtime::info(marching.method);
+  std::string text(method.name);
+  text += marching.precision == runtime::Precision::Double ? " f64" : " f32";
+  if (method.uses_epsilon) text += fmt::format(" epsilon {} steps {}", marching.epsilon, marching.steps);
+  if (marching.method == runtime::Method::Relaxed) text += fmt::format(" relaxation {}", marching.relaxation);
+  return text;
+}
+
+std::string layers_of(const runtime::Settings& settings) {
+  const runtime::FilmLayers& kept = settings.layers;
+  std::string text = "radiance";
+  const auto add = [&](bool wanted, const char* name) {
+    if (wanted) text += fmt::format(" {}", name);
+  };
+  add(kept.first_hit, "albedo depth normal");
+  add(kept.position, "position");
+  add(kept.ids, "ids");
+  add(kept.variance, "variance");
+  add(kept.halves, "halves");
+  add(kept.cost, "cost");
+  // Regions change what rays cost, and nothing else.
+  if (kept.cost) text += settings.regions ? fmt::format(" (regions of {} MB)", settings.region_memory >> 20) : "";
+  return text;
+}
+
+}  // namespace
+
+// Film and settings have rows of their own, for the command line may say otherwise, or change no sample.
+std::string scene_hash(const compiler::CompiledScene& scene) {
+  compiler::CompiledScene rest = scene;
+  rest.film = {};
+  rest.settings = {};
+  return compiler::scene_digest(rest).text();
+}
+
+std::string program_hash(const compiler::CompiledScene& scene) {
+  vm::ByteWriter bytes;
+  absorb(static_cast<const compiler::CompiledField&>(scene), bytes);
+  for (const compiler::Medium& medium : scene.media)
+    absorb(static_cast<const compiler::CompiledField&>(medium), bytes);
+  for (const vm::VerifiedProgram& formula : scene.formulas) absorb(formula, bytes);
+  for (int i = 0; i < 3; ++i) bytes.f64(scene.origin[i]);
+  return vm::digest(bytes.bytes()).text();
+}
+
+runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                  const runtime::RenderOptions& options) {
+  const auto name = [](const auto& names, auto value) { return std::string(names[static_cast<std::size_t>(value)]); };
+  return {
+      {"fathom", std::string(kVersion)},
+      {"scene", scene_hash(scene)},
+      {"program", program_hash(scene)},
+      {"size", fmt::format("{}x{}", settings.width, settings.height)},
+      {"field of view", view_of(scene.camera)},
+      {"background picture", environment_of(options)},
+      {"spp", std::to_string(settings.spp)},
+      {"bounces", std::to_string(settings.bounces)},
+      {"seed", std::to_string(settings.seed)},
+      {"sampler", name(compiler::kSamplerNames, settings.sampler)},
+      {"filter", name(compiler::kFilterNames, settings.filter)},
+      {"filter width", maybe(settings.filter_width, "the filter's own")},
+      {"adaptive", settings.adaptive ? "yes" : "no"},
+      {"noise", maybe(settings.noise, "any")},
+      {"min spp", settings.noise ? std::to_string(settings.min_spp) : "none"},
+      {"far", maybe(settings.far, "the scene's size")},
+      {"cut after", maybe(settings.cut_after, "never")},
+      {"light sampling", name(runtime::kLightSamplingNames, settings.light_sampling)},
+      {"clamp", maybe(settings.clamp, "none")},
+      {"marching", marching_of(settings.marching)},
+      {"layers", layers_of(settings)},
+  };
+}
+
+runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                const runtime::RenderOptions& options) {
+  return {render_identity(scene, settings, options),
+          picture_attributes(scene, settings),
+          settings.width,
+          settings.height,
+          settings.samples,
+          scene.origin};
+}
+
+}  // namespace fathom::cli

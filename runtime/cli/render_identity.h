@@ -1,0 +1,25 @@
+// What makes two renders the same, sample by sample: the scene, its programs and every setting that changes bits, by
+// name. Film files carry it, and a mismatch names what differs.
+// Tested by: tests/runtime/cli_checkpoint_test.cpp
+#pragma once
+
+#include <string>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/film_file.h"
+#include "runtime/options.h"
+
+namespace fathom::cli {
+
+// Digests in hexadecimal: of all that the scene was compiled to, but for its film and settings; of its programs.
+std::string scene_hash(const compiler::CompiledScene& scene);
+std::string program_hash(const compiler::CompiledScene& scene);
+
+runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                  const runtime::RenderOptions& options);
+
+// The head of the render's film files.
+runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                const runtime::RenderOptions& options);
+
+}  // namespace fathom::cli

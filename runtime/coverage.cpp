@@ -1,0 +1,168 @@
+#include "runtime/coverage.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace fathom::runtime {
+namespace {
+
+// A part of a row of pixels whose samples are alike: [x0, x1), and their ranges in order, none touching the next.
+struct Column {
+  int x0, x1;
+  std::vector<SampleRange> ranges;
+
+  bool operator==(const Column&) const = default;
+};
+
+std::vector<SampleRange> joined(std::vector<SampleRange> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](SampleRange a, SampleRange b) { return a.first < b.first; });
+  std::vector<SampleRange> result;
+  for (const SampleRange range : ranges) {
+    if (!result.empty() && result.back().last >= range.first) {
+      result.back().last = std::max(result.back().last, range.last);
+    } else {
+      result.push_back(range);
+    }
+  }
+  return result;
+}
+
+// Calls use(from, to, blocks) for the stretches of one axis between the blocks' sides, each with the blocks that it
+// lies in; stretches in none are left out. Begin and End give a block's sides.
+template <class Begin, class End, class Use>
+void sweep(std::vector<SampleBlock> blocks, const Begin& begin, const End& end, const Use& use) {
+  std::vector<int> sides;
+  for (const SampleBlock& block : blocks) {
+    sides.push_back(begin(block));
+    sides.push_back(end(block));
+  }
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  std::sort(blocks.begin(), blocks.end(),
+            [&](const SampleBlock& a, const SampleBlock& b) { return begin(a) < begin(b); });
+  std::vector<SampleBlock> within;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    std::erase_if(within, [&](const SampleBlock& block) { return end(block) <= sides[i]; });
+    for (; next < blocks.size() && begin(blocks[next]) <= sides[i]; ++next) within.push_back(blocks[next]);
+    if (!within.empty()) use(sides[i], sides[i + 1], within);
+  }
+}
+
+std::vector<Column> columns_of(const std::vector<SampleBlock>& row) {
+  std::vector<Column> columns;
+  sweep(
+      row, [](const SampleBlock& block) { return block.area.x0; },
+      [](const SampleBlock& block) { return block.area.x1; },
+      [&](int x0, int x1, const std::vector<SampleBlock>& blocks) {
+        std::vector<SampleRange> ranges;
+        for (const SampleBlock& block : blocks) ranges.push_back(block.samples);
+        ranges = joined(std::move(ranges));
+        if (!columns.empty() && columns.back().x1 == x0 && columns.back().ranges == ranges) {
+          columns.back().x1 = x1;
+        } else {
+          columns.push_back({x0, x1, std::move(ranges)});
+        }
+      });
+  return columns;
+}
+
+// `from` without what it has in common with `hole`, which lies in it.
+void cut(const SampleBlock& from, const SampleBlock& hole, std::vector<SampleBlock>& pieces) {
+  const auto keep = [&](PixelRect area, SampleRange samples) {
+    if (area.width() > 0 && area.height() > 0 && samples.first < samples.last) pieces.push_back({area, samples});
+  };
+  const PixelRect& a = from.area;
+  const PixelRect& h = hole.area;
+  keep({a.x0, a.y0, a.x1, h.y0}, from.samples);
+  keep({a.x0, h.y0, h.x0, h.y1}, from.samples);
+  keep(h, {from.samples.first, hole.samples.first});
+  keep(h, {hole.samples.last, from.samples.last});
+  keep({h.x1, h.y0, a.x1, h.y1}, from.samples);
+  keep({a.x0, h.y1, a.x1, a.y1}, from.samples);
+}
+
+}  // namespace
+
+std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b) {
+  const SampleBlock both{{std::max(a.area.x0, b.area.x0), std::max(a.area.y0, b.area.y0),
+                          std::min(a.area.x1, b.area.x1), std::min(a.area.y1, b.area.y1)},
+                         {std::max(a.samples.first, b.samples.first), std::min(a.samples.last, b.samples.last)}};
+  const bool some =
+      both.area.x0 < both.area.x1 && both.area.y0 < both.area.y1 && both.samples.first < both.samples.last;
+  return some ? std::optional(both) : std::nullopt;
+}
+
+void Coverage::add(const Coverage& other) {
+  blocks_.insert(blocks_.end(), other.blocks_.begin(), other.blocks_.end());
+}
+
+void Coverage::tidy() {
+  struct Row {
+    int y0, y1;
+    std::vector<Column> columns;
+  };
+  std::vector<Row> rows;
+  sweep(
+      std::exchange(blocks_, {}), [](const SampleBlock& block) { return block.area.y0; },
+      [](const SampleBlock& block) { return block.area.y1; },
+      [&](int y0, int y1, const std::vector<SampleBlock>& blocks) {
+        std::vector<Column> columns = columns_of(blocks);
+        if (!rows.empty() && rows.back().y1 == y0 && rows.back().columns == columns) {
+          rows.back().y1 = y1;
+        } else {
+          rows.push_back({y0, y1, std::move(columns)});
+        }
+      });
+  for (const Row& row : rows) {
+    for (const Column& column : row.columns) {
+      for (const SampleRange range : column.ranges)
+        blocks_.push_back({{column.x0, row.y0, column.x1, row.y1}, range});
+    }
+  }
+}
+
+std::uint64_t Coverage::size() const {
+  return std::accumulate(blocks_.begin(), blocks_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const SampleBlock& block) { return sum + block.size(); });
+}
+
+std::vector<SampleRange> Coverage::ranges() const {
+  std::vector<SampleRange> all;
+  for (const SampleBlock& block : blocks_) all.push_back(block.samples);
+  return joined(std::move(all));
+}
+
+// Tidy blocks lie in rows that are apart, so their y1 are in order, too.
+std::vector<SampleBlock> Coverage::missing(const SampleBlock& block) const {
+  std::vector<SampleBlock> rest = {block}, pieces;
+  auto at = std::partition_point(blocks_.begin(), blocks_.end(),
+                                 [&](const SampleBlock& other) { return other.area.y1 <= block.area.y0; });
+  for (; at != blocks_.end() && at->area.y0 < block.area.y1 && !rest.empty(); ++at) {
+    if (!common(*at, block)) continue;
+    pieces.clear();
+    for (const SampleBlock& piece : rest) {
+      if (const auto hole = common(piece, *at)) {
+        cut(piece, *hole, pieces);
+      } else {
+        pieces.push_back(piece);
+      }
+    }
+    std::swap(rest, pieces);
+  }
+  return rest;
+}
+
+std::optional<SampleBlock> Coverage::overlap(const Coverage& other) const {
+  for (const SampleBlock& block : other.blocks_) {
+    auto at = std::partition_point(blocks_.begin(), blocks_.end(),
+                                   [&](const SampleBlock& mine) { return mine.area.y1 <= block.area.y0; });
+    for (; at != blocks_.end() && at->area.y0 < block.area.y1; ++at) {
+      if (const auto both = common(*at, block)) return both;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace fathom::runtime

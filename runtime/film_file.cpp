@@ -1,0 +1,199 @@
+#include "runtime/film_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "runtime/film_header_bytes.h"
+#include "runtime/tiles.h"
+#include "vm/bytes.h"
+#include "vm/digest.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr std::string_view kMagic = "FATHOMFM";
+constexpr std::uint32_t kFormat = 1;
+constexpr int kTileSide = 64;                 // pixels; each tile has a checksum
+constexpr std::size_t kPreamble = 8 + 4 + 8;  // magic, format, size of the head
+constexpr std::size_t kDigest = 16;
+constexpr std::uint64_t kMostHead = 64u << 20;  // bytes
+
+void write_digest(std::span<const std::uint8_t> bytes, AtomicFile& file) {
+  const vm::Digest digest = vm::digest(bytes);
+  vm::ByteWriter out;
+  out.u64(digest.low);
+  out.u64(digest.high);
+  file.write(out.bytes());
+}
+
+// A file that is read from front to back, with a checksum after each part.
+class Input {
+ public:
+  explicit Input(const std::string& path) : path_(path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+      unread_ = {fmt::format("cannot read `{}`: {}", path, error ? error.message() : "it is not a regular file"),
+                 true};
+      return;
+    }
+    left_ = std::filesystem::file_size(path, error);
+    file_.open(path, std::ios::binary);
+    if (error || !file_) unread_ = {fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+  }
+
+  const std::optional<UnreadFilm>& unread() const { return unread_; }
+  std::uint64_t left() const { return left_; }
+
+  // The next bytes; none when there are fewer or they cannot be read.
+  std::span<const std::uint8_t> take(std::uint64_t count) {
+    if (unread_) return {};
+    if (count > left_) return refuse("it ends too early");
+    bytes_.resize(count);
+    if (!file_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(count))) {
+      unread_ = {fmt::format("cannot read `{}`: {}", path_, std::strerror(errno)), true};
+      return {};
+    }
+    left_ -= count;
+    return bytes_;
+  }
+  // The same with the checksum that follows them.
+  std::span<const std::uint8_t> take_checked(std::uint64_t count) {
+    const std::span<const std::uint8_t> all = take(count + kDigest);
+    if (all.empty()) return {};
+    vm::ByteReader digest(all.subspan(count));
+    const vm::Digest found = vm::digest(all.first(count));
+    const std::uint64_t low = digest.u64(), high = digest.u64();
+    if (found.low != low || found.high != high) return refuse("it is damaged: a checksum does not fit");
+    return all.first(count);
+  }
+  std::span<const std::uint8_t> refuse(std::string_view why) {
+    if (!unread_) unread_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false};
+    return {};
+  }
+
+ private:
+  const std::string& path_;
+  std::ifstream file_;
+  std::uint64_t left_ = 0;
+  std::optional<UnreadFilm> unread_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+std::optional<FilmFile> read_head_of(Input& in) {
+  vm::ByteReader preamble(in.take(kPreamble));
+  const std::span<const std::uint8_t> magic = preamble.raw(kMagic.size());
+  if (in.unread()) return std::nullopt;
+  if (!std::equal(magic.begin(), magic.end(), kMagic.begin(), kMagic.end())) {
+    in.refuse("it does not begin as one");
+    return std::nullopt;
+  }
+  if (const std::uint32_t format = preamble.u32(); format != kFormat) {
+    in.refuse(fmt::format("it is of format {}, and this program reads {}", format, kFormat));
+    return std::nullopt;
+  }
+  const std::uint64_t size = preamble.u64();
+  if (size > kMostHead) {
+    in.refuse("its head is too long");
+    return std::nullopt;
+  }
+  vm::ByteReader bytes(in.take_checked(size));
+  if (in.unread()) return std::nullopt;
+  auto head = read_head(bytes);
+  if (const std::string* problem = std::get_if<std::string>(&head)) {
+    in.refuse(*problem);
+    return std::nullopt;
+  }
+  return std::get<FilmFile>(std::move(head));
+}
+
+// Before anything is set aside for them.
+bool has_all_sums(const FilmShape& shape, Input& in) {
+  const Tiles tiles(shape.area, kTileSide);
+  const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
+  const auto digests = static_cast<std::uint64_t>(tiles.count()) * kDigest;
+  if (in.left() == shape.area.pixels() * pixel + digests) return true;
+  in.refuse("it is not as long as its head says");
+  return false;
+}
+
+bool read_sums(const FilmShape& shape, Film& film, Input& in) {
+  film = Film(shape.area, shape.layers);
+  if (shape.stages == 2) film.begin_second_stage(shape.first_share);
+  if (shape.stages == kNoiseStages) film.begin_halves();
+  const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
+  const Tiles tiles(shape.area, kTileSide);
+  for (std::int64_t i = 0; i < tiles.count(); ++i) {
+    const PixelRect tile = tiles.at(i);
+    vm::ByteReader bytes(in.take_checked(tile.pixels() * pixel));
+    if (in.unread() || !film.read_sums(tile, bytes)) return false;
+  }
+  return true;
+}
+
+std::variant<FilmFile, UnreadFilm> read(const std::string& path, bool with_sums) {
+  Input in(path);
+  if (in.unread()) return *in.unread();
+  std::optional<FilmFile> head = read_head_of(in);
+  if (!head || !has_all_sums(head->shape, in)) return *in.unread();
+  if (with_sums && !read_sums(head->shape, head->render.film, in)) return *in.unread();
+  return *std::move(head);
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const Identity& there, const Identity& here) {
+  const auto value_in = [](const Identity& identity, const std::string& name) -> const std::string* {
+    const auto found =
+        std::find_if(identity.begin(), identity.end(), [&](const auto& row) { return row.first == name; });
+    return found == identity.end() ? nullptr : &found->second;
+  };
+  std::vector<std::string> result;
+  for (const auto& [name, value] : there) {
+    const std::string* other = value_in(here, name);
+    if (!other || *other != value) {
+      result.push_back(fmt::format("{} is {} there and {} here", name, value, other ? *other : "unknown"));
+    }
+  }
+  for (const auto& [name, value] : here) {
+    if (!value_in(there, name)) result.push_back(fmt::format("{} is unknown there and {} here", name, value));
+  }
+  return result;
+}
+
+void write_film(const FilmHeader& header, const PartialRender& render, AtomicFile& file) {
+  vm::ByteWriter head, preamble;
+  write_head(header, render, head);
+  preamble.raw({reinterpret_cast<const std::uint8_t*>(kMagic.data()), kMagic.size()});
+  preamble.u32(kFormat);
+  preamble.u64(head.size());
+  file.write(preamble.bytes());
+  file.write(head.bytes());
+  write_digest(head.bytes(), file);
+  const Tiles tiles(render.film.area(), kTileSide);
+  for (std::int64_t i = 0; i < tiles.count() && !file.problem(); ++i) {
+    vm::ByteWriter sums;
+    render.film.write_sums(tiles.at(i), sums);
+    file.write(sums.bytes());
+    write_digest(sums.bytes(), file);
+  }
+}
+
+std::optional<std::string> write_film(const FilmHeader& header, const PartialRender& render,
+                                      const std::string& path) {
+  AtomicFile file(path);
+  write_film(header, render, file);
+  return file.commit();
+}
+
+std::variant<FilmFile, UnreadFilm> read_film(const std::string& path) { return read(path, true); }
+
+std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path) { return read(path, false); }
+
+}  // namespace fathom::runtime

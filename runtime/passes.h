@@ -1,0 +1,36 @@
+// The passes of a render: all samples at once, or in stages that depend on what those before have shown.
+// Tested by: tests/runtime/render_test.cpp, adaptive_test.cpp, noise_test.cpp
+#pragma once
+
+#include "runtime/options.h"
+#include "runtime/partial_render.h"
+#include "runtime/shared_picture.h"
+#include "runtime/unit_worker.h"
+
+namespace fathom::runtime {
+
+class Passes {
+ public:
+  // Adds to `render` what it lacks.
+  Passes(const World& world, const RenderOptions& options, PartialRender& render,
+         SharedPicture::Clock::time_point start);
+
+  Stats run();
+  RenderEnd end() const;
+  double seconds() const { return picture_.seconds(); }
+
+ private:
+  Stats run_adaptive();
+  Stats run_second_stage(int first);
+  Stats run_noise();
+  Stats run_halves(std::uint32_t end);
+  Stats run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
+                 const Coverage& besides = {});
+
+  const World& world_;
+  const RenderOptions& options_;
+  PartialRender& render_;
+  SharedPicture picture_;
+};
+
+}  // namespace fathom::runtime

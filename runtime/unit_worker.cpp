@@ -1,0 +1,81 @@
+#include "runtime/unit_worker.h"
+
+#include <algorithm>
+
+namespace fathom::runtime {
+
+std::size_t UnitWorker::next(std::span<PathKey> keys) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    while (!taking_ || sample_ >= end_) {
+      if (!next_pixel()) return i;
+    }
+    keys[i] = {x_, y_, sample_++, unit_};
+    ++open_[unit_].begun;
+  }
+  return keys.size();
+}
+
+bool UnitWorker::next_pixel() {
+  if (taking_) {
+    const PixelRect area = open_[unit_].block.area;
+    if (++x_ == area.x1) {
+      x_ = area.x0;
+      ++y_;
+    }
+    if (y_ == area.y1) {
+      taking_ = false;
+      open_[unit_].all_begun = true;
+      hand_in_if_done(unit_);
+    }
+  }
+  if (!taking_ && !next_unit()) return false;
+  const SampleRange samples = open_[unit_].block.samples;
+  sample_ = samples.first;
+  end_ = std::min(samples.last, work_.limits.at(x_, y_));
+  return true;
+}
+
+bool UnitWorker::next_unit() {
+  const auto block = work_.units.take();
+  if (!block || work_.picture.stopped()) return false;
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::uint32_t>(open_.size()));
+    open_.push_back({{}, Film({}, work_.world.settings.layers)});
+  }
+  unit_ = free_.back();
+  free_.pop_back();
+  OpenUnit& unit = open_[unit_];
+  unit.block = *block;
+  unit.film.restart(block->area);
+  unit.begun = unit.ended = 0;
+  unit.all_begun = false;
+  taking_ = true;
+  x_ = block->area.x0;
+  y_ = block->area.y0;
+  return true;
+}
+
+bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
+  OpenUnit& unit = open_[key.unit];
+  const bool room = unit.film.add(key.x, key.y, sample);
+  ++unit.ended;
+  hand_in_if_done(key.unit);
+  return room;
+}
+
+void UnitWorker::hand_in_if_done(std::uint32_t number) {
+  const OpenUnit& unit = open_[number];
+  if (!unit.all_begun || unit.ended < unit.begun) return;
+  const std::uint64_t rays = integrator_.stats().march.rays;
+  if (!work_.picture.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
+  reported_rays_ = rays;
+  free_.push_back(number);
+}
+
+Stats UnitWorker::stats() const {
+  Stats stats = integrator_.stats();
+  stats.saturated += full_sums_;
+  return stats;
+}
+
+}  // namespace fathom::runtime

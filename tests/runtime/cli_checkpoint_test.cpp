@@ -1,0 +1,198 @@
+// Interrupted renders as their users meet them: signals, kill -9, full disks, checkpoints of other renders.
+#include <catch2/catch.hpp>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using namespace fathom::tests;
+using Catch::Contains;
+
+// Long enough to be interrupted, by default.
+const char* const kSlow = R"({
+  "version": 1,
+  "params": {"r": 0.5},
+  "camera": {"position": [0, 1, 4], "target": [0, 0.3, 0]},
+  "film": {"width": 48, "height": 32},
+  "render": {"spp": 400},
+  "materials": {"lamp": {"type": "emissive", "emission": [8, 8, 8]}, "glass": {"type": "transparent"}},
+  "objects": [{"type": "plane", "normal": [0, 1, 0]},
+              {"type": "sphere", "radius": "r", "translate": [0, 0.5, 0], "material": "glass"},
+              {"type": "sphere", "radius": 0.4, "translate": [1, 2, 1], "material": "lamp"}]
+})";
+
+// Runs, sends `signal` once there is a checkpoint, and prints the status.
+std::string interrupted(const std::string& arguments, const std::string& signal, const std::string& checkpoint) {
+  return "\"$fathom\" render " + arguments + " -q --checkpoint-interval 0.01s &\npid=$!\n" + "while ! [ -e " +
+         checkpoint + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\nkill -" + signal +
+         " $pid\nwait $pid; echo $?\n";
+}
+
+class SlowFolder : public Folder {
+ public:
+  SlowFolder() { write("slow.json", kSlow); }
+};
+
+TEST_CASE("cli checkpoint: SIGINT and SIGTERM end with 75, the picture so far and a checkpoint to go on from") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
+  for (const char* signal : {"INT", "TERM"}) {
+    const Result stopped = folder.run_script(interrupted("slow.json -o a.exr", signal, "a.exr.checkpoint"));
+    INFO(signal << stopped.err);
+    REQUIRE(stopped.out == "75\n");
+    CHECK_THAT(stopped.err, Contains("--resume goes on"));
+    CHECK(folder.has("a.exr"));
+    REQUIRE(folder.has("a.exr.checkpoint"));
+    CHECK(folder.read("a.exr") != folder.read("whole.exr"));
+    REQUIRE(folder.run("render slow.json -o a.exr -q --resume --threads 1 -t 9").code == 0);
+    CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+    CHECK_FALSE(folder.has("a.exr.checkpoint"));
+  }
+}
+
+TEST_CASE("cli checkpoint: SIGUSR1 writes the picture so far, and the render goes on") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -o whole.png -q").code == 0);
+  const Result result = folder.run_script(
+      "\"$fathom\" render slow.json -o a.png -q --checkpoint-interval 0.01s &\npid=$!\n"
+      "while ! [ -e a.png.checkpoint ]; do sleep 0.02; done\nkill -USR1 $pid\n"
+      "while ! [ -e a.png ]; do sleep 0.02; done\nwait $pid; echo $?");
+  CHECK(result.out == "0\n");
+  CHECK_THAT(result.err, Contains("so far"));
+  CHECK(folder.read("a.png") == folder.read("whole.png"));
+}
+
+TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was not disturbed") {
+  const SlowFolder folder;
+  for (const std::string way : {"", " --adaptive --denoise"}) {
+    const std::string render = "slow.json --checkpoint now.film -o a.exr" + way;
+    std::filesystem::remove(folder.path() / "now.film");
+    REQUIRE(folder.run("render slow.json -o whole.exr -q" + way).code == 0);
+    const Result killed = folder.run_script(interrupted(render, "KILL", "now.film"));
+    REQUIRE(killed.out == "137\n");
+    // And once more, before its first checkpoint or after.
+    folder.run_script("timeout -s KILL 0.2 \"$fathom\" render " + render +
+                      " --resume -q --checkpoint-interval 0.01s");
+    const Result resumed = folder.run("render " + render + " --resume");
+    CHECK(resumed.code == 0);
+    CHECK_THAT(resumed.err, Contains("samples resumed"));
+    CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  }
+}
+
+TEST_CASE("cli checkpoint: a finished one is kept where it was asked for, and resumed is success") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
+  REQUIRE(folder.has("done.film"));
+  const std::string film = folder.read("done.film"), picture = folder.read("a.exr");
+  std::filesystem::remove(folder.path() / "a.exr");
+  const Result again =
+      folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film --resume --stats-json stats.json");
+  CHECK(again.code == 0);
+  CHECK(folder.read("a.exr") == picture);
+  CHECK(folder.read("done.film") == film);
+  CHECK_THAT(folder.read("stats.json"), Contains("\"primary_rays\": 0,"));
+  CHECK_THAT(folder.read("stats.json"), Contains("\"resumed_samples\": 6144,"));
+}
+
+TEST_CASE("cli checkpoint: that of another render is refused, and what differs is named") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
+  std::string brighter = kSlow;
+  brighter.replace(brighter.find("[8, 8, 8]"), 9, "[8, 8, 9]");
+  folder.write("other.json", brighter);
+  struct Other {
+    const char *arguments, *message;
+  };
+  for (const Other& other : {Other{"slow.json -s 8 -o a.exr", "spp is 4 there and 8 here"},
+                             {"slow.json -s 4 -o a.exr --seed 2", "seed is 0 there"},
+                             {"slow.json -s 4 -o a.png", "layers is "},
+                             {"slow.json -s 4 -o a.exr -D r=0.6", "scene is "},
+                             {"other.json -s 4 -o a.exr", "scene is "},
+                             {"slow.json -s 4 -o a.exr --crop 0,0,9,9", "crop is 0,0,48,32 there and 0,0,9,9 here"},
+                             {"slow.json -s 4 -o a.exr --sample-range 1:3", "sample range is 0:4 there and 1:3"},
+                             {"slow.json -s 4 -o a.exr --fov 30deg", "field of view is"},
+                             {"slow.json -s 4 -o a.exr --filter tent", "filter is box there and tent here"},
+                             {"slow.json -s 4 -o a.exr --clamp 2", "clamp is none there and 2 here"},
+                             {"slow.json -s 4 -o a.exr -b 3", "bounces is"},
+                             {"slow.json -s 4 -o a.exr --size 20x10", "size is 48x32 there and 20x10 here"}}) {
+    const Result result = folder.run(std::string("render ") + other.arguments + " --checkpoint done.film --resume");
+    INFO(other.arguments << "\n" << result.err);
+    CHECK(result.code == 65);
+    CHECK_THAT(result.err, Contains("another render") && Contains(other.message));
+  }
+  // What changes no sample makes no difference.
+  CHECK(folder.run("render slow.json -s 4 -o b.exr --checkpoint done.film --resume -t 5 --threads 3 --exposure 1")
+            .code == 0);
+  folder.write("spaced.json", std::string(kSlow) + "\n\n");
+  CHECK(folder.run("render spaced.json -s 4 -o a.exr --checkpoint done.film --resume").code == 0);
+}
+
+TEST_CASE("cli checkpoint: without --resume an earlier one is not lost in silence, and what is no film stays") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
+  const Result again = folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film");
+  CHECK(again.code == 0);
+  CHECK_THAT(again.err, Contains("add --resume"));
+  folder.write("notes.txt", "mine");
+  const Result other = folder.run("render slow.json -s 4 -o a.exr --checkpoint notes.txt");
+  CHECK(other.code == 65);
+  CHECK(folder.read("notes.txt") == "mine");
+  CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint slow.json").code == 2);
+  const Result none = folder.run("render slow.json -s 4 -o a.exr --resume");
+  CHECK(none.code == 0);
+  CHECK_THAT(none.err, Contains("there is no checkpoint"));
+}
+
+TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stays") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
+  REQUIRE(folder.run_script(interrupted("slow.json -o a.exr", "INT", "a.exr.checkpoint")).out == "75\n");
+  const std::string before = folder.read("a.exr.checkpoint");
+  std::filesystem::remove(folder.path() / "a.exr");
+  // No file may grow beyond 20 blocks of 512 bytes, as on a full disk.
+  const Result full = folder.run_script(
+      "ulimit -f 20\n\"$fathom\" render slow.json -o a.exr --resume --checkpoint-interval 0.01s; echo $?");
+  INFO(full.err);
+  CHECK(full.out == "74\n");
+  CHECK_THAT(full.err, Contains("warning: no checkpoint") && Contains("cannot write"));
+  CHECK(folder.read("a.exr.checkpoint") == before);
+  CHECK_FALSE(folder.has("a.exr"));
+  CHECK(folder.files() == 5);  // the scenes, whole.exr and the checkpoint
+  REQUIRE(folder.run("render slow.json -o a.exr --resume -q").code == 0);
+  CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  const Result nowhere = folder.run("render slow.json -o a.exr --checkpoint missing/a.film");
+  CHECK(nowhere.code == 74);
+  CHECK_THAT(nowhere.err, Contains("missing"));
+}
+
+TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 400 -o whole.exr -q").code == 0);
+  const Result stopped =
+      folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --time-limit 0.2s --stats-json s.json");
+  CHECK(stopped.code == 0);
+  CHECK_THAT(stopped.err, Contains("the time limit ended the render: a pixel has "));
+  CHECK_THAT(folder.read("s.json"), Contains("\"ended_by\": \"time limit\""));
+  CHECK(folder.read("a.exr") != folder.read("whole.exr"));
+  REQUIRE(folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --resume -q").code == 0);
+  CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  CHECK(folder.run("render slow.json -s 2 -o a.exr --time-limit 1h -q").code == 0);
+  for (const char* wrong : {"0", "-3s", "10x", "h", "nan"}) {
+    CHECK(folder.run(std::string("render slow.json -o a.exr --time-limit ") + wrong).code == 2);
+  }
+}
+
+TEST_CASE("cli checkpoint: --watch has none") {
+  CHECK(SlowFolder().run("render slow.json -o a.exr --watch --resume").code == 2);
+}
+
+TEST_CASE("cli checkpoint: scripts/kill-test in short", "[heavy]") {
+  const Folder folder;
+  const Result result = folder.run_script("'" FATHOM_SOURCE_DIR "/scripts/kill-test' 8 \"$fathom\"");
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK_THAT(result.out, Contains("8 kills: 8 equal hashes"));
+}
+
+}  // namespace

@@ -1,0 +1,59 @@
+#include "runtime/units.h"
+
+#include <catch2/catch.hpp>
+
+namespace fathom::runtime {
+namespace {
+
+TEST_CASE("units: rounds follow one another, short at first, and never long") {
+  for (const SampleRange samples : {SampleRange{0, 1}, {0, 16}, {0, 17}, {0, 5000}, {3, 9}, {100, 1000}, {31, 33}}) {
+    std::uint32_t at = samples.first;
+    for (const SampleRange round : rounds_of(samples)) {
+      CHECK(round.first == at);
+      CHECK(round.last > round.first);
+      CHECK(round.size() <= kMostInRound);
+      at = round.last;
+    }
+    CHECK(at == samples.last);
+  }
+  CHECK(rounds_of({0, 16}).size() == 1);
+  CHECK(rounds_of({0, 64}) == std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}});
+  // Those of a part are parts of those of the whole.
+  CHECK(rounds_of({20, 40}) == std::vector<SampleRange>{{20, 32}, {32, 40}});
+}
+
+TEST_CASE("units: a queue gives what is left, each sample once") {
+  const PixelRect area{3, 5, 50, 31};
+  Coverage covered;
+  covered.add({{3, 5, 20, 31}, {0, 20}});
+  covered.add({{20, 5, 50, 6}, {7, 40}});
+  covered.tidy();
+  for (const int side : {1, 7, 16, 64}) {
+    UnitQueue queue(area, side, rounds_of({0, 40}), covered);
+    Coverage sum = covered;
+    std::uint64_t samples = covered.size();
+    while (const auto unit = queue.take()) {
+      CHECK(unit->area.width() <= side);
+      CHECK(unit->area.height() <= side);
+      samples += unit->size();
+      sum.add(*unit);
+    }
+    sum.tidy();
+    CHECK(samples == SampleBlock{area, {0, 40}}.size());
+    CHECK(sum.blocks() == std::vector<SampleBlock>{{area, {0, 40}}});
+  }
+}
+
+TEST_CASE("units: the whole picture's first samples come before any pixel's last") {
+  const Coverage nothing;
+  UnitQueue queue({0, 0, 64, 64}, 16, rounds_of({0, 64}), nothing);
+  std::uint32_t last = 0;
+  while (const auto unit = queue.take()) {
+    CHECK(unit->samples.first >= last);
+    last = unit->samples.first;
+  }
+  CHECK(last == 32);
+}
+
+}  // namespace
+}  // namespace fathom::runtime
