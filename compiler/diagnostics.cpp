@@ -161,12 +161,13 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
 
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
-  ++errors_;
+  if (++errors_ > kMostKept) return;
   all_.push_back({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
+  if (++warnings_ > kMostKept) return;
   all_.push_back({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 

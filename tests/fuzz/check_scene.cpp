@@ -37,6 +37,9 @@ void check_scene(const std::string& text) {
   Diagnostics diagnostics;
   compiler::CompileOptions options;
   options.lint = true;
+  // Small, so that a run is short.
+  options.limits.instructions = 20'000;
+  options.limits.nodes = 20'000;
   options.on_syntax = [&](const compiler::ReadScene& read) {
     if (!diagnostics.has_errors()) check_round_trip(read);
   };

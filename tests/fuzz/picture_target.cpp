@@ -16,6 +16,7 @@
 namespace fathom::fuzz {
 namespace {
 
+constexpr runtime::ReadLimits kLimits{256e6};
 constexpr std::size_t kEndings = runtime::kImageFormats.size();
 
 // A file of this process alone.
@@ -28,7 +29,7 @@ std::string file_with(Bytes content, std::string_view ending) {
 }
 
 void check_environment(const std::string& path) {
-  const auto read = runtime::read_environment(path);
+  const auto read = runtime::read_environment(path, kLimits);
   const auto* light = std::get_if<runtime::EnvironmentImage>(&read);
   if (light == nullptr) return;
   promise(light->pixels.size() == static_cast<std::size_t>(light->width) * static_cast<std::size_t>(light->height),
@@ -44,7 +45,7 @@ void run_picture(Bytes input) {
   if (input.empty()) return;
   const std::string_view ending = runtime::kImageFormats[input[0] % kEndings].ending;
   const std::string path = file_with(input.subspan(1), ending);
-  const auto read = runtime::read_image(path);
+  const auto read = runtime::read_image(path, kLimits);
   if (const auto* image = std::get_if<runtime::FloatImage>(&read)) {
     promise(image->values.size() == image->channels.size(), "every channel has values");
     for (const auto& channel : image->values) {
