@@ -135,18 +135,17 @@ class ListReader {
       : text_(source.text()), diagnostics_(diagnostics), limits_(limits) {}
 
   std::optional<syntax::File> read() {
-    const auto most = static_cast<std::size_t>(limits_.tokens);
+    if (!check_words()) return std::nullopt;
     std::string_view rest = without_mark(text_);
     while (!rest.empty()) {
       const std::size_t first = words_.size();
-      split_words(take_line(rest), most + 1 - words_.size(), words_);
+      split_words(take_line(rest), text_.size(), words_);
       if (is_comment(Words(words_).subspan(first))) {
         words_.resize(first);
         continue;
       }
       taken_.insert(words_[first]);
       ends_.push_back(words_.size());
-      if (words_.size() > most) return too_many_words();
     }
     if (ends_.empty()) {
       diagnostics_.error("E0606", {}, "the list has no operation in it", "",
@@ -170,10 +169,18 @@ class ListReader {
   }
   static Span join(Span from, Span to) { return {from.begin, to.end}; }
 
-  std::nullopt_t too_many_words() {
-    diagnostics_.error("E0008", span(words_.back()), fmt::format("the list has more than {} words", limits_.tokens),
-                       "one too many", {raise(&Limits::tokens, 2 * limits_.tokens)});
-    return std::nullopt;
+  // Before any is kept. Those of comments count.
+  bool check_words() {
+    double words = 0;
+    for (std::size_t at = 0; at < text_.size(); ++at) {
+      const bool begins = at == 0 || is_blank(text_[at - 1]) || text_[at - 1] == '\n';
+      if (!begins || is_blank(text_[at]) || text_[at] == '\n' || ++words <= limits_.tokens) continue;
+      diagnostics_.error("E0008", span(std::string_view(text_).substr(at, 1)),
+                         fmt::format("the list has more than {} words", limits_.tokens), "one too many",
+                         {raise(&Limits::tokens, 2 * limits_.tokens)});
+      return false;
+    }
+    return true;
   }
 
   void read_line(Words words, bool last) {
