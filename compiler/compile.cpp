@@ -142,7 +142,8 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
   std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
   if (!distance) return std::nullopt;
   std::optional<vm::VerifiedProgram> surface = distance;
-  if (painted) surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
+  if (painted)
+    surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
   const std::vector<Knowledge> all_known = analyse(optimised.graph);
   const Knowledge& known = all_known[optimised.root];
@@ -250,7 +251,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     media.push_back({std::move(*compiled), medium.material});
   }
 
-  std::optional<std::vector<vm::VerifiedProgram>> formulas = assemble_all(elaborated->formulas, source, options.limits, diagnostics);
+  std::optional<std::vector<vm::VerifiedProgram>> formulas =
+      assemble_all(elaborated->formulas, source, options.limits, diagnostics);
   if (!formulas) return std::nullopt;
 
   const std::vector<Knowledge> known = analyse(field.graph);

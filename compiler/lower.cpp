@@ -68,8 +68,8 @@ class Codes {
 };
 
 // Whether a program has more than `most` values: pairs of a node and a point. Points are told apart by a hash of how
-// they were made, which takes a tenth of the time and of the memory that Lowering takes; a text of a few lines can ask for
-// any number.
+// they were made, which takes a tenth of the time and of the memory that Lowering takes; a text of a few lines can
+// ask for any number.
 class ValueCounter {
  public:
   ValueCounter(const Graph& graph, std::size_t most) : graph_(graph), most_(most), chains_(graph.size()) {}

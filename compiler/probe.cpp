@@ -136,7 +136,8 @@ class Probing {
   void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) const {
     const Knowledge& known = field_.known(id);
     ProbeRow& row = rows.emplace_back(ProbeRow{what, id, field_.place(id), known.certified, known.lipschitz});
-    const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), static_cast<std::size_t>(Limits{}.instructions));
+    const std::optional<vm::Program> program =
+        lower(field_.graph(), id, Source("", ""), static_cast<std::size_t>(Limits{}.instructions));
     if (!program) return;
     const auto verified = vm::verify(*program);
     if (const auto* sound = std::get_if<vm::VerifiedProgram>(&verified)) run(*sound, points, row);

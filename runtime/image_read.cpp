@@ -135,7 +135,6 @@ Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, in
 }
 
 Decoded decode_shown(const Bytes& bytes, double memory) {
-
   if (stbi_is_16_bit_from_memory(bytes.data(), static_cast<int>(bytes.size()))) {
     return decode_signals<stbi_us>(stbi_load_16_from_callbacks, bytes, memory);
   }
@@ -197,8 +196,8 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   }
   const int components = grey ? 1 : 3;
   if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
-  const std::size_t count = static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) *
-                            static_cast<std::size_t>(components);
+  const std::size_t count =
+      static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
   if (text.size() - at < count * 4) return "it ends too early";
   const double needed = 8.0 * static_cast<double>(count) + static_cast<double>(bytes.size());
   if (needed > memory) return too_much_memory(needed, memory);

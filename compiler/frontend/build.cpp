@@ -24,7 +24,12 @@ bool gives_material(const CheckedNode& node) {
 SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
                            const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
                            const Limits& limits, Diagnostics& diagnostics)
-    : named_(named), uses_(uses), materials_(materials), limits_(limits), has_paint_(named.size(), false), diagnostics_(diagnostics) {
+    : named_(named),
+      uses_(uses),
+      materials_(materials),
+      limits_(limits),
+      has_paint_(named.size(), false),
+      diagnostics_(diagnostics) {
   for (const std::uint32_t name : order) {
     has_paint_[name] = gives_material(named[name]) || std::any_of(uses[name].begin(), uses[name].end(),
                                                                   [&](const Use& u) { return has_paint_[u.target]; });
@@ -46,19 +51,21 @@ void SceneBuilder::check_size(const CheckedNode& node, NodeId id) {
   const Code code = spec(scene_.graph.kind(id)).code(scene_.graph.params(id));
   const auto copies = static_cast<double>(code.points.size());
   if (copies > limits_.copies) {
-    diagnostics_.error("E0312", node.type_span,
-                       fmt::format("{} copies of the node count at every point; at most {} are evaluated", copies,
-                                   limits_.copies),
-                       "", {"make `period` larger or the node smaller", raise(&Limits::copies, copies)});
+    diagnostics_.error(
+        "E0312", node.type_span,
+        fmt::format("{} copies of the node count at every point; at most {} are evaluated", copies, limits_.copies),
+        "", {"make `period` larger or the node smaller", raise(&Limits::copies, copies)});
   }
   for (const Instruction& instruction : code.after) {
     const vm::OpcodeInfo& row = vm::info(instruction.opcode);
     for (int i = 0; i < row.immediates; ++i) {
       const double count = instruction.immediates[static_cast<std::size_t>(i)];
       if (!vm::is_integer_immediate(row, i) || count <= limits_.iterations) continue;
-      diagnostics_.error("E0312", node.type_span,
-                         fmt::format("{} iterations at every point; at most {} are allowed", count, limits_.iterations),
-                         "", {raise(&Limits::iterations, count)});
+      diagnostics_.error(
+          "E0312", node.type_span,
+          fmt::format("`{}` is {}; at most {} are allowed, for it is a loop at every point",
+                      vm::immediate_name(row, i), count, limits_.iterations),
+          "", {raise(&Limits::iterations, count)});
     }
   }
 }
@@ -72,6 +79,7 @@ void SceneBuilder::add_object(const CheckedNode& node) {
   const Context context{object, node.material};
   const Built built = build(node, {object, std::nullopt});
   objects_.push_back(built.painted ? built.id : paint(built.id, context, {node.span, node.name}));
+  too_many_nodes(node);
 }
 
 Scene SceneBuilder::finish() {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <glm/geometric.hpp>
 
 #include "compiler/frontend/formula_nodes.h"

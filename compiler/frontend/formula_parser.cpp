@@ -12,7 +12,6 @@
 namespace fathom::compiler {
 namespace {
 
-
 struct NamedConstant {
   std::string_view name;
   double value;
@@ -224,8 +223,9 @@ FormulaId FormulaParser::resolve(const Token& name) {
 
 // Reports are functions of their own also to keep their texts out of the frames of the recursion.
 FormulaParser::Result FormulaParser::too_deep() {
-  report("E0406", span(next_), fmt::format("the formula is nested more than {} deep", context_.scope.limits().formula_nesting), "one level too many",
-         {"give inner parts names of their own"});
+  report("E0406", span(next_),
+         fmt::format("the formula is nested more than {} deep", context_.scope.limits().formula_nesting),
+         "one level too many", {"give inner parts names of their own"});
   return std::nullopt;
 }
 

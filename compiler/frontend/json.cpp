@@ -142,9 +142,9 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   bool open(decltype(syntax::Value::data) empty) {
     const Span span = token(taken_);
     if (static_cast<double>(open_.size()) >= limits_.nesting) {
-      diagnostics_.error(
-          "E0008", span, fmt::format("lists and objects are nested more than {} deep", limits_.nesting),
-          "one level too many", {"give inner nodes a name under `nodes` and refer to it with `use`"});
+      diagnostics_.error("E0008", span,
+                         fmt::format("lists and objects are nested more than {} deep", limits_.nesting),
+                         "one level too many", {"give inner nodes a name under `nodes` and refer to it with `use`"});
       return false;
     }
     open_.push_back({{span, std::move(empty)}, "", {}, false});
@@ -252,8 +252,7 @@ bool check_tokens(const std::string& text, const Limits& limits, Diagnostics& di
   if (!counter.too_many()) return true;
   const auto at = static_cast<std::uint32_t>(taken);
   diagnostics.error("E0008", {at - 1, at}, fmt::format("the file has more than {} values and names", limits.tokens),
-                    "one too many",
-                    {"move repeated parts to `nodes`", raise(&Limits::tokens, 2 * limits.tokens)});
+                    "one too many", {"move repeated parts to `nodes`", raise(&Limits::tokens, 2 * limits.tokens)});
   return false;
 }
 

@@ -13,8 +13,9 @@ namespace fathom::compiler {
 std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
   const auto size = static_cast<double>(source.text().size());
   if (size > limits.file_size) {
-    diagnostics.error("E0008", {}, fmt::format("the file is {} bytes long; at most {} are read", size, limits.file_size),
-                      "", {"move repeated parts to `nodes`", raise(&Limits::file_size, size)});
+    diagnostics.error("E0008", {},
+                      fmt::format("the file is {} bytes long; at most {} are read", size, limits.file_size), "",
+                      {"move repeated parts to `nodes`", raise(&Limits::file_size, size)});
     return std::nullopt;
   }
   if (is_expression_list(source.text())) {

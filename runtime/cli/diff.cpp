@@ -103,7 +103,7 @@ struct Colors {
 };
 
 std::variant<Colors, ExitCode> read_colors(const std::string& path, const compiler::Limits& limits,
-                                             const Streams& streams) {
+                                           const Streams& streams) {
   const auto read = runtime::read_image(path, read_limits(limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
     return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
@@ -170,7 +170,8 @@ int run_diff(std::span<const std::string> args, const Streams& streams) {
     if (const auto code = check_collisions(request.first, {request.second, *request.map}, streams)) return *code;
     if (const auto problem = runtime::check_image_path(*request.map)) return fail(streams, kIo, *problem);
   }
-  const auto first = read_colors(request.first, request.limits, streams), second = read_colors(request.second, request.limits, streams);
+  const auto first = read_colors(request.first, request.limits, streams),
+             second = read_colors(request.second, request.limits, streams);
   if (const auto* code = std::get_if<ExitCode>(&first)) return *code;
   if (const auto* code = std::get_if<ExitCode>(&second)) return *code;
   const Colors &picture = std::get<Colors>(first), &reference = std::get<Colors>(second);

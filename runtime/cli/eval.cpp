@@ -144,7 +144,8 @@ int run_eval(std::span<const std::string> args, const Streams& streams) {
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   if (request.points_file) {
-    if (const auto code = read_points(*request.points_file, request.scene.limits, streams, request.points)) return *code;
+    if (const auto code = read_points(*request.points_file, request.scene.limits, streams, request.points))
+      return *code;
   }
   compiler::CompileOptions options;
   options.stop_after = request.after;

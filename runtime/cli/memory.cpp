@@ -26,7 +26,8 @@ double allowed_memory(const compiler::Limits& limits) {
 runtime::ReadLimits read_limits(const compiler::Limits& limits) { return {allowed_memory(limits)}; }
 
 double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
-  constexpr double kRadiance = 32, kFirstHit = 56, kCost = 16, kPosition = 24, kIds = 12, kVariance = 48, kHalves = 32;
+  constexpr double kRadiance = 32, kFirstHit = 56, kCost = 16, kPosition = 24, kIds = 12, kVariance = 48,
+                   kHalves = 32;
   const runtime::FilmLayers& layers = settings.layers;
   const double stages = settings.adaptive ? 2 : 1;
   const double of_stage =
@@ -42,7 +43,8 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
                                      const Streams& streams) {
   const runtime::Settings settings = runtime::resolve(scene, request.options);
   const double allowed = allowed_memory(request.scene.limits);
-  const double pixels = static_cast<double>(settings.crop.pixels()), each = bytes_per_pixel(settings, request.denoise);
+  const double pixels = static_cast<double>(settings.crop.pixels()),
+               each = bytes_per_pixel(settings, request.denoise);
   const double regions = settings.regions ? static_cast<double>(settings.region_memory) : 0;
   // Scenes too small for regions take none, so they do not count against a small limit.
   const double needed = pixels * each;

@@ -194,7 +194,8 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
   if (const auto code = check_memory(request, scene, streams)) return *code;
-  if (const auto code = read_background(scene.background, request.scene.limits, request.options, streams)) return *code;
+  if (const auto code = read_background(scene.background, request.scene.limits, request.options, streams))
+    return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));

@@ -84,7 +84,8 @@ void check_bits(const vm::VerifiedProgram& program, const Cloud& cloud, vm::Work
     vm::force_isa(isa);
     const auto many = batch_bits(program, cloud, 0, kPoints, workspace);
     for (std::size_t i = 0; i < many.size(); ++i) {
-      promise(many[i] == scalar[i], fmt::format("{} differs from scalar in number {} {}", isa, i % 7, place(cloud, i / 7)));
+      promise(many[i] == scalar[i],
+              fmt::format("{} differs from scalar in number {} {}", isa, i % 7, place(cloud, i / 7)));
     }
   }
 }
@@ -139,14 +140,14 @@ void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, R
     for (std::size_t i = 0; i < values.size(); ++i) {
       const bool inside = std::isnan(values[i]) ? lo[box] == -kInfinity && hi[box] == kInfinity
                                                 : lo[box] <= values[i] && values[i] <= hi[box];
-      promise(inside, fmt::format("{} is not in the enclosure {} .. {} {}", values[i], lo[box], hi[box], place(cloud, i)));
+      promise(inside,
+              fmt::format("{} is not in the enclosure {} .. {} {}", values[i], lo[box], hi[box], place(cloud, i)));
     }
   }
 }
 
 // Ranges hold the values in double. Where a value is not defined (the root of a negative number) they say nothing.
-void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random,
-                  vm::Workspace& workspace) {
+void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
     const dvec3 lo(boxes.lo[0][box], boxes.lo[1][box], boxes.lo[2][box]);
     const dvec3 hi(boxes.hi[0][box], boxes.hi[1][box], boxes.hi[2][box]);
@@ -175,8 +176,8 @@ void check_part(const vm::VerifiedProgram& whole, const vm::Part& part, const Cl
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) throw BrokenPromise("a part: " + error->reason);
   const std::vector<float> a = distances(whole, cloud, workspace), b = distances(part, cloud, workspace);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    promise(agrees(a[i], b[i], least, most),
-            fmt::format("{} of a part is not {} of the whole, for {} .. {}, {}", b[i], a[i], least, most, place(cloud, i)));
+    promise(agrees(a[i], b[i], least, most), fmt::format("{} of a part is not {} of the whole, for {} .. {}, {}",
+                                                         b[i], a[i], least, most, place(cloud, i)));
   }
 }
 

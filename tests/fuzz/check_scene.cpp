@@ -45,8 +45,7 @@ void check_scene(const std::string& text) {
   };
   options.on_pass = [&](std::string_view, const compiler::Scene& scene) { compiler::print_graph(scene, source); };
   const auto scene = compiler::compile(source, diagnostics, options);
-  for (const auto format :
-       {compiler::ErrorFormat::Text, compiler::ErrorFormat::Short, compiler::ErrorFormat::Json}) {
+  for (const auto format : {compiler::ErrorFormat::Text, compiler::ErrorFormat::Short, compiler::ErrorFormat::Json}) {
     const std::string printed = diagnostics.print(source, format);
     promise(printed.empty() == diagnostics.all().empty(), "every message is printed");
   }

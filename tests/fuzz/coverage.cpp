@@ -1,7 +1,7 @@
 // What libFuzzer steers by where g++ compiles: g++ calls __sanitizer_cov_trace_pc at every branch (the option
-// -fsanitize-coverage=trace-pc), which libFuzzer no longer listens to itself. The linker sends these calls here (--wrap),
-// and here they are counted, by where they come from, in counters that libFuzzer reads beside its own: the section's
-// name is libFuzzer's. A fuzz run prints what it finds as features, "ft:"; "cov:" stays 0.
+// -fsanitize-coverage=trace-pc), which libFuzzer no longer listens to itself. The linker sends these calls here
+// (--wrap), and here they are counted, by where they come from, in counters that libFuzzer reads beside its own: the
+// section's name is libFuzzer's. A fuzz run prints what it finds as features, "ft:"; "cov:" stays 0.
 #include <cstdint>
 
 namespace {

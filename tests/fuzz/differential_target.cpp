@@ -1,5 +1,5 @@
-// The bytes are the draws of a random graph. Its distance is asked of everything that can tell it, and all must agree:
-// the judge, the plain lowering, each pass before and after, the compiler's lowering, the fused program, each
+// The bytes are the draws of a random graph. Its distance is asked of everything that can tell it, and all must
+// agree: the judge, the plain lowering, each pass before and after, the compiler's lowering, the fused program, each
 // instruction set, ranges, enclosures and parts (check_program.h), derivatives against differences, regions.
 #include <fmt/format.h>
 
@@ -113,8 +113,7 @@ void check_derivatives(const vm::VerifiedProgram& program, const Sampled& at, vm
 }
 
 // A leaf is min(f, limit), bit for bit, and far off a bound.
-void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Random& random,
-                   vm::Workspace& workspace) {
+void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Random& random, vm::Workspace& workspace) {
   const auto known = compiler::analyse(scene.graph);
   const compiler::Box contents = compiler::contents(scene.graph, scene.root, known);
   runtime::RegionOptions options;
@@ -136,8 +135,8 @@ void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Rando
   for (std::size_t i = 0; i < 64; ++i) {
     const runtime::Regions::Region region = regions->region({x[i], y[i], z[i]});
     const bool far = region.part.words.empty();
-    const bool agrees = far ? cut[i] <= whole[i] && cut[i] > 0
-                            : cut[i] == std::min(whole[i], static_cast<float>(region.limit));
+    const bool agrees =
+        far ? cut[i] <= whole[i] && cut[i] > 0 : cut[i] == std::min(whole[i], static_cast<float>(region.limit));
     promise(agrees, fmt::format("a region's {} is not {} up to {} at {} {} {}", cut[i], whole[i], region.limit, x[i],
                                 y[i], z[i]));
   }

@@ -1,5 +1,5 @@
-// libFuzzer's way into the target that the build names: a broken promise ends the process, which libFuzzer reports as a
-// crash and keeps the input of.
+// libFuzzer's way into the target that the build names: a broken promise ends the process, which libFuzzer reports as
+// a crash and keeps the input of.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>

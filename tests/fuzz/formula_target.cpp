@@ -1,6 +1,6 @@
-// Formulas: the text between quotes, as the parser gets it, a line of the input for each of the formula's. With a point
-// it is read for the machine, whose value must be the one that the front end's own evaluation in double gives; without
-// one it is a number.
+// Formulas: the text between quotes, as the parser gets it, a line of the input for each of the formula's. With a
+// point it is read for the machine, whose value must be the one that the front end's own evaluation in double gives;
+// without one it is a number.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Every fuzz target over its seeds and over what once broke it (tests/fuzz/found/NAME): what `scripts/fuzz` goes on from.
+// Every fuzz target over its seeds and over what once broke it (tests/fuzz/found/NAME): what `scripts/fuzz` goes on
+// from.
 #include <catch2/catch.hpp>
 #include <string>
 

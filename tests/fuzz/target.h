@@ -1,9 +1,9 @@
 // Fuzz targets: functions that any bytes may be given to. One file each, tests/fuzz/NAME_target.cpp, and a row in
-// target.cpp; each has seeds, inputs to begin with. A target throws BrokenPromise where what holds of every input does
-// not; the sanitizers and CHECK see the rest.
+// target.cpp; each has seeds, inputs to begin with. A target throws BrokenPromise where what holds of every input
+// does not; the sanitizers and CHECK see the rest.
 //
-// `scripts/fuzz NAME SECONDS` runs libFuzzer on one. fuzz_test.cpp gives each its seeds, and the inputs that once broke
-// something, tests/fuzz/found/NAME/*, as ordinary tests.
+// `scripts/fuzz NAME SECONDS` runs libFuzzer on one. fuzz_test.cpp gives each its seeds, and the inputs that once
+// broke something, tests/fuzz/found/NAME/*, as ordinary tests.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Hostile inputs (tests/hostile/cases.txt): each is refused with the exit status and the message it should be, soon and
-// in little memory, with nothing on standard output and no file left behind.
+// Hostile inputs (tests/hostile/cases.txt): each is refused with the exit status and the message it should be, soon
+// and in little memory, with nothing on standard output and no file left behind.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -105,7 +105,9 @@ Outcome outcome_of(const Folder& folder, const std::string& arguments) {
   int status = 0;
   rusage usage{};
   REQUIRE(wait4(child, &status, 0, &usage) == child);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status) - 1000,
                   seconds(usage.ru_utime) + seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024,
                   read_file(out), read_file(err)};
@@ -139,7 +141,7 @@ TEST_CASE("hostile inputs are refused with a message, soon and in little memory"
     CHECK(names_in(folder.path()) == before);
     CHECK(outcome.err.size() < 100'000);
     if (is_sanitized()) continue;  // which takes many times as much
-    CHECK(outcome.seconds < 1);  // of processors: a loaded machine takes longer
+    CHECK(outcome.seconds < 1);    // of processors: a loaded machine takes longer
     CHECK(outcome.megabytes < 256);
   }
   for (std::string name : names_in(kFolder)) {
