@@ -12,7 +12,7 @@ namespace fathom::compiler {
 
 // Numbers of the units that the table says; whole but for `coordinate`.
 struct Limits {
-  double file_size = 16 << 20;
+  double file_size = 32 << 20;
   double tokens = 4e6;
   double nesting = 4096;
   double formula_nesting = 1000;
