@@ -27,8 +27,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kMaxInstructions = 1'000'000;
-
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
 constexpr std::string_view kGraph = "graph";    // the graph as it was read
@@ -96,6 +94,15 @@ std::optional<NodeId> node_beyond_float(const Scene& scene) {
   return std::nullopt;
 }
 
+vm::Limits machine_limits(const Limits& limits) {
+  vm::Limits machine;
+  machine.stack = static_cast<std::uint32_t>(limits.stack);
+  machine.locals = static_cast<std::uint32_t>(limits.locals);
+  machine.loop_count = static_cast<std::uint32_t>(limits.iterations);
+  machine.words = std::max(machine.words, static_cast<std::uint32_t>(16 * limits.instructions));
+  return machine;
+}
+
 void report_limit(const Scene& scene, const vm::VerifyError& error, Diagnostics& diagnostics) {
   if (const std::optional<NodeId> node = node_beyond_float(scene)) {
     diagnostics.error("E0308", scene.graph.origin(*node).span,
@@ -109,15 +116,17 @@ void report_limit(const Scene& scene, const vm::VerifyError& error, Diagnostics&
 }
 
 std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, bool fused,
-                                            Diagnostics& diagnostics) {
-  std::optional<vm::Program> program = lower(scene.graph, scene.root, source, kMaxInstructions);
+                                            const Limits& limits, Diagnostics& diagnostics) {
+  const auto most = static_cast<std::size_t>(limits.instructions);
+  std::optional<vm::Program> program = lower(scene.graph, scene.root, source, most);
   if (!program) {
     diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                      fmt::format("the scene needs more than {} instructions", kMaxInstructions), "",
-                      {"a node used under different transforms is evaluated once for each; use it less often"});
+                      fmt::format("the scene needs more than {} instructions", most), "",
+                      {"a node used under different transforms is evaluated once for each; use it less often",
+                       raise(&Limits::instructions, 2 * limits.instructions)});
     return std::nullopt;
   }
-  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program));
+  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program), machine_limits(limits));
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
     report_limit(scene, *error, diagnostics);
     return std::nullopt;
@@ -130,10 +139,11 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
                                            const Source& source, Diagnostics& diagnostics,
                                            const CompileOptions& options) {
   const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
-  std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, diagnostics);
+  std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
   if (!distance) return std::nullopt;
   std::optional<vm::VerifiedProgram> surface = distance;
-  if (painted) surface = assemble(optimise(scene, true, options, nullptr), source, fused, diagnostics);
+  if (painted)
+    surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
   const std::vector<Knowledge> all_known = analyse(optimised.graph);
   const Knowledge& known = all_known[optimised.root];
@@ -144,10 +154,10 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
 
 // The programs of textures. nullopt when one is too long.
 std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
-                                                             Diagnostics& diagnostics) {
+                                                             const Limits& limits, Diagnostics& diagnostics) {
   std::vector<vm::VerifiedProgram> programs;
   for (const Scene& formula : formulas) {
-    std::optional<vm::VerifiedProgram> program = assemble(formula, source, true, diagnostics);
+    std::optional<vm::VerifiedProgram> program = assemble(formula, source, true, limits, diagnostics);
     if (!program) return std::nullopt;
     programs.push_back(std::move(*program));
   }
@@ -219,10 +229,10 @@ bool has_work(const Pass& pass, const Scene& scene) {
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
-  const std::optional<ReadScene> read = read_scene(source, diagnostics);
+  const std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits);
   if (!read) return std::nullopt;
   if (options.on_syntax) options.on_syntax(*read);
-  std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions);
+  std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions, options.limits);
   if (!elaborated) return std::nullopt;
   find_files(*elaborated, source, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
@@ -241,7 +251,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     media.push_back({std::move(*compiled), medium.material});
   }
 
-  std::optional<std::vector<vm::VerifiedProgram>> formulas = assemble_all(elaborated->formulas, source, diagnostics);
+  std::optional<std::vector<vm::VerifiedProgram>> formulas =
+      assemble_all(elaborated->formulas, source, options.limits, diagnostics);
   if (!formulas) return std::nullopt;
 
   const std::vector<Knowledge> known = analyse(field.graph);
@@ -266,9 +277,9 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   return result;
 }
 
-std::optional<GraphSize> measure(const Scene& scene, const Source& source) {
+std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits) {
   Diagnostics ignored;
-  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, false, ignored);
+  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, false, limits, ignored);
   if (!program) return std::nullopt;
   return GraphSize{count_nodes(scene), program->instructions(), program->cost()};
 }

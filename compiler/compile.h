@@ -13,6 +13,7 @@
 #include "compiler/frontend/parameters.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/graph.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
@@ -21,6 +22,7 @@ struct CompileOptions {
   std::optional<std::string> stop_after;
   // Called with the distance graph as it was read (as "graph") and after each step.
   std::function<void(std::string_view pass, const Scene& scene)> on_pass;
+  Limits limits;
   // Values for the scene's parameters in place of its own.
   Definitions definitions;
   // Warn of what is sound but surely not meant, or dear (compiler/lints.h).
@@ -40,7 +42,7 @@ struct GraphSize {
 };
 
 // nullopt when the graph's program goes beyond a limit of the machine.
-std::optional<GraphSize> measure(const Scene& scene, const Source& source);
+std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits = {});
 
 // Names of the steps, in order: compiler/origin.h, those over the graph (compiler/passes/passes.h), compiler/fuse.h.
 std::vector<std::string_view> pass_names();

@@ -14,6 +14,18 @@ constexpr std::size_t kWidest = 140;      // columns of a quoted line; longer on
 constexpr std::size_t kLead = 50;         // columns kept before the carets of a cut line
 constexpr std::size_t kTabWidth = 4;
 
+constexpr std::size_t kMostBytes = 2000;  // of a message: names and numbers can be as long as the file
+constexpr std::size_t kWindow = 4096;     // bytes on either side of the carets that may be shown
+
+// Cuts a text that is too long, between characters.
+std::string shortened(std::string text) {
+  if (text.size() <= kMostBytes) return text;
+  std::size_t end = kMostBytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  text.resize(end);
+  return text + "...";
+}
+
 struct Style {
   const char *error = "", *warning = "", *gutter = "", *strong = "", *off = "";
 };
@@ -75,6 +87,10 @@ struct Shown {
 
 // The quoted line and the carets under it, without gutter; both cut to kWidest columns around the carets.
 std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t line_start, Span span) {
+  // Of a long line no more than what can be shown.
+  const std::size_t at = span.begin - line_start, from = at > kWindow ? at - kWindow : 0;
+  line = line.substr(std::min(from, line.size()), 2 * kWindow);
+  line_start += static_cast<std::uint32_t>(from);
   const Shown shown(line);
   const std::size_t begin = shown.column(span.begin - line_start);
   const std::size_t end = std::max(begin + 1, shown.column(std::max(span.end, span.begin) - line_start));
@@ -161,13 +177,14 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
 
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
-  ++errors_;
-  all_.push_back({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
+  if (++errors_ > kMostKept) return;
+  all_.push_back({Severity::Error, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
-  all_.push_back({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
+  if (++warnings_ > kMostKept) return;
+  all_.push_back({Severity::Warning, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
 }
 
 std::string Diagnostics::print(const Source& source, ErrorFormat format, bool color) const {

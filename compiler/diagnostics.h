@@ -41,14 +41,20 @@ class Diagnostics {
 
   bool has_errors() const { return errors_ > 0; }
   std::size_t errors() const { return errors_; }
+  std::size_t warnings() const { return warnings_; }
+  // Whether there are so many errors that looking for more is of no use: a file can have millions.
+  bool full() const { return errors_ >= kMostKept; }
+  // The first kMostKept errors, and as many warnings.
   const std::vector<Diagnostic>& all() const { return all_; }
 
   // Every diagnostic in source order (the first 20 errors, then how many more there are).
   std::string print(const Source& source, ErrorFormat format, bool color = false) const;
 
  private:
+  static constexpr std::size_t kMostKept = 1000;
+
   std::vector<Diagnostic> all_;
-  std::size_t errors_ = 0;
+  std::size_t errors_ = 0, warnings_ = 0;
 };
 
 // The candidate nearest to `word` by edit distance, or empty when none is near enough to be a typing error.

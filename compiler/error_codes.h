@@ -50,6 +50,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0309", "a sun below the horizon"},
     {"E0310", "a light that shines on its own position"},
     {"E0311", "a file named in the scene that cannot be read"},
+    {"E0312", "the scene goes beyond a limit"},
     // E04xx: formulas and parameters
     {"E0401", "malformed formula"},
     {"E0402", "unknown name in a formula"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <memory>
 #include <optional>
@@ -64,6 +65,85 @@ class Codes {
 
   const Graph& graph_;
   std::vector<std::shared_ptr<const Code>> shared_;  // [kind]
+};
+
+// Whether a program has more than `most` values: pairs of a node and a point. Points are told apart by a hash of how
+// they were made, which takes a tenth of the time and of the memory that Lowering takes; a text of a few lines can
+// ask for any number.
+class ValueCounter {
+ public:
+  ValueCounter(const Graph& graph, std::size_t most) : graph_(graph), most_(most), chains_(graph.size()) {}
+
+  bool more(NodeId root) {
+    add(root, 0);
+    while (!pending_.empty() && count_ <= most_) {
+      const auto [node, point] = pending_.back();
+      pending_.pop_back();
+      const std::span<const NodeId> children = graph_.children(node);
+      if (children.size() == 1) {
+        for (const std::vector<std::uint64_t>& chain : chains_of(node)) {
+          std::uint64_t moved = point;
+          for (const std::uint64_t instruction : chain) moved = mixed(moved, instruction);
+          add(children[0], moved);
+        }
+      } else {
+        for (const NodeId child : children) add(child, point);
+      }
+    }
+    return count_ > most_;
+  }
+
+ private:
+  using Chains = std::vector<std::vector<std::uint64_t>>;  // hashes of instructions
+
+  static std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+    const std::uint64_t z = (std::rotl(hash, 23) ^ word) * 0x9E3779B97F4A7C15u;
+    return z ^ (z >> 29);
+  }
+
+  const Chains& chains_of(NodeId node) {
+    std::unique_ptr<Chains>& chains = chains_[node];
+    if (chains) return *chains;
+    chains = std::make_unique<Chains>();
+    for (const auto& points : spec(graph_.kind(node)).code(graph_.params(node)).points) {
+      std::vector<std::uint64_t>& chain = chains->emplace_back();
+      for (const Instruction& instruction : points) {
+        std::uint64_t hash = static_cast<std::uint64_t>(instruction.opcode) + 1;
+        for (const double number : instruction.immediates) hash = mixed(hash, std::bit_cast<std::uint64_t>(number));
+        chain.push_back(hash);
+      }
+    }
+    return *chains;
+  }
+
+  void add(NodeId node, std::uint64_t point) {
+    if (table_.size() < 2 * (count_ + 1)) grow();
+    if (!insert(mixed(point, node) | 1)) return;
+    ++count_;
+    pending_.push_back({node, point});
+  }
+  bool insert(std::uint64_t key) {
+    std::size_t place = key >> 20 & (table_.size() - 1);
+    for (; table_[place] != 0; place = (place + 1) & (table_.size() - 1)) {
+      if (table_[place] == key) return false;
+    }
+    table_[place] = key;
+    return true;
+  }
+  void grow() {
+    std::vector<std::uint64_t> before(std::max<std::size_t>(64, 2 * table_.size()));
+    before.swap(table_);
+    for (const std::uint64_t key : before) {
+      if (key != 0) insert(key);
+    }
+  }
+
+  const Graph& graph_;
+  const std::size_t most_;
+  std::size_t count_ = 0;
+  std::vector<std::unique_ptr<Chains>> chains_;  // [node] of those with one child, once asked for
+  std::vector<std::pair<NodeId, std::uint64_t>> pending_;
+  std::vector<std::uint64_t> table_;  // hashes of the values so far; 0 is a free place
 };
 
 class Lowering {
@@ -285,6 +365,7 @@ class Lowering {
 
 std::optional<vm::Program> lower(const Graph& graph, NodeId root, const Source& source,
                                  std::size_t max_instructions) {
+  if (ValueCounter(graph, max_instructions).more(root)) return std::nullopt;
   return Lowering(graph, source, max_instructions).run(root);
 }
 

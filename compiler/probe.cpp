@@ -9,6 +9,7 @@
 #include <thread>
 #include <variant>
 
+#include "compiler/limits.h"
 #include "compiler/lower.h"
 #include "compiler/shapes/node_table.h"
 #include "vm/evaluate.h"
@@ -17,7 +18,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kMaxInstructions = 1'000'000;
 constexpr double kEndless = 1e17;        // a box's side beyond this stands for one without end
 constexpr std::uint64_t kFewest = 256;   // points of a row
 constexpr std::uint64_t kChunk = 4096;   // points a thread takes at once
@@ -136,7 +136,8 @@ class Probing {
   void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) const {
     const Knowledge& known = field_.known(id);
     ProbeRow& row = rows.emplace_back(ProbeRow{what, id, field_.place(id), known.certified, known.lipschitz});
-    const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), kMaxInstructions);
+    const std::optional<vm::Program> program =
+        lower(field_.graph(), id, Source("", ""), static_cast<std::size_t>(Limits{}.instructions));
     if (!program) return;
     const auto verified = vm::verify(*program);
     if (const auto* sound = std::get_if<vm::VerifiedProgram>(&verified)) run(*sound, points, row);

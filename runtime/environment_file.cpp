@@ -19,8 +19,8 @@ float usable(float value) {
 
 }  // namespace
 
-std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path) {
-  const auto read = read_image(path);
+std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path, const ReadLimits& limits) {
+  const auto read = read_image(path, limits);
   if (const auto* unread = std::get_if<UnreadImage>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);
   // A picture of luminance alone is grey.

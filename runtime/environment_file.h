@@ -18,6 +18,6 @@ struct EnvironmentImage {
 
 // The picture, or why it cannot be read. What is not a number or negative in it becomes 0, and infinity
 // the largest number of 16 bits.
-std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path);
+std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

@@ -3,6 +3,8 @@
 // The channels of a render, all means over a pixel's samples unless said (docs/LAYERS.md): runtime/film_channels.h.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -46,6 +48,11 @@ struct ImageShape {
     return -1;
   }
 };
+
+// Why an image is not read that takes so many bytes.
+inline std::string too_much_memory(double needed, double allowed) {
+  return fmt::format("it takes {:.15g} bytes of memory, and {:.15g} are allowed", needed, std::max(0.0, allowed));
+}
 
 struct FloatImage : ImageShape {
   std::vector<std::vector<float>> values;  // [channel][y][x] over `area`

@@ -154,12 +154,15 @@ std::int64_t pixels_of(const Imath::Box2i& window) {
   return (std::int64_t{window.max.x} - window.min.x + 1) * (std::int64_t{window.max.y} - window.min.y + 1);
 }
 
-FloatImage read_header(const Imf::Header& header) {
+// Throws for an image that would take more than `memory` bytes.
+FloatImage read_header(const Imf::Header& header, double memory) {
   const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
   std::int64_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
   const bool fits = pixels_of(data) <= kMostPixels && pixels_of(display) <= kMostPixels;
   if (!fits || pixels_of(data) * channels > kMostValues) throw std::runtime_error("it is too large");
+  const double needed = 4.0 * static_cast<double>(pixels_of(data) * channels);
+  if (needed > memory) throw std::runtime_error(too_much_memory(needed, memory));
   FloatImage image;
   image.width = display.max.x - display.min.x + 1;
   image.height = display.max.y - display.min.y + 1;
@@ -190,11 +193,11 @@ std::optional<std::string> write_exr(const ImageRows& image, const std::string& 
   return target.commit();
 }
 
-std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes) {
+std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory) {
   try {
     BytesSource source(bytes);
     Imf::InputFile file(source, kNoThreads);
-    FloatImage image = read_header(file.header());
+    FloatImage image = read_header(file.header(), memory - static_cast<double>(bytes.size()));
     const Imath::Box2i data = file.header().dataWindow();
     const PixelRect place{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
     Imf::FrameBuffer buffer;

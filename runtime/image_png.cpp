@@ -1,8 +1,11 @@
 #include "runtime/image_png.h"
 
 #include <png.h>
+#include <zlib.h>
 
+#include <array>
 #include <csetjmp>
+#include <cstring>
 
 namespace fathom::runtime {
 namespace {
@@ -60,7 +63,51 @@ class Writer {
   png_infop about_;
 };
 
+std::uint32_t big_endian(const std::uint8_t* at) {
+  return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
+}
+
+// A stream of zlib's that is unpacked and thrown away.
+class Unpacked {
+ public:
+  Unpacked() { good_ = inflateInit(&stream_) == Z_OK; }
+  ~Unpacked() { inflateEnd(&stream_); }
+  Unpacked(const Unpacked&) = delete;
+  Unpacked& operator=(const Unpacked&) = delete;
+
+  double size() const { return size_; }
+  void take(std::span<const std::uint8_t> packed, double most) {
+    stream_.next_in = const_cast<std::uint8_t*>(packed.data());  // zlib only reads it
+    stream_.avail_in = static_cast<uInt>(packed.size());
+    std::array<std::uint8_t, 1 << 15> thrown_away;
+    while (good_ && size_ <= most && (stream_.avail_in > 0 || stream_.avail_out == 0)) {
+      stream_.next_out = thrown_away.data(), stream_.avail_out = static_cast<uInt>(thrown_away.size());
+      good_ = inflate(&stream_, Z_NO_FLUSH) == Z_OK;
+      size_ += static_cast<double>(thrown_away.size() - stream_.avail_out);
+    }
+  }
+
+ private:
+  z_stream stream_{};
+  bool good_;
+  double size_ = 0;
+};
+
 }  // namespace
+
+bool png_unpacks_beyond(std::span<const std::uint8_t> bytes, double most) {
+  constexpr std::size_t kSignature = 8, kAround = 12;  // of a chunk: length, name, checksum
+  constexpr double kMostRatio = 1032;                  // of zlib, as its documentation says
+  if (static_cast<double>(bytes.size()) * kMostRatio <= most) return false;
+  Unpacked unpacked;
+  for (std::size_t at = kSignature; bytes.size() >= kAround && at <= bytes.size() - kAround;) {
+    const std::size_t length = big_endian(&bytes[at]);
+    if (length > bytes.size() - at - kAround) break;
+    if (std::memcmp(&bytes[at + 4], "IDAT", 4) == 0) unpacked.take(bytes.subspan(at + 8, length), most);
+    at += kAround + length;
+  }
+  return unpacked.size() > most;
+}
 
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row) {
   std::vector<std::uint8_t> bytes;

@@ -15,4 +15,7 @@ using PngRow = std::function<void(int y, std::span<std::uint8_t> bytes)>;
 // The file's bytes, with a chunk that says sRGB when `srgb`; empty when libpng fails. `bits` is 8 or 16.
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row);
 
+// Whether a file's picture data unpacks to more than `most` bytes; nothing of it is kept. False where it is no PNG.
+bool png_unpacks_beyond(std::span<const std::uint8_t> bytes, double most);
+
 }  // namespace fathom::runtime

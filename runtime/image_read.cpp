@@ -16,6 +16,7 @@
 #include "runtime/elementary.h"
 #include "runtime/image_exr.h"
 #include "runtime/image_io.h"
+#include "runtime/image_png.h"
 
 namespace fathom::runtime {
 namespace {
@@ -95,9 +96,30 @@ struct StbSource {
 };
 constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
 
+// The reason why stb may not be asked for a picture, which is its header's size: of `sample` bytes for each number in
+// what it decodes, a float for each in what is made of that.
+std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory) {
+  int width = 0, height = 0, components = 0;
+  // From memory, whose end stb sees.
+  if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
+    const char* reason = stbi_failure_reason();
+    return reason != nullptr ? reason : "its content makes no sense";
+  }
+  const double numbers = static_cast<double>(width) * height * std::max(3, components);
+  const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
+  if (needed > memory) return too_much_memory(needed, memory);
+  // stb unpacks all the data of a png before it looks how much the picture needs: with 16 bits and interlaced no more
+  // than this.
+  const double rows = 2.0 * height * (8.0 * width + 8);
+  if (png_unpacks_beyond(bytes, rows)) return "its data is longer than its picture";
+  return std::nullopt;
+}
+
 // Whole samples as sRGB signals.
 template <typename Sample>
-Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, int*, int*, int), const Bytes& bytes) {
+Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, int*, int*, int), const Bytes& bytes,
+                       double memory) {
+  if (auto problem = stb_problem(bytes, sizeof(Sample), memory)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
   const StbPixels<Sample> pixels(load(&kFromSource, &source, &width, &height, &components, 0));
@@ -112,16 +134,26 @@ Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, in
       [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
 }
 
-Decoded decode_shown(const Bytes& bytes) {
+Decoded decode_shown(const Bytes& bytes, double memory) {
   if (stbi_is_16_bit_from_memory(bytes.data(), static_cast<int>(bytes.size()))) {
-    return decode_signals<stbi_us>(stbi_load_16_from_callbacks, bytes);
+    return decode_signals<stbi_us>(stbi_load_16_from_callbacks, bytes, memory);
   }
-  return decode_signals<stbi_uc>(stbi_load_from_callbacks, bytes);
+  return decode_signals<stbi_uc>(stbi_load_from_callbacks, bytes, memory);
 }
 
-Decoded decode_hdr(const Bytes& bytes) {
+// Where stb reads the lines of a header it takes the filler for more of them, without end: an empty line must end the
+// header, and a line break the size after it.
+bool ends_hdr_header(const Bytes& bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t end = text.find("\n\n");
+  return end != text.npos && text.find('\n', end + 2) != text.npos;
+}
+
+Decoded decode_hdr(const Bytes& bytes, double memory) {
   // Otherwise stb would make light of any other picture.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
+  if (!ends_hdr_header(bytes)) return "its header does not end";
+  if (auto problem = stb_problem(bytes, sizeof(float), memory)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes, '\xff'};  // no run is so long
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
@@ -152,7 +184,7 @@ std::optional<T> to(std::string_view word) {
 }
 
 // Source: as write_float_map().
-Decoded decode_pfm(const Bytes& bytes) {
+Decoded decode_pfm(const Bytes& bytes, double memory) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t at = 0;
   const std::string_view kind = next_word(text, at);
@@ -164,9 +196,12 @@ Decoded decode_pfm(const Bytes& bytes) {
   }
   const int components = grey ? 1 : 3;
   if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
-  std::vector<float> values(static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) *
-                            static_cast<std::size_t>(components));
-  if (text.size() - at < values.size() * 4) return "it ends too early";
+  const std::size_t count =
+      static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
+  if (text.size() - at < count * 4) return "it ends too early";
+  const double needed = 8.0 * static_cast<double>(count) + static_cast<double>(bytes.size());
+  if (needed > memory) return too_much_memory(needed, memory);
+  std::vector<float> values(count);
   const std::size_t row = values.size() / static_cast<std::size_t>(*height);
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::uint32_t bits = 0;
@@ -180,12 +215,12 @@ Decoded decode_pfm(const Bytes& bytes) {
   return spread(values.data(), *width, *height, components, same, same);
 }
 
-// False, and errno tells why.
-bool read_bytes(const std::string& path, Bytes& bytes) {
+// False, and errno tells why. What is longer than `most` bytes is cut off there: a device may have no end.
+bool read_bytes(const std::string& path, double most, Bytes& bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return false;
   constexpr std::size_t kPiece = std::size_t{1} << 20;
-  for (std::size_t count = kPiece; count == kPiece;) {
+  for (std::size_t count = kPiece; count == kPiece && static_cast<double>(bytes.size()) <= most;) {
     const std::size_t size = bytes.size();
     bytes.resize(size + kPiece);
     count = std::fread(bytes.data() + size, 1, kPiece, file.get());
@@ -194,35 +229,36 @@ bool read_bytes(const std::string& path, Bytes& bytes) {
   return std::ferror(file.get()) == 0;
 }
 
-Decoded decode(ImageFormat format, const Bytes& bytes) {
+Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
+  if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
   switch (format) {
     case ImageFormat::Exr:
-      return decode_exr(bytes);
+      return decode_exr(bytes, memory);
     case ImageFormat::Pfm:
-      return decode_pfm(bytes);
+      return decode_pfm(bytes, memory);
     case ImageFormat::Hdr:
-      return decode_hdr(bytes);
+      return decode_hdr(bytes, memory);
     default:
-      return decode_shown(bytes);
+      return decode_shown(bytes, memory);
   }
 }
 
 }  // namespace
 
-std::variant<FloatImage, UnreadImage> read_image(const std::string& path) {
+std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits) {
   const ImageFormatInfo* format = image_format_of(path);
   if (format == nullptr) {
     return UnreadImage{
         fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
   }
   Bytes bytes;
-  if (!read_bytes(path, bytes)) {
+  if (!read_bytes(path, limits.memory, bytes)) {
     return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
   }
   if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {
     return UnreadImage{fmt::format("cannot read `{}`: it is too large", path)};
   }
-  Decoded decoded = decode(format->format, bytes);
+  Decoded decoded = decode(format->format, bytes, limits.memory);
   if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
   return UnreadImage{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
                                  std::get<std::string>(decoded))};

@@ -18,6 +18,12 @@ struct UnreadImage {
   bool missing = false;  // the file could not be opened or read; otherwise it does not hold what its name says
 };
 
-std::variant<FloatImage, UnreadImage> read_image(const std::string& path);
+// What reading a picture may take.
+struct ReadLimits {
+  double memory = 0x1p36;  // bytes: of the file, what it is decoded from and the numbers, together
+};
+
+// Refuses a picture that would take more before it takes it.
+std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

@@ -23,21 +23,63 @@ bool gives_material(const CheckedNode& node) {
 
 SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
                            const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
-                           Diagnostics& diagnostics)
-    : named_(named), uses_(uses), materials_(materials), has_paint_(named.size(), false), diagnostics_(diagnostics) {
+                           const Limits& limits, Diagnostics& diagnostics)
+    : named_(named),
+      uses_(uses),
+      materials_(materials),
+      limits_(limits),
+      has_paint_(named.size(), false),
+      diagnostics_(diagnostics) {
   for (const std::uint32_t name : order) {
     has_paint_[name] = gives_material(named[name]) || std::any_of(uses[name].begin(), uses[name].end(),
                                                                   [&](const Use& u) { return has_paint_[u.target]; });
   }
 }
 
+// Reports it once; what is not built then is not missed.
+bool SceneBuilder::too_many_nodes(const CheckedNode& node) {
+  if (full_ || static_cast<double>(scene_.graph.size()) <= limits_.nodes) return full_;
+  full_ = true;
+  diagnostics_.error("E0312", node.span, fmt::format("the scene has more than {} nodes here", limits_.nodes), "",
+                     {"a named node with materials in it is another in each object that uses it",
+                      raise(&Limits::nodes, 2 * limits_.nodes)});
+  return true;
+}
+
+// How often the node evaluates its child, and how long it iterates.
+void SceneBuilder::check_size(const CheckedNode& node, NodeId id) {
+  const Code code = spec(scene_.graph.kind(id)).code(scene_.graph.params(id));
+  const auto copies = static_cast<double>(code.points.size());
+  if (copies > limits_.copies) {
+    diagnostics_.error(
+        "E0312", node.type_span,
+        fmt::format("{} copies of the node count at every point; at most {} are evaluated", copies, limits_.copies),
+        "", {"make `period` larger or the node smaller", raise(&Limits::copies, copies)});
+  }
+  for (const Instruction& instruction : code.after) {
+    const vm::OpcodeInfo& row = vm::info(instruction.opcode);
+    for (int i = 0; i < row.immediates; ++i) {
+      const double count = instruction.immediates[static_cast<std::size_t>(i)];
+      if (!vm::is_integer_immediate(row, i) || count <= limits_.iterations) continue;
+      diagnostics_.error(
+          "E0312", node.type_span,
+          fmt::format("`{}` is {}; at most {} are allowed, for it is a loop at every point",
+                      vm::immediate_name(row, i), count, limits_.iterations),
+          "", {raise(&Limits::iterations, count)});
+    }
+  }
+}
+
 void SceneBuilder::add_object(const CheckedNode& node) {
+  if (too_many_nodes(node)) return;
   const auto object = static_cast<std::uint32_t>(object_names_.size());
   object_names_.push_back(unique_name(node));
   for (const Use& use : uses_of(node)) build_named(use.target, {object, use.material});
+  if (full_) return;
   const Context context{object, node.material};
   const Built built = build(node, {object, std::nullopt});
   objects_.push_back(built.painted ? built.id : paint(built.id, context, {node.span, node.name}));
+  too_many_nodes(node);
 }
 
 Scene SceneBuilder::finish() {
@@ -71,6 +113,7 @@ void SceneBuilder::build_named(std::uint32_t name, Context context) {
       if (!built_.contains(key(use.target, inner))) stack.push_back({use.target, inner, 0});
     } else {
       const Pending ready = top;
+      if (too_many_nodes(named_[ready.name])) return;
       stack.pop_back();
       built_.emplace(top_key, build(named_[ready.name], ready.context));
     }
@@ -107,7 +150,9 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
     return {children[0], true};  // something to go on with
   }
   const bool painted = !over.empty() && std::all_of(over.begin(), over.end(), std::mem_fn(&Built::painted));
-  return {maker_.make(node.kind, node.params, children, {node.span, node.name}), painted};
+  const NodeId id = maker_.make(node.kind, node.params, children, {node.span, node.name});
+  check_size(node, id);
+  return {id, painted};
 }
 
 NodeId SceneBuilder::transform(NodeId child, std::span<const double> params, const Origin& origin) {

@@ -28,7 +28,7 @@ class SceneBuilder {
   // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
   // material is added to `materials` when an object needs it. All must outlive the builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, Diagnostics& diagnostics);
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, const Limits& limits, Diagnostics& diagnostics);
 
   // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);
@@ -57,10 +57,14 @@ class SceneBuilder {
   NodeId transform(NodeId child, std::span<const double> params, const Origin& origin);
   NodeId paint(NodeId child, Context context, const Origin& origin);
   std::string unique_name(const CheckedNode& node);
+  bool too_many_nodes(const CheckedNode& node);
+  void check_size(const CheckedNode& node, NodeId id);
 
   const std::vector<CheckedNode>& named_;
   const std::vector<std::vector<Use>>& uses_;
   std::vector<Material>& materials_;
+  const Limits& limits_;
+  bool full_ = false;            // there are more nodes than the limit, which was reported
   std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
   Diagnostics& diagnostics_;
   Scene scene_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 
 #include "compiler/frontend/formula_nodes.h"
@@ -63,7 +64,7 @@ std::vector<CheckedNode> NodeChecker::check_list(const syntax::Value& value, std
 }
 
 void NodeChecker::check_pending() {
-  while (!pending_.empty()) {
+  while (!pending_.empty() && !diagnostics_.full()) {
     const Pending next = pending_.back();
     pending_.pop_back();
     check_node(*next.value, *next.node);
@@ -111,8 +112,18 @@ void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, s
     diagnostics_.error("E0107", value.span, fmt::format("{} is empty", whose), "needs at least one node",
                        {"such as [{\"type\": \"sphere\", \"radius\": 1}]"});
   }
-  nodes.resize(list.size());
-  for (std::size_t i = 0; i < list.size(); ++i) pending_.push_back({&list[i], &nodes[i]});
+  // What is no record is reported at once: a million of them need no nodes.
+  const auto is_record = [](const syntax::Value& item) { return std::holds_alternative<syntax::Record>(item.data); };
+  nodes.resize(static_cast<std::size_t>(std::count_if(list.begin(), list.end(), is_record)));
+  CheckedNode none;
+  std::size_t next = 0;
+  for (const syntax::Value& item : list) {
+    if (is_record(item)) {
+      pending_.push_back({&item, &nodes[next++]});
+    } else if (!diagnostics_.full()) {
+      check_node(item, none);
+    }
+  }
 }
 
 void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes) {

@@ -112,10 +112,36 @@ Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnos
   return out;
 }
 
+// Where the scene gives a number that a limit is about: `property` of its record `part`, or the record.
+Span place_of(const syntax::Record& scene, std::string_view part, std::string_view property) {
+  const syntax::Property* found = scene.find(part);
+  if (found == nullptr) return {};
+  const auto* record = std::get_if<syntax::Record>(&found->value->data);
+  const syntax::Property* inner = record ? record->find(property) : nullptr;
+  return inner ? inner->value->span : found->name_span;
+}
+
+// What the scene asks of a render. What the command line asks in its place is the command line's to check.
+void check_render_limits(const syntax::Record& record, const Elaborated& scene, const Limits& limits,
+                         Diagnostics& diagnostics) {
+  const auto check = [&](double value, double Limits::*limit, std::string_view part, std::string_view property,
+                         const std::string& what) {
+    if (value <= limits.*limit) return;
+    diagnostics.error("E0312", place_of(record, part, property),
+                      fmt::format("{}; at most {:.15g} are allowed", what, limits.*limit), "", {raise(limit, value)});
+  };
+  const double width = scene.film.width, height = scene.film.height;
+  check(width, &Limits::image_side, "film", "width", fmt::format("a picture {} pixels wide", width));
+  check(height, &Limits::image_side, "film", "height", fmt::format("a picture {} pixels high", height));
+  check(width * height, &Limits::pixels, "film", "",
+        fmt::format("a picture of {} by {} pixels has {}", width, height, width * height));
+  check(scene.settings.spp, &Limits::samples, "render", "spp", fmt::format("{} samples a pixel", scene.settings.spp));
+}
+
 }  // namespace
 
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions) {
+                                    const Definitions& definitions, const Limits& limits) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
     diagnostics.error(
@@ -124,10 +150,11 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
     return std::nullopt;
   }
   const syntax::Property* params = record->find("params");
-  const Scope parameters = read_parameters(params ? params->value.get() : nullptr, definitions, diagnostics);
+  const Scope parameters = read_parameters(params ? params->value.get() : nullptr, definitions, limits, diagnostics);
   const RecordReader reader(scene_record(), *record, opening(file.root.span), parameters, diagnostics);
   check_version(reader, diagnostics);
   Elaborated out = read_settings(reader, parameters, diagnostics);
+  check_render_limits(*record, out, limits, diagnostics);
   const CheckedScene scene = check_nodes(reader, parameters, diagnostics);
   // With errors about, what seems unused may be meant by a misspelt name.
   if (diagnostics.has_errors()) return std::nullopt;
@@ -135,7 +162,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   warn_of_unused(parameters, diagnostics);
   for (const Scope::Entry& entry : parameters.entries()) out.parameters.push_back(entry.parameter);
 
-  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, diagnostics);
+  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, limits, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);
   if (diagnostics.has_errors()) return std::nullopt;
   out.scene = level(builder.finish());

@@ -10,6 +10,7 @@
 #include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
 #include "compiler/graph.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
@@ -22,6 +23,6 @@ struct Elaborated : SceneTables {
 // Reports every semantic error of the file; nullopt when there was any. `definitions` are values for the scene's
 // parameters in place of its own.
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions = {});
+                                    const Definitions& definitions = {}, const Limits& limits = {});
 
 }  // namespace fathom::compiler

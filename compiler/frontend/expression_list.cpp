@@ -79,9 +79,9 @@ std::vector<std::string_view> operation_names() {
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
 
-// Appends the words of a line.
-void split_words(std::string_view line, std::vector<std::string_view>& words) {
-  for (std::size_t at = 0; at < line.size();) {
+// Appends the words of a line, the first `most`.
+void split_words(std::string_view line, std::size_t most, std::vector<std::string_view>& words) {
+  for (std::size_t at = 0; at < line.size() && most > 0;) {
     if (is_blank(line[at])) {
       ++at;
       continue;
@@ -89,6 +89,7 @@ void split_words(std::string_view line, std::vector<std::string_view>& words) {
     std::size_t end = at + 1;
     while (end < line.size() && !is_blank(line[end])) ++end;
     words.push_back(line.substr(at, end - at));
+    --most;
     at = end;
   }
 }
@@ -130,13 +131,15 @@ std::string filled_in(std::string_view formula, const std::array<std::string_vie
 
 class ListReader {
  public:
-  ListReader(const Source& source, Diagnostics& diagnostics) : text_(source.text()), diagnostics_(diagnostics) {}
+  ListReader(const Source& source, Diagnostics& diagnostics, const Limits& limits)
+      : text_(source.text()), diagnostics_(diagnostics), limits_(limits) {}
 
   std::optional<syntax::File> read() {
+    if (!check_words()) return std::nullopt;
     std::string_view rest = without_mark(text_);
     while (!rest.empty()) {
       const std::size_t first = words_.size();
-      split_words(take_line(rest), words_);
+      split_words(take_line(rest), text_.size(), words_);
       if (is_comment(Words(words_).subspan(first))) {
         words_.resize(first);
         continue;
@@ -151,6 +154,7 @@ class ListReader {
     names_.reserve(ends_.size()), formula_.reserve(ends_.size());
     std::size_t first = 0;
     for (const std::size_t end : ends_) {
+      if (diagnostics_.full()) break;
       read_line(Words(words_).subspan(first, end - first), end == words_.size());
       first = end;
     }
@@ -164,6 +168,20 @@ class ListReader {
     return {begin, begin + static_cast<std::uint32_t>(part.size())};
   }
   static Span join(Span from, Span to) { return {from.begin, to.end}; }
+
+  // Before any is kept. Those of comments count.
+  bool check_words() {
+    double words = 0;
+    for (std::size_t at = 0; at < text_.size(); ++at) {
+      const bool begins = at == 0 || is_blank(text_[at - 1]) || text_[at - 1] == '\n';
+      if (!begins || is_blank(text_[at]) || text_[at] == '\n' || ++words <= limits_.tokens) continue;
+      diagnostics_.error("E0008", span(std::string_view(text_).substr(at, 1)),
+                         fmt::format("the list has more than {} words", limits_.tokens), "one too many",
+                         {raise(&Limits::tokens, 2 * limits_.tokens)});
+      return false;
+    }
+    return true;
+  }
 
   void read_line(Words words, bool last) {
     const Span place = join(span(words.front()), span(words.back()));
@@ -275,6 +293,7 @@ class ListReader {
 
   const std::string& text_;
   Diagnostics& diagnostics_;
+  const Limits& limits_;
   std::vector<std::string_view> words_;                      // of all lines
   std::vector<std::size_t> ends_;                            // [line] of its words
   std::unordered_map<std::string_view, std::string> names_;  // of the lines so far: as the formula calls them
@@ -292,7 +311,7 @@ bool is_expression_list(std::string_view text) {
   text = without_mark(text);
   while (!text.empty()) {
     std::vector<std::string_view> words;
-    split_words(take_line(text), words);
+    split_words(take_line(text), 2, words);
     if (is_comment(words)) {
       comment = comment || !words.empty();
       continue;
@@ -303,9 +322,10 @@ bool is_expression_list(std::string_view text) {
   return comment;
 }
 
-std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics) {
+std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics,
+                                                 const Limits& limits) {
   if (!check_text(source, diagnostics)) return std::nullopt;
-  return ListReader(source, diagnostics).read();
+  return ListReader(source, diagnostics, limits).read();
 }
 
 }  // namespace fathom::compiler

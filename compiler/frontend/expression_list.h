@@ -17,6 +17,7 @@
 
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
@@ -24,6 +25,7 @@ namespace fathom::compiler {
 bool is_expression_list(std::string_view text);
 
 // A scene with one `expression`, in front of a camera; nullopt after reporting what is wrong.
-std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics);
+std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics,
+                                      const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -12,8 +12,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr int kDeepest = 1000;  // parentheses, powers and minus signs within each other; bounds the recursion
-
 struct NamedConstant {
   std::string_view name;
   double value;
@@ -122,7 +120,7 @@ FormulaParser::Result FormulaParser::term() {
 
 // Every recursion comes through here.
 FormulaParser::Result FormulaParser::factor() {
-  if (depth_ > kDeepest) return too_deep();
+  if (depth_ > context_.scope.limits().formula_nesting) return too_deep();
   ++depth_;
   Result result;
   if (next_.is('-')) {
@@ -225,8 +223,9 @@ FormulaId FormulaParser::resolve(const Token& name) {
 
 // Reports are functions of their own also to keep their texts out of the frames of the recursion.
 FormulaParser::Result FormulaParser::too_deep() {
-  report("E0406", span(next_), fmt::format("the formula is nested more than {} deep", kDeepest), "one level too many",
-         {"give inner parts names of their own"});
+  report("E0406", span(next_),
+         fmt::format("the formula is nested more than {} deep", context_.scope.limits().formula_nesting),
+         "one level too many", {"give inner parts names of their own"});
   return std::nullopt;
 }
 

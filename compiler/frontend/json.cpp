@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "compiler/frontend/json_error.h"
 
 namespace fathom::compiler {
 namespace {
-
-constexpr std::size_t kDeepest = 4096;          // records and lists within each other; bounds every recursion
-constexpr std::size_t kLargestText = 1u << 30;  // bytes; spans are 32 bits wide
 
 // Reads a text for nlohmann's lexer and tells how many bytes it has taken.
 class CountingIterator {
@@ -51,8 +49,8 @@ bool in_number(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' |
 // is not a blank, a comment, a comma or a colon.
 class Reader : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Reader(const Source& source, Diagnostics& diagnostics, const std::size_t& taken)
-      : text_(source.text()), source_(source), diagnostics_(diagnostics), taken_(taken) {
+  Reader(const Source& source, Diagnostics& diagnostics, const Limits& limits, const std::size_t& taken)
+      : text_(source.text()), source_(source), diagnostics_(diagnostics), limits_(limits), taken_(taken) {
     if (text_.starts_with("\xEF\xBB\xBF")) last_end_ = 3;
   }
 
@@ -143,8 +141,9 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
 
   bool open(decltype(syntax::Value::data) empty) {
     const Span span = token(taken_);
-    if (open_.size() == kDeepest) {
-      diagnostics_.error("E0008", span, fmt::format("lists and objects are nested more than {} deep", kDeepest),
+    if (static_cast<double>(open_.size()) >= limits_.nesting) {
+      diagnostics_.error("E0008", span,
+                         fmt::format("lists and objects are nested more than {} deep", limits_.nesting),
                          "one level too many", {"give inner nodes a name under `nodes` and refer to it with `use`"});
       return false;
     }
@@ -184,6 +183,7 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
     const syntax::Property* first = nullptr;
     std::vector<std::uint32_t> dropped;  // where their names begin
     for (const syntax::Property* property : sorted) {
+      if (diagnostics_.full()) break;
       if (first == nullptr || first->name != property->name) {
         first = property;
         continue;
@@ -204,6 +204,7 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   const std::string& text_;
   const Source& source_;
   Diagnostics& diagnostics_;
+  const Limits& limits_;
   const std::size_t& taken_;  // bytes that nlohmann's lexer has read
   std::size_t last_end_ = 0;  // where the last token ended
   std::vector<Open> open_;
@@ -211,21 +212,58 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   bool has_root_ = false;
 };
 
+// Counts values and names, and ends the reading after the last that is allowed: so that many too many are not kept.
+class Counter : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit Counter(double most) : most_(most) {}
+  bool too_many() const { return count_ > most_; }
+
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return count(); }
+  bool start_array(std::size_t) override { return count(); }
+  bool key(string_t&) override { return count(); }
+  bool end_object() override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override { return false; }
+
+ private:
+  bool count() { return ++count_ <= most_; }
+  double most_, count_ = 0;
+};
+
+bool parse(const std::string& text, nlohmann::json_sax<nlohmann::json>& reader, std::size_t& taken) {
+  return nlohmann::json::sax_parse(CountingIterator(text.data(), &taken),
+                                   CountingIterator(text.data() + text.size(), &taken), &reader,
+                                   nlohmann::json::input_format_t::json, true, true);
+}
+
+// A text has fewer values and names than bytes.
+bool check_tokens(const std::string& text, const Limits& limits, Diagnostics& diagnostics) {
+  if (static_cast<double>(text.size()) <= limits.tokens) return true;
+  Counter counter(limits.tokens);
+  std::size_t taken = 0;
+  parse(text, counter, taken);
+  if (!counter.too_many()) return true;
+  const auto at = static_cast<std::uint32_t>(taken);
+  diagnostics.error("E0008", {at - 1, at}, fmt::format("the file has more than {} values and names", limits.tokens),
+                    "one too many", {"move repeated parts to `nodes`", raise(&Limits::tokens, 2 * limits.tokens)});
+  return false;
+}
+
 }  // namespace
 
-std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics) {
+std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
   const std::string& text = source.text();
-  if (text.size() > kLargestText) {
-    diagnostics.error("E0008", {}, "the file is larger than 1 GiB", "", {"move repeated parts to `nodes`"});
-    return std::nullopt;
-  }
-  if (!check_text(source, diagnostics)) return std::nullopt;
+  if (!check_text(source, diagnostics) || !check_tokens(text, limits, diagnostics)) return std::nullopt;
   std::size_t taken = 0;
-  Reader reader(source, diagnostics, taken);
-  const bool read = nlohmann::json::sax_parse(CountingIterator(text.data(), &taken),
-                                              CountingIterator(text.data() + text.size(), &taken), &reader,
-                                              nlohmann::json::input_format_t::json, true, true);
-  if (!read) return std::nullopt;
+  Reader reader(source, diagnostics, limits, taken);
+  if (!parse(text, reader, taken)) return std::nullopt;
   return syntax::File{reader.take_root()};
 }
 

@@ -6,10 +6,12 @@
 
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
 // nullopt after a syntax error, which ends the reading; duplicate keys are errors too, and all of them are reported.
-std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics);
+std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics,
+                                      const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -108,8 +108,9 @@ void check_definitions(const Definitions& definitions, const Scope& scope, Diagn
 
 }  // namespace
 
-Scope read_parameters(const syntax::Value* params, const Definitions& definitions, Diagnostics& diagnostics) {
-  Scope scope;
+Scope read_parameters(const syntax::Value* params, const Definitions& definitions, const Limits& limits,
+                      Diagnostics& diagnostics) {
+  Scope scope(limits);
   // What else `params` may be is reported where the scene's properties are checked.
   const auto* record = params ? std::get_if<syntax::Record>(&params->data) : nullptr;
   if (record) {

@@ -16,7 +16,8 @@ namespace fathom::compiler {
 using Definitions = std::vector<std::pair<std::string, double>>;
 
 // The scene's parameters, everything wrong with them and with `definitions` reported. `params` may be null.
-Scope read_parameters(const syntax::Value* params, const Definitions& definitions, Diagnostics& diagnostics);
+Scope read_parameters(const syntax::Value* params, const Definitions& definitions, const Limits& limits,
+                      Diagnostics& diagnostics);
 
 void warn_of_unused(const Scope& scope, Diagnostics& diagnostics);
 

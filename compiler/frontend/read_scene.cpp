@@ -1,5 +1,7 @@
 #include "compiler/frontend/read_scene.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "compiler/frontend/expression_list.h"
@@ -8,13 +10,20 @@
 
 namespace fathom::compiler {
 
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics) {
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
+  const auto size = static_cast<double>(source.text().size());
+  if (size > limits.file_size) {
+    diagnostics.error("E0008", {},
+                      fmt::format("the file is {} bytes long; at most {} are read", size, limits.file_size), "",
+                      {"move repeated parts to `nodes`", raise(&Limits::file_size, size)});
+    return std::nullopt;
+  }
   if (is_expression_list(source.text())) {
-    std::optional<syntax::File> file = read_expression_list(source, diagnostics);
+    std::optional<syntax::File> file = read_expression_list(source, diagnostics, limits);
     if (!file) return std::nullopt;
     return ReadScene{SceneFormat::ExpressionList, std::move(*file)};
   }
-  std::optional<syntax::File> file = read_json(source, diagnostics);
+  std::optional<syntax::File> file = read_json(source, diagnostics, limits);
   if (!file) return std::nullopt;
   if (!is_nested_nodes(*file)) return ReadScene{SceneFormat::Scene, std::move(*file)};
   // What is already wrong, such as a property given twice, must not be lost.

@@ -6,6 +6,7 @@
 
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
@@ -17,6 +18,6 @@ struct ReadScene {
 };
 
 // nullopt after reporting an error.
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics);
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -115,15 +115,17 @@ bool has_type(const Value& value, ValueType type) {
 }
 
 // What the number does not satisfy, as in "must be ..."; empty when nothing.
-std::string broken_rule(double number, const PropertySpec& spec) {
+std::string broken_rule(double number, const PropertySpec& spec, const Limits& limits) {
   const Range& range = spec.range;
   if (!std::isfinite(number)) return "finite";
   if (spec.rule == Rule::Positive && !(number > 0)) return "positive";
   if (spec.rule == Rule::NotNegative && !(number >= 0)) return "zero or positive";
   const bool inside =
       range.open ? number > range.least && number < range.most : number >= range.least && number <= range.most;
+  if (range.most == kLargest && range.least == -kLargest) {
+    return std::abs(number) <= limits.coordinate ? "" : fmt::format("at most {} in magnitude", limits.coordinate);
+  }
   if (inside) return "";
-  if (range.most == kLargest && range.least == -kLargest) return fmt::format("at most {} in magnitude", kLargest);
   if (range.open) return fmt::format("greater than {} and less than {}", range.least, range.most);
   return fmt::format("between {} and {}", range.least, range.most);
 }
@@ -134,9 +136,9 @@ struct Broken {
 };
 
 // The first number of the value that breaks a rule of its property.
-std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec) {
+std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec, const Limits& limits) {
   if (const double* number = std::get_if<double>(&value.data)) {
-    const std::string rule = broken_rule(*number, spec);
+    const std::string rule = broken_rule(*number, spec, limits);
     return rule.empty() ? std::nullopt : std::optional(Broken{rule, &value});
   }
   const auto* list = std::get_if<syntax::List>(&value.data);
@@ -144,11 +146,11 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec)
   bool all_zero = true;
   for (const Value& item : *list) {
     if (std::holds_alternative<syntax::List>(item.data)) {
-      if (auto broken = first_broken(item, spec)) return broken;
+      if (auto broken = first_broken(item, spec, limits)) return broken;
     }
     const double* number = std::get_if<double>(&item.data);
     if (number == nullptr) continue;
-    const std::string rule = broken_rule(*number, spec);
+    const std::string rule = broken_rule(*number, spec, limits);
     if (!rule.empty()) return Broken{rule, &item};
     all_zero = all_zero && *number == 0;
   }
@@ -262,9 +264,11 @@ RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record,
                            Diagnostics& diagnostics, const char* range_code)
     : spec_(spec), scope_(scope), diagnostics_(diagnostics), range_code_(range_code) {
   const std::size_t before = diagnostics.errors();
-  for (const syntax::Property& property : record.properties) check(property);
+  for (const syntax::Property& property : record.properties) {
+    if (!diagnostics.full()) check(property);
+  }
   for (const PropertySpec& row : spec.properties) {
-    if (!row.required || record.find(row.name) || misnamed(row, spec, record)) continue;
+    if (diagnostics.full() || !row.required || record.find(row.name) || misnamed(row, spec, record)) continue;
     diagnostics.error("E0103", place, fmt::format("{} has no `{}`", spec.title, row.name),
                       fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
   }
@@ -299,7 +303,7 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
     const std::string instead = formula.empty() ? ", not " + describe(value) : formula;
     diagnostics_.error("E0101", value.span, fmt::format("`{}` must be {}{}", row.name, expected(row.type), instead),
                        "", retype(value, written, row));
-  } else if (const std::optional<Broken> broken = first_broken(value, row)) {
+  } else if (const std::optional<Broken> broken = first_broken(value, row, scope_.limits())) {
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
                        about(row));

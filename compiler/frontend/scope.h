@@ -1,4 +1,4 @@
-// What the names of a scene's parameters stand for.
+// What the names of a scene's parameters stand for, and the limits of what is written with them.
 // Tested by: tests/compiler/scene_numbers_test.cpp
 #pragma once
 
@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "compiler/compiled_scene.h"
+#include "compiler/limits.h"
 #include "compiler/source.h"
 
 namespace fathom::compiler {
 
 class Scope {
  public:
+  explicit Scope(const Limits& limits = {}) : limits_(limits) {}
+  const Limits& limits() const { return limits_; }
+
   enum class State {
     Later,     // its own value is not read yet
     Unusable,  // what is wrong with it has been reported
@@ -38,6 +42,7 @@ class Scope {
   std::vector<std::string_view> known_names() const;
 
  private:
+  Limits limits_;
   mutable std::vector<Entry> entries_;
   std::map<std::string, std::size_t, std::less<>> numbers_;
 };

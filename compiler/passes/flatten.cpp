@@ -1,24 +1,60 @@
+#include <algorithm>
+
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
 
 namespace fathom::compiler {
+namespace {
+
+// Whether operand number `i` of such a node may stand among its own operands where it is of the same kind.
+bool takes_up(Kind kind, std::size_t i) {
+  return kind == Kind::Union || kind == Kind::Intersection || (kind == Kind::Subtraction && i == 0);
+}
+
+// The nodes that go up into the only one that uses them. What several use stays: otherwise a list could hold one node as
+// often as there are ways to it, which n nodes can have 2^n of. [node]
+std::vector<bool> taken_up(const Scene& scene, const std::vector<bool>& reached) {
+  std::vector<std::uint32_t> uses(scene.graph.size(), 0);
+  std::vector<bool> taken(scene.graph.size(), false);
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    if (!reached[id]) continue;
+    const auto children = scene.graph.children(id);
+    const Kind kind = scene.graph.kind(id);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      ++uses[children[i]];
+      taken[children[i]] = takes_up(kind, i) && scene.graph.kind(children[i]) == kind;
+    }
+  }
+  for (NodeId id = 0; id < scene.graph.size(); ++id) taken[id] = taken[id] && uses[id] == 1;
+  return taken;
+}
+
+}  // namespace
 
 Scene flatten(const Scene& scene) {
-  return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
-    const Kind kind = scene.graph.kind(id);
-    const bool associative = kind == Kind::Union || kind == Kind::Intersection;
-    if (!associative && kind != Kind::Subtraction) return keep(scene, out, id, children);
-    std::vector<NodeId> flat;
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      if (out.kind(children[i]) == kind && (associative || i == 0)) {
-        const auto inner = out.children(children[i]);
-        flat.insert(flat.end(), inner.begin(), inner.end());
+  const std::vector<bool> reached = reachable(scene), taken = taken_up(scene, reached);
+  Scene out;
+  std::vector<NodeId> rebuilt(scene.graph.size(), 0), flat, pending;
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    if (!reached[id] || taken[id]) continue;
+    const auto push = [&](NodeId node) {
+      const auto children = scene.graph.children(node);
+      pending.insert(pending.end(), children.rbegin(), children.rend());
+    };
+    flat.clear();
+    for (push(id); !pending.empty();) {
+      const NodeId next = pending.back();
+      pending.pop_back();
+      if (taken[next]) {
+        push(next);
       } else {
-        flat.push_back(children[i]);
+        flat.push_back(rebuilt[next]);
       }
     }
-    return out.add(kind, {}, flat, scene.graph.origin(id));
-  });
+    rebuilt[id] = keep(scene, out.graph, id, flat);
+  }
+  out.root = rebuilt[scene.root];
+  return out;
 }
 
 }  // namespace fathom::compiler

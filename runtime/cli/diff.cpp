@@ -18,7 +18,9 @@
 
 #include "runtime/chart/colormap.h"
 #include "runtime/cli/arguments.h"
+#include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/flip.h"
 #include "runtime/image_io.h"
@@ -58,6 +60,7 @@ struct DiffRequest {
   std::string first, second;
   std::optional<std::string> map;
   std::optional<double> tolerance;
+  compiler::Limits limits;
   int metric = -1;  // an index into kMetrics; -1: not given
   bool json = false;
 };
@@ -84,6 +87,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("-o,--output", "FILE", "Write a map of FLIP: dark violet is alike, yellow is different",
                    into(read_shown_output, request.map));
   arguments.flag("--json", "Print the numbers as JSON", request.json);
+  add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (request.metric >= 0 && !request.tolerance) {
     return fail(streams, kUsage, "--metric says what --tol is about; there is no --tol");
@@ -98,8 +102,9 @@ struct Colors {
   runtime::RgbView view() const { return {width, height, rgb}; }
 };
 
-std::variant<Colors, ExitCode> read_colors(const std::string& path, const Streams& streams) {
-  const auto read = runtime::read_image(path);
+std::variant<Colors, ExitCode> read_colors(const std::string& path, const compiler::Limits& limits,
+                                           const Streams& streams) {
+  const auto read = runtime::read_image(path, read_limits(limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
     return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
   }
@@ -165,7 +170,8 @@ int run_diff(std::span<const std::string> args, const Streams& streams) {
     if (const auto code = check_collisions(request.first, {request.second, *request.map}, streams)) return *code;
     if (const auto problem = runtime::check_image_path(*request.map)) return fail(streams, kIo, *problem);
   }
-  const auto first = read_colors(request.first, streams), second = read_colors(request.second, streams);
+  const auto first = read_colors(request.first, request.limits, streams),
+             second = read_colors(request.second, request.limits, streams);
   if (const auto* code = std::get_if<ExitCode>(&first)) return *code;
   if (const auto* code = std::get_if<ExitCode>(&second)) return *code;
   const Colors &picture = std::get<Colors>(first), &reference = std::get<Colors>(second);

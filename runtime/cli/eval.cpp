@@ -66,12 +66,10 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
 }
 
 // Appends the file's points to `points`; otherwise the exit code after a message.
-std::optional<ExitCode> read_points(const std::string& path, const Streams& streams,
+std::optional<ExitCode> read_points(const std::string& path, const compiler::Limits& limits, const Streams& streams,
                                     std::vector<glm::dvec3>& points) {
-  const auto read = read_text(path, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&read)) {
-    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
-  }
+  const auto read = read_text(path, limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&read)) return fail(streams, path, *unreadable);
   std::string_view rest = std::get<std::string>(read);
   for (int number = 1; !rest.empty(); ++number) {
     const std::size_t end = rest.find('\n');
@@ -146,7 +144,8 @@ int run_eval(std::span<const std::string> args, const Streams& streams) {
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   if (request.points_file) {
-    if (const auto code = read_points(*request.points_file, streams, request.points)) return *code;
+    if (const auto code = read_points(*request.points_file, request.scene.limits, streams, request.points))
+      return *code;
   }
   compiler::CompileOptions options;
   options.stop_after = request.after;

@@ -12,6 +12,7 @@
 #include <new>
 
 #include "compiler/diagnostics.h"
+#include "compiler/limits.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
 
@@ -29,8 +30,22 @@ std::string overview() {
     text += fmt::format("  {:41}{}\n", fmt::format("fathom {} {}", verb.name, verb.arguments), verb.summary);
   }
   text += "  fathom help VERB                         the options of a verb\n";
+  text += "  fathom help limits                       what a file may ask for\n";
   text += "  fathom --version\n\nExit status:\n";
   for (const ExitCodeInfo& row : kExitCodes) text += fmt::format("  {:<3} {}\n", int{row.code}, row.meaning);
+  return text;
+}
+
+// `fathom help limits`: the table.
+std::string limits_text() {
+  std::string text = "What a file may ask for before it is refused; --limit NAME=VALUE sets one.\n\n";
+  text += fmt::format("  {:<17}{:>12} {:>12}  {}\n", "name", "default", "at most", "of what");
+  for (const compiler::LimitRow& row : compiler::kLimits) {
+    const double value = compiler::Limits{}.*row.value;
+    text += fmt::format("  {:<17}{:>12} {:>12}  {}: {}\n", row.name,
+                        value > 0 ? fmt::format("{:.15g}", value) : "3/4 of all", fmt::format("{:.15g}", row.largest),
+                        row.unit, row.bounds);
+  }
   return text;
 }
 
@@ -64,6 +79,10 @@ int run(std::span<const std::string> args, const Streams& streams) {
     return kDone;
   }
   const std::string& name = help ? args[1] : word;
+  if (help && name == "limits") {
+    streams.out << limits_text();
+    return kDone;
+  }
   const Verb* verb = find_verb(name);
   if (!verb) return unknown_verb(name, streams);
   const std::string show_help[] = {"--help"};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -11,8 +12,6 @@
 
 namespace fathom::cli {
 namespace {
-
-constexpr std::int64_t kMaxPixels = 1 << 28;  // a pixel of the film takes 32 to 188 bytes
 
 constexpr std::string_view kFilmEnding = ".film";
 
@@ -57,12 +56,16 @@ std::string beside(const std::string& path, const std::string& suffix) {
   return path.substr(0, dot) + "-" + suffix + path.substr(dot);
 }
 
-std::optional<ExitCode> check_picture_size(double width, double height, const Streams& streams) {
-  if (width <= compiler::kMaxSide && height <= compiler::kMaxSide && width * height <= kMaxPixels)
-    return std::nullopt;
-  return fail(
-      streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
-      {fmt::format("a side may have {} pixels, and the whole {} million", compiler::kMaxSide, kMaxPixels / 1000000)});
+std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
+                                           const Streams& streams) {
+  const double side = std::max(width, height), pixels = width * height;
+  if (side <= limits.image_side && pixels <= limits.pixels) return std::nullopt;
+  const bool long_side = side > limits.image_side;
+  return fail(streams, kUsage, fmt::format("a picture of {:.0f} by {:.0f} pixels is too large", width, height),
+              {fmt::format("a side may have {:.0f} pixels, and the whole {:.0f} million", limits.image_side,
+                           std::floor(limits.pixels / 1e6)),
+               long_side ? compiler::raise(&compiler::Limits::image_side, side)
+                         : compiler::raise(&compiler::Limits::pixels, pixels)});
 }
 
 std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,

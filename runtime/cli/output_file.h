@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/limits.h"
 #include "runtime/cli/streams.h"
 #include "runtime/cli/values.h"
 
@@ -30,7 +31,8 @@ std::string default_output(const std::string& scene);
 std::string beside(const std::string& path, const std::string& suffix);
 
 // An ExitCode, after a message, when a picture of that size would be too large.
-std::optional<ExitCode> check_picture_size(double width, double height, const Streams& streams);
+std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
+                                           const Streams& streams);
 
 // An ExitCode, after a message, when one of `outputs` is the scene's file or another output.
 std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,

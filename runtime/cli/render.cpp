@@ -17,6 +17,7 @@
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/interruption.h"
+#include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_files.h"
 #include "runtime/cli/progress.h"
@@ -70,10 +71,10 @@ std::vector<std::string> output_files(const RenderRequest& request) {
 }
 
 // The picture that the scene's background names.
-std::optional<ExitCode> read_background(const compiler::Background& background, runtime::RenderOptions& options,
-                                        const Streams& streams) {
+std::optional<ExitCode> read_background(const compiler::Background& background, const compiler::Limits& limits,
+                                        runtime::RenderOptions& options, const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
-  auto image = runtime::read_environment(background.image.file);
+  auto image = runtime::read_environment(background.image.file, read_limits(limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
     return fail(streams, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem);
   }
@@ -277,7 +278,9 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
-  if (const auto code = read_background(scene.background, request.options, streams)) return *code;
+  if (const auto code = check_memory(request, scene, streams)) return *code;
+  if (const auto code = read_background(scene.background, request.scene.limits, request.options, streams))
+    return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));

@@ -325,7 +325,7 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
                 {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
-  if (const auto code = check_picture_size(width, height, streams)) return code;
+  if (const auto code = check_picture_size(width, height, request.scene.limits, streams)) return code;
   scene.film.width = static_cast<int>(width);
   scene.film.height = static_cast<int>(height);
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);

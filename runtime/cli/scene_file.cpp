@@ -15,14 +15,16 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::size_t kMaxBytes = 256u << 20;  // of a text file; keeps /dev/zero from filling the memory
-
-std::variant<std::string, Unreadable> read_all(std::istream& in) {
+std::variant<std::string, Unreadable> read_all(std::istream& in, const compiler::Limits& limits) {
   std::string text;
   char block[1 << 16];
   while (in.read(block, sizeof block) || in.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxBytes) return Unreadable{"larger than 256 MiB"};
+    const auto size = static_cast<double>(text.size());
+    if (size > limits.file_size) {
+      return Unreadable{fmt::format("it has more than {:.15g} bytes, as many as are read", limits.file_size),
+                        compiler::raise(&compiler::Limits::file_size, 2 * limits.file_size), kBadScene};
+    }
   }
   if (in.bad()) return Unreadable{std::strerror(errno)};
   return text;
@@ -45,6 +47,30 @@ Verdict read_definition(std::string_view text, std::pair<std::string, double>& d
   return std::nullopt;
 }
 
+// "nodes=2000000"; a formula will do.
+Verdict read_limit(std::string_view text, compiler::Limits& limits) {
+  std::pair<std::string, double> given;
+  if (Verdict verdict = read_definition(text, given)) {
+    if (text.find('=') == std::string_view::npos) verdict->help = "write it as nodes=2000000";
+    return verdict;
+  }
+  const auto& [name, value] = given;
+  const compiler::LimitRow* row = compiler::find_limit(name);
+  if (row == nullptr) {
+    std::vector<std::string_view> names;
+    for (const compiler::LimitRow& known : compiler::kLimits) names.push_back(known.name);
+    const std::string_view near = compiler::nearest(name, names);
+    return Complaint{fmt::format("there is no limit `{}`", name),
+                     near.empty() ? "`fathom help limits` lists them" : fmt::format("did you mean `{}`?", near)};
+  }
+  if (!(value >= 1 && value <= row->largest)) {
+    return Complaint{fmt::format("`{}` can be from 1 to {:.15g} {}", name, row->largest, row->unit),
+                     value > row->largest ? fmt::format("it goes no higher for {}", row->why) : ""};
+  }
+  limits.*row->value = value;
+  return std::nullopt;
+}
+
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -56,11 +82,10 @@ ExitCode bad_file(const std::string& path, const compiler::FileError& error, con
 }
 
 // Whatever it is, with its name for messages.
-std::variant<compiler::Source, ExitCode> read_any(const std::string& path, const Streams& streams) {
-  auto text = read_text(path, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
-  }
+std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
+  const std::string& path = arguments.path;
+  auto text = read_text(path, arguments.limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
   return compiler::Source(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
 }
 
@@ -114,25 +139,37 @@ void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool requi
                        scene.path, required);
   arguments.option("-D,--define", "NAME=VALUE", "A parameter's value: a number, or a formula such as pi/4",
                    append_to(read_definition, scene.definitions));
+  add_limit_option(arguments, scene.limits);
   arguments.option("--error-format", "FORMAT", "How to print what is wrong with the scene: text, short or json",
                    one_of({"text", "short", "json"}, scene.error_format));
 }
 
-std::variant<std::string, Unreadable> read_text(const std::string& path, const Streams& streams) {
-  if (path == "-") return read_all(streams.in);
+void add_limit_option(Arguments& arguments, compiler::Limits& limits) {
+  arguments.option("--limit", "NAME=VALUE", "How much a file may ask for, as nodes=2000000; see `fathom help limits`",
+                   [&limits](std::string_view text) { return read_limit(text, limits); });
+}
+
+std::variant<std::string, Unreadable> read_text(const std::string& path, const compiler::Limits& limits,
+                                                const Streams& streams) {
+  if (path == "-") return read_all(streams.in, limits);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     return Unreadable{"it is a directory"};
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) return Unreadable{std::strerror(errno)};
-  return read_all(file);
+  return read_all(file, limits);
+}
+
+ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable) {
+  return fail(streams, unreadable.code, fmt::format("cannot read {}: {}", quoted(path), unreadable.reason),
+              unreadable.help.empty() ? Help{} : Help{unreadable.help});
 }
 
 std::string quoted(const std::string& path) { return path == "-" ? "standard input" : "`" + path + "`"; }
 
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
-  auto read = read_any(arguments.path, streams);
+  auto read = read_any(arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
@@ -143,7 +180,7 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
 }
 
 std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams) {
-  auto read = read_any(arguments.path, streams);
+  auto read = read_any(arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
@@ -164,9 +201,10 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   compiler::Diagnostics diagnostics;
   options.definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
+  options.limits = arguments.limits;
   auto scene = compiler::compile(input.source, diagnostics, options);
   streams.err << diagnostics.print(input.source, format, streams.color);
-  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.all().size() - errors;
+  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.warnings();
   if (errors > 0 && format == compiler::ErrorFormat::Text) {
     streams.err << input.source.name() << ": " << count_of(errors, "error")
                 << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';

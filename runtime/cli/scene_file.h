@@ -16,17 +16,26 @@ struct SceneArguments {
   std::string path;                   // "-": standard input
   int error_format = 0;               // a compiler::ErrorFormat
   compiler::Definitions definitions;  // values for the scene's parameters
+  compiler::Limits limits;
 };
 
-// The positional argument, --define and --error-format. A scene that is not `required` has an empty path when none
-// was given.
+// The positional argument, --define, --limit and --error-format. A scene that is not `required` has an empty path when
+// none was given.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required = true);
 
-// The text of a file, or of standard input for "-"; otherwise the reason, for people.
+// The option --limit alone, for verbs that read no scene.
+void add_limit_option(Arguments& arguments, compiler::Limits& limits);
+
+// The text of a file, or of standard input for "-"; otherwise the reason, for people. No more than the limit
+// `file-size` is read, whatever the file.
 struct Unreadable {
   std::string reason;
+  std::string help = "";
+  ExitCode code = kIo;
 };
-std::variant<std::string, Unreadable> read_text(const std::string& path, const Streams& streams);
+std::variant<std::string, Unreadable> read_text(const std::string& path, const compiler::Limits& limits,
+                                                const Streams& streams);
+ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable);
 
 // The file's name for messages.
 std::string quoted(const std::string& path);

@@ -61,7 +61,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (const auto code = arguments.parse(args, streams)) return code;
 
   if (!request.size) request.size = PixelSize{512, 512};
-  if (const auto code = check_picture_size(request.size->width, request.size->height, streams)) return code;
+  if (const auto code = check_picture_size(request.size->width, request.size->height, request.scene.limits, streams))
+    return code;
   request.output = output.value_or(beside(default_output(request.scene.path), "slice"));
   if (!output) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output));

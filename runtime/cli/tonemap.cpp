@@ -6,8 +6,10 @@
 #include <ostream>
 
 #include "runtime/cli/arguments.h"
+#include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
+#include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image_io.h"
 #include "runtime/image_read.h"
@@ -27,6 +29,7 @@ struct TonemapRequest {
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int layer = 0;  // a runtime::Layer
   int bits = 0;   // an index into 8, 16
+  compiler::Limits limits;
 };
 
 std::vector<std::string_view> layer_names() {
@@ -48,6 +51,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("--layer", "LAYER", "beauty (default), albedo, depth, normal or noisy",
                    one_of(layer_names(), request.layer));
   arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (!request.output) return fail(streams, kUsage, "no picture to write", {"name it with -o FILE"});
   const bool light = runtime::is_light(runtime::kLayers[static_cast<std::size_t>(request.layer)].layer);
@@ -83,7 +87,7 @@ int run_tonemap(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = parse(args, streams, request)) return *code;
   if (const auto code = check_collisions(request.input, {*request.output}, streams)) return *code;
   if (const auto problem = runtime::check_image_path(*request.output)) return fail(streams, kIo, *problem);
-  const auto read = runtime::read_image(request.input);
+  const auto read = runtime::read_image(request.input, read_limits(request.limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
     return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
   }

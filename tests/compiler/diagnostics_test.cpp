@@ -1,6 +1,7 @@
 // Every diagnostic as the user sees it: tests/golden/diagnostics/*.txt hold a scene and, after the line
 // "----- expected", what is printed for it. A scene may open with lines `// -D name=number`, values for its
-// parameters. Lints are on, as for `fathom check`. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
+// parameters. Lints are on, as for `fathom check`. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second
+// part.
 #include "compiler/diagnostics.h"
 
 #include <algorithm>

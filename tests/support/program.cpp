@@ -6,6 +6,9 @@
 
 namespace fathom::tests {
 
+std::string program_path() { return FATHOM_PROGRAM; }
+bool is_sanitized() { return FATHOM_SANITIZED; }
+
 Result Folder::run(const std::string& arguments, const std::string& in) const {
   std::ofstream(path().string() + ".in") << in;
   Result result = run_script("\"$fathom\" " + arguments + " <'" + path().string() + ".in'");

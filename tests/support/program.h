@@ -35,6 +35,9 @@ inline const char* const kTwo = R"({
   ]
 })";
 
+std::string program_path();
+bool is_sanitized();  // whether the program was built with the sanitizers
+
 // A folder to run the program in.
 class Folder : public TemporaryFolder {
  public:

@@ -135,6 +135,10 @@ class Maker {
 
 std::uint64_t Random::bits() {
   std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
+  if (draws_.size() >= 2) {
+    z = (draws_[0] + 256u * draws_[1] + 1) * 0x9E3779B97F4A7C15u;
+    draws_ = draws_.subspan(2);
+  }
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
   return z ^ (z >> 31);

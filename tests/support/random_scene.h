@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "compiler/graph.h"
@@ -19,6 +20,8 @@ namespace fathom::test {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
+  // The first draws are functions of two bytes each, in order: who changes a byte changes one draw.
+  explicit Random(std::span<const std::uint8_t> draws) : state_(draws.size()), draws_(draws) {}
   std::uint64_t bits();
   double uniform(double lo, double hi);  // [lo, hi)
   double length(double lo, double hi);   // log-uniform, exact in float
@@ -29,6 +32,7 @@ class Random {
 
  private:
   std::uint64_t state_;
+  std::span<const std::uint8_t> draws_;
 };
 
 // The primitives that are nodes of a graph, of one sort; estimates (Mandelbulbs and their like) only when asked for.

@@ -1,0 +1,60 @@
+#include "runtime/cli/memory.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "runtime/options.h"
+
+namespace fathom::cli {
+namespace {
+
+std::string in_words(double bytes) {
+  constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
+  return bytes < kGiB ? fmt::format("{:.0f} MiB", bytes / kMiB) : fmt::format("{:.1f} GiB", bytes / kGiB);
+}
+
+}  // namespace
+
+double allowed_memory(const compiler::Limits& limits) {
+  if (limits.memory > 0) return limits.memory;
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  return 0.75 * machine;
+}
+
+runtime::ReadLimits read_limits(const compiler::Limits& limits) { return {allowed_memory(limits)}; }
+
+double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
+  constexpr double kRadiance = 32, kFirstHit = 56, kCost = 16, kPosition = 24, kIds = 12, kVariance = 48,
+                   kHalves = 32;
+  const runtime::FilmLayers& layers = settings.layers;
+  const double stages = settings.adaptive ? 2 : 1;
+  const double of_stage =
+      kRadiance + (layers.variance || settings.adaptive ? kVariance : 0) + (layers.halves ? kHalves : 0);
+  const double shared = (layers.first_hit ? kFirstHit : 0) + (layers.cost ? kCost : 0) +
+                        (layers.position ? kPosition : 0) + (layers.ids ? kIds : 0);
+  constexpr double kPicture = 24;  // three floats, and what is encoded of them
+  constexpr double kDenoising = 128;
+  return stages * of_stage + shared + kPicture + (denoise ? kDenoising : 0);
+}
+
+std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                     const Streams& streams) {
+  const runtime::Settings settings = runtime::resolve(scene, request.options);
+  const double allowed = allowed_memory(request.scene.limits);
+  const double pixels = static_cast<double>(settings.crop.pixels()),
+               each = bytes_per_pixel(settings, request.denoise);
+  const double regions = settings.regions ? static_cast<double>(settings.region_memory) : 0;
+  // Scenes too small for regions take none, so they do not count against a small limit.
+  const double needed = pixels * each;
+  if (needed + (regions <= allowed / 2 ? regions : 0) <= allowed) return std::nullopt;
+  const bool given = request.size || request.resolution || request.crop;
+  return fail(streams, given ? kUsage : kBadScene,
+              fmt::format("{}the render would take {} of memory ({:.0f} pixels of {:.0f} bytes); {} are allowed",
+                          given ? "" : scene.source.name() + ": ", in_words(needed), pixels, each, in_words(allowed)),
+              {"ask for a smaller picture, or a part of it with --crop",
+               compiler::raise(&compiler::Limits::memory, needed + regions)});
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,29 @@
+// The limit of memory: what a verb is about to take, and whether it may.
+// Tested by: tests/runtime/cli_limits_test.cpp
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compiler/limits.h"
+#include "runtime/cli/render_request.h"
+#include "runtime/cli/streams.h"
+#include "runtime/image_read.h"
+#include "runtime/options.h"
+
+namespace fathom::cli {
+
+// Bytes: what the limit says, or three quarters of the machine's memory.
+double allowed_memory(const compiler::Limits& limits);
+
+runtime::ReadLimits read_limits(const compiler::Limits& limits);
+
+// What a render takes for each pixel, bytes: of the film (runtime/film.h), of denoising it and of the picture written.
+double bytes_per_pixel(const runtime::Settings& settings, bool denoise);
+
+// An ExitCode, after a message, when the render would take more than is allowed: kUsage when its size is the command
+// line's, else kBadScene.
+std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                     const Streams& streams);
+
+}  // namespace fathom::cli

@@ -1,0 +1,213 @@
+#include "tests/fuzz/check_program.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/fuzz/target.h"
+#include "tests/vm/float_bits.h"
+#include "vm/disassemble.h"
+#include "vm/specialise.h"
+
+namespace fathom::fuzz {
+namespace {
+
+using glm::dvec3;
+using test::Cloud;
+using test::Random;
+
+constexpr std::size_t kPoints = 37;  // fills no register
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Points near the origin with, now and then, a coordinate from the edge of what floats can say.
+Cloud random_cloud(Random& random, double reach) {
+  static const float kSpice[] = {0.f, -0.f, 1e-45f, 1e-20f, 1e19f, -1e30f, 3.4e38f, kInfinity, -kInfinity};
+  Cloud cloud;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    float p[3];
+    for (float& c : p) c = static_cast<float>(random.uniform(-reach, reach));
+    if (random.chance(0.15)) p[random.below(3)] = kSpice[random.below(9)];
+    cloud.add(p[0], p[1], p[2]);
+  }
+  return cloud;
+}
+
+std::string place(const Cloud& cloud, std::size_t i) {
+  return fmt::format("at {} {} {}", cloud.x[i], cloud.y[i], cloud.z[i]);
+}
+
+// Everything that the evaluators of batches say of the points: distance, gradient, convexity, surface. [point][7]
+std::vector<std::uint64_t> batch_bits(const vm::Code& program, const Cloud& cloud, std::size_t first,
+                                      std::size_t count, vm::Workspace& workspace) {
+  std::vector<float> d(count), gx(count), gy(count), gz(count), convex(count), alone(count);
+  std::vector<std::uint32_t> s(count);
+  vm::evaluate_surface(program, cloud.from(first), count,
+                       {d.data(), gx.data(), gy.data(), gz.data(), s.data(), convex.data()}, workspace);
+  vm::evaluate_distance(program, cloud.from(first), count, alone.data(), workspace);
+  std::vector<double> x(count), y(count), z(count), real(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] = cloud.x[first + i], y[i] = cloud.y[first + i], z[i] = cloud.z[first + i];
+  }
+  vm::evaluate_distance(program, vm::RealPoints{x.data(), y.data(), z.data()}, count, real.data(), workspace);
+  std::vector<std::uint64_t> bits;
+  for (std::size_t i = 0; i < count; ++i) {
+    promise(test::bits_of(d[i]) == test::bits_of(alone[i]),
+            "the surface's distance is not the distance " + place(cloud, first + i));
+    for (float f : {d[i], gx[i], gy[i], gz[i], convex[i]}) bits.push_back(test::bits_of(f));
+    bits.push_back(s[i]);
+    bits.push_back(std::isnan(real[i]) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(real[i]));
+  }
+  return bits;
+}
+
+// One point at a time as scalars, then many on every instruction set.
+void check_bits(const vm::VerifiedProgram& program, const Cloud& cloud, vm::Workspace& workspace) {
+  static const std::vector<std::string_view> isas = vm::available_isas();
+  const test::IsaGuard guard;
+  vm::force_isa("scalar");
+  std::vector<std::uint64_t> scalar;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const auto one = batch_bits(program, cloud, i, 1, workspace);
+    scalar.insert(scalar.end(), one.begin(), one.end());
+    const dvec3 p(cloud.x[i], cloud.y[i], cloud.z[i]);
+    const double real = vm::evaluate_distance(program, p, workspace);
+    const double with = vm::evaluate_surface(program, p, workspace).distance;
+    const auto bits = std::isnan(real) ? ~std::uint64_t{0} : std::bit_cast<std::uint64_t>(real);
+    promise(one.back() == bits, "many points in double differ from one " + place(cloud, i));
+    promise(std::bit_cast<std::uint64_t>(with) == bits || (std::isnan(with) && std::isnan(real)),
+            "in double the surface's distance is not the distance " + place(cloud, i));
+  }
+  for (const std::string_view isa : isas) {
+    vm::force_isa(isa);
+    const auto many = batch_bits(program, cloud, 0, kPoints, workspace);
+    for (std::size_t i = 0; i < many.size(); ++i) {
+      promise(many[i] == scalar[i],
+              fmt::format("{} differs from scalar in number {} {}", isa, i % 7, place(cloud, i / 7)));
+    }
+  }
+}
+
+struct BoxSet {
+  float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
+  vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
+};
+
+BoxSet random_boxes(Random& random, double reach) {
+  static const double kSizes[] = {0, 1e-3, 0.03, 0.3, 1, 3};
+  BoxSet boxes;
+  for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+    const double size = kSizes[random.below(6)];
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes.lo[axis][i] = static_cast<float>(random.uniform(-reach, reach));
+      boxes.hi[axis][i] = boxes.lo[axis][i] + static_cast<float>(size * random.uniform(0.2, 1));
+    }
+  }
+  return boxes;
+}
+
+Cloud points_in(const BoxSet& boxes, std::size_t box, Random& random) {
+  Cloud cloud;
+  for (int n = 0; n < 8; ++n) {
+    float p[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float lo = boxes.lo[axis][box], hi = boxes.hi[axis][box];
+      const auto within = static_cast<float>(random.uniform(static_cast<double>(lo), static_cast<double>(hi)));
+      p[axis] = random.chance(0.2) ? (random.chance(0.5) ? lo : hi) : std::min(hi, std::max(lo, within));
+    }
+    cloud.add(p[0], p[1], p[2]);
+  }
+  return cloud;
+}
+
+std::vector<float> distances(const vm::Code& program, const Cloud& cloud, vm::Workspace& workspace) {
+  std::vector<float> d(cloud.size());
+  vm::evaluate_distance(program, cloud.from(0), cloud.size(), d.data(), workspace);
+  return d;
+}
+
+// What the f32 machine computes is within its enclosure, and where that says nothing is NaN, nothing is.
+void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random,
+                      vm::Workspace& workspace) {
+  alignas(64) float lo[vm::kEnclosedBoxes], hi[vm::kEnclosedBoxes];
+  std::vector<vm::ChoiceBounds> choices;
+  vm::enclose(program, boxes.view(), lo, hi, choices, workspace);
+  for (std::size_t box = 0; box < vm::kEnclosedBoxes; ++box) {
+    const Cloud cloud = points_in(boxes, box, random);
+    const std::vector<float> values = distances(program, cloud, workspace);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const bool inside = std::isnan(values[i]) ? lo[box] == -kInfinity && hi[box] == kInfinity
+                                                : lo[box] <= values[i] && values[i] <= hi[box];
+      promise(inside,
+              fmt::format("{} is not in the enclosure {} .. {} {}", values[i], lo[box], hi[box], place(cloud, i)));
+    }
+  }
+}
+
+// Ranges hold the values in double. Where a value is not defined (the root of a negative number) they say nothing.
+void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
+  for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
+    const dvec3 lo(boxes.lo[0][box], boxes.lo[1][box], boxes.lo[2][box]);
+    const dvec3 hi(boxes.hi[0][box], boxes.hi[1][box], boxes.hi[2][box]);
+    const vm::Range range = vm::evaluate_range(program, lo, hi, workspace);
+    const Cloud cloud = points_in(boxes, box, random);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const double value = vm::evaluate_distance(program, dvec3(cloud.x[i], cloud.y[i], cloud.z[i]), workspace);
+      promise(std::isnan(value) || (range.lo <= value && value <= range.hi),
+              fmt::format("{} is not in the range {} .. {} {}", value, range.lo, range.hi, place(cloud, i)));
+    }
+  }
+}
+
+// A part's value may stand for the whole one's: the same, but for the sign of a zero, or beyond the same limit.
+bool agrees(float whole, float part, float least, float most) {
+  if (whole < least) return part < least;
+  if (whole > most) return part > most;
+  return part == whole || (std::isnan(part) && std::isnan(whole));
+}
+
+void check_part(const vm::VerifiedProgram& whole, const vm::Part& part, const Cloud& cloud, float least, float most,
+                vm::Workspace& workspace) {
+  vm::Program program;
+  program.words = part.words, program.wide = part.wide, program.locals = part.locals;
+  const auto verified = vm::verify(std::move(program));
+  if (const auto* error = std::get_if<vm::VerifyError>(&verified)) throw BrokenPromise("a part: " + error->reason);
+  const std::vector<float> a = distances(whole, cloud, workspace), b = distances(part, cloud, workspace);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    promise(agrees(a[i], b[i], least, most), fmt::format("{} of a part is not {} of the whole, for {} .. {}, {}",
+                                                         b[i], a[i], least, most, place(cloud, i)));
+  }
+}
+
+void check_parts(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
+  const vm::Part whole = vm::whole(program);
+  vm::Specialiser specialiser;
+  if (!specialiser.look(whole, boxes.view(), workspace)) return;
+  static const float kLimits[][2] = {{-kInfinity, kInfinity}, {-kInfinity, 0.25f}, {0, 0}};
+  for (const auto& [least, most] : kLimits) {
+    specialiser.decide(least, most);
+    for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 5) {
+      vm::Part part;
+      specialiser.part(box, part);
+      check_part(program, part, points_in(boxes, box, random), least, most, workspace);
+    }
+  }
+}
+
+}  // namespace
+
+void check_program(const vm::VerifiedProgram& program, Random& random, double reach) {
+  vm::Workspace workspace;
+  const auto again = vm::verify(program.program());
+  promise(std::holds_alternative<vm::VerifiedProgram>(again), "a verified program is not verified again");
+  promise(!vm::disassemble(program).empty(), "a program has a listing");
+  check_bits(program, random_cloud(random, reach), workspace);
+  const BoxSet boxes = random_boxes(random, reach);
+  check_enclosures(program, boxes, random, workspace);
+  check_ranges(program, boxes, random, workspace);
+  check_parts(program, boxes, random, workspace);
+}
+
+}  // namespace fathom::fuzz

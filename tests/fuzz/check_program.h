@@ -1,0 +1,14 @@
+// What must hold of every program that the machine runs, whatever scene it is of.
+#pragma once
+
+#include "tests/support/random_scene.h"
+#include "vm/verify.h"
+
+namespace fathom::fuzz {
+
+// At random points and in random boxes near `middle`, of about the size `reach`: the same bits one point at a time
+// and many at once, on every instruction set, in float and in double; the surface's distance is the distance; ranges
+// and enclosures hold the values; parts cut for boxes give the whole program's bits there. Throws BrokenPromise.
+void check_program(const vm::VerifiedProgram& program, test::Random& random, double reach = 2);
+
+}  // namespace fathom::fuzz

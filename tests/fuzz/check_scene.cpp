@@ -1,0 +1,64 @@
+#include "tests/fuzz/check_scene.h"
+
+#include <algorithm>
+
+#include "compiler/frontend/json.h"
+#include "compiler/frontend/write_json.h"
+#include "tests/fuzz/check_program.h"
+#include "tests/fuzz/target.h"
+
+namespace fathom::fuzz {
+namespace {
+
+using compiler::Diagnostics;
+using compiler::Source;
+
+// Programs that take longer than a fuzz run has time for say nothing new.
+constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds a point
+
+void check_cheap(const vm::VerifiedProgram& program, test::Random& random, double reach) {
+  if (program.cost() <= kMostCost) check_program(program, random, reach);
+}
+
+// A file that was written reads as what was written.
+void check_round_trip(const compiler::ReadScene& scene) {
+  const std::string written = compiler::write_json(scene.file);
+  const Source source("written.json", written);
+  Diagnostics diagnostics;
+  const auto read = compiler::read_json(source, diagnostics);
+  if (!read) throw BrokenPromise("a written scene cannot be read: " + diagnostics.all().front().message);
+  promise(compiler::write_json(*read) == written, "a written scene reads as another");
+}
+
+}  // namespace
+
+void check_scene(const std::string& text) {
+  const Source source("scene.json", text);
+  Diagnostics diagnostics;
+  compiler::CompileOptions options;
+  options.lint = true;
+  // Small, so that a run is short.
+  options.limits.instructions = 20'000;
+  options.limits.nodes = 20'000;
+  options.on_syntax = [&](const compiler::ReadScene& read) {
+    if (!diagnostics.has_errors()) check_round_trip(read);
+  };
+  options.on_pass = [&](std::string_view, const compiler::Scene& scene) { compiler::print_graph(scene, source); };
+  const auto scene = compiler::compile(source, diagnostics, options);
+  for (const auto format : {compiler::ErrorFormat::Text, compiler::ErrorFormat::Short, compiler::ErrorFormat::Json}) {
+    const std::string printed = diagnostics.print(source, format);
+    promise(printed.empty() == diagnostics.all().empty(), "every message is printed");
+  }
+  promise(scene.has_value() != diagnostics.has_errors(), "there is a scene exactly when there is no error");
+  if (!scene) return;
+  test::Random random(text.size());
+  const compiler::Box box = scene->contents;
+  const glm::dvec3 size = box.hi - box.lo;
+  const double reach = !box.empty() && box.finite() ? std::clamp(size.x + size.y + size.z, 1e-3, 1e6) : 4;
+  check_cheap(scene->distance, random, reach);
+  check_cheap(scene->surface, random, reach);
+  for (const compiler::Medium& medium : scene->media) check_cheap(medium.distance, random, reach);
+  for (const vm::VerifiedProgram& formula : scene->formulas) check_cheap(formula, random, 4);
+}
+
+}  // namespace fathom::fuzz
