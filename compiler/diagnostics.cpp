@@ -178,13 +178,15 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
   if (++errors_ > kMostKept) return;
-  all_.push_back({Severity::Error, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
+  all_.push_back(
+      {Severity::Error, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
   if (++warnings_ > kMostKept) return;
-  all_.push_back({Severity::Warning, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
+  all_.push_back(
+      {Severity::Warning, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
 }
 
 std::string Diagnostics::print(const Source& source, ErrorFormat format, bool color) const {

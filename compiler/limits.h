@@ -1,7 +1,7 @@
 // Limits: what a scene may ask for before it is refused. The one table: `--limit NAME=VALUE`, `fathom help limits`,
-// docs/LIMITS.md and the tests read it. Whoever enforces a limit gets the Limits and says in its message where the scene
-// goes beyond, by how much, and how to allow it (`raise()`).
-// Tested by: tests/compiler/limits_test.cpp, tests/runtime/cli_limits_test.cpp, tests/hostile
+// docs/LIMITS.md and the tests read it. Whoever enforces a limit gets the Limits and says in its message where the
+// scene goes beyond, by how much, and how to allow it (`raise()`). Tested by: tests/compiler/limits_test.cpp,
+// tests/runtime/cli_limits_test.cpp, tests/hostile
 #pragma once
 
 #include <array>
@@ -57,7 +57,8 @@ inline constexpr std::array<LimitRow, 15> kLimits = {{
      "operands that name one have 18 bits"},
     {"coordinate", &Limits::coordinate, 1e18, "scene units", "every number of a scene's geometry, in magnitude",
      "squares of floats end at 1e38"},
-    {"image-side", &Limits::image_side, 65535, "pixels", "a picture's width and height", "what image formats can say"},
+    {"image-side", &Limits::image_side, 65535, "pixels", "a picture's width and height",
+     "what image formats can say"},
     {"pixels", &Limits::pixels, 2147483648.0, "pixels", "a picture", "pixels are numbered in 31 bits"},
     {"samples", &Limits::samples, 1 << 20, "samples a pixel", "a render", "samples are numbered in 20 bits"},
     {"memory", &Limits::memory, kAnySize, "bytes", "film, regions and pictures that are read, together",

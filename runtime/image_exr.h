@@ -20,7 +20,6 @@ namespace fathom::runtime {
 
 // The image in the bytes of a file, halves and UINTs as floats, or what is wrong with them. Attributes of kinds that
 // Attribute does not have are left out.
-std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes,
-                                                 double memory = 0x1p36);
+std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory = 0x1p36);
 
 }  // namespace fathom::runtime

@@ -28,7 +28,8 @@ class SceneBuilder {
   // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
   // material is added to `materials` when an object needs it. All must outlive the builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, const Limits& limits, Diagnostics& diagnostics);
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, const Limits& limits,
+               Diagnostics& diagnostics);
 
   // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);

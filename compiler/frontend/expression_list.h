@@ -26,6 +26,6 @@ bool is_expression_list(std::string_view text);
 
 // A scene with one `expression`, in front of a camera; nullopt after reporting what is wrong.
 std::optional<syntax::File> read_expression_list(const Source& source, Diagnostics& diagnostics,
-                                      const Limits& limits = {});
+                                                 const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -11,7 +11,6 @@
 namespace fathom::compiler {
 
 // nullopt after a syntax error, which ends the reading; duplicate keys are errors too, and all of them are reported.
-std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics,
-                                      const Limits& limits = {});
+std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics, const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -11,8 +11,8 @@ bool takes_up(Kind kind, std::size_t i) {
   return kind == Kind::Union || kind == Kind::Intersection || (kind == Kind::Subtraction && i == 0);
 }
 
-// The nodes that go up into the only one that uses them. What several use stays: otherwise a list could hold one node as
-// often as there are ways to it, which n nodes can have 2^n of. [node]
+// The nodes that go up into the only one that uses them. What several use stays: otherwise a list could hold one node
+// as often as there are ways to it, which n nodes can have 2^n of. [node]
 std::vector<bool> taken_up(const Scene& scene, const std::vector<bool>& reached) {
   std::vector<std::uint32_t> uses(scene.graph.size(), 0);
   std::vector<bool> taken(scene.graph.size(), false);

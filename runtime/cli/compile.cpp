@@ -70,18 +70,18 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   std::string path;
   std::optional<std::string> output;
   int error_format = 0;
+  compiler::Limits limits;
   Arguments arguments("asm", "Makes a compiled scene of its listing, or of that of one program.", kAsmExamples);
   arguments.positional("listing", "What `fathom dump --stage file` printed, or a program; - reads standard input",
                        path);
   arguments.option("-o,--output", "FILE", "File to write, by custom .fbc; - is standard output", any_text(output));
+  add_limit_option(arguments, limits);
   arguments.option("--error-format", "FORMAT", "How to print what is wrong with the listing: text, short or json",
                    one_of({"text", "short", "json"}, error_format));
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
-  auto text = read_text(path, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    return fail(streams, kIo, fmt::format("cannot read {}: {}", quoted(path), unreadable->reason));
-  }
+  auto text = read_text(path, limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
   const compiler::Source listing(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;

@@ -18,7 +18,8 @@ double allowed_memory(const compiler::Limits& limits);
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 
-// What a render takes for each pixel, bytes: of the film (runtime/film.h), of denoising it and of the picture written.
+// What a render takes for each pixel, bytes: of the film (runtime/film.h), of denoising it and of the picture
+// written.
 double bytes_per_pixel(const runtime::Settings& settings, bool denoise);
 
 // An ExitCode, after a message, when the render would take more than is allowed: kUsage when its size is the command

@@ -19,8 +19,8 @@ struct SceneArguments {
   compiler::Limits limits;
 };
 
-// The positional argument, --define, --limit and --error-format. A scene that is not `required` has an empty path when
-// none was given.
+// The positional argument, --define, --limit and --error-format. A scene that is not `required` has an empty path
+// when none was given.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required = true);
 
 // The option --limit alone, for verbs that read no scene.

@@ -42,6 +42,7 @@ const std::map<std::string, std::string> kBeyond = {
     {"E0309", "which way a vector points"},
     {"E0310", "arithmetic over several vectors"},
     {"E0311", "what files there are"},
+    {"E0312", "what limits are set"},
     {"E04", "the grammar of formulas, and the names in them"},
     {"E05", "what the command line says"},
     {"E06", "files of another format"},

@@ -6,6 +6,9 @@
 
 namespace fathom::fuzz {
 
+// Programs that take longer than a fuzz run has time for say nothing new.
+inline constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds a point
+
 // At random points and in random boxes near `middle`, of about the size `reach`: the same bits one point at a time
 // and many at once, on every instruction set, in float and in double; the surface's distance is the distance; ranges
 // and enclosures hold the values; parts cut for boxes give the whole program's bits there. Throws BrokenPromise.

@@ -13,9 +13,6 @@ namespace {
 using compiler::Diagnostics;
 using compiler::Source;
 
-// Programs that take longer than a fuzz run has time for say nothing new.
-constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds a point
-
 void check_cheap(const vm::VerifiedProgram& program, test::Random& random, double reach) {
   if (program.cost() <= kMostCost) check_program(program, random, reach);
 }

@@ -19,12 +19,18 @@ void run_picture(Bytes input);
 std::vector<Input> seeds_of_picture();
 void run_differential(Bytes input);
 std::vector<Input> seeds_of_differential();
+void run_assembly(Bytes input);
+std::vector<Input> seeds_of_assembly();
+void run_program(Bytes input);
+std::vector<Input> seeds_of_program();
 
 std::span<const Target> targets() {
   static constexpr Target kTargets[] = {
       {"scene", 8192, run_scene, seeds_of_scene},
       {"formula", 1024, run_formula, seeds_of_formula},
       {"import", 8192, run_import, seeds_of_import},
+      {"assembly", 4096, run_assembly, seeds_of_assembly},
+      {"program", 4096, run_program, seeds_of_program},
       {"picture", 8192, run_picture, seeds_of_picture},
       {"differential", 512, run_differential, seeds_of_differential},
   };

@@ -16,7 +16,7 @@ TEST_CASE("cli: --limit sets a limit, by name") {
   CHECK(folder.run("check two.json --limit nodes=9").code == 0);
   const Result refused = folder.run("render -q two.json -o out.png --limit nodes=3");
   CHECK(refused.code == 65);
-  CHECK(contains(refused.err, "two.json:5:"));
+  CHECK(contains(refused.err, "two.json:6:"));
   CHECK(contains(refused.err, "more than 3 nodes"));
   CHECK(contains(refused.err, "--limit nodes=6"));
   CHECK_FALSE(folder.has("out.png"));
