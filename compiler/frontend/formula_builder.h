@@ -22,6 +22,7 @@ class FormulaBuilder {
   // Whole exponents up to 64 in size become squares and products, 0.5 a root, negative ones their reciprocals.
   FormulaId power(FormulaId base, FormulaId exponent, Span span);
 
+  std::size_t size() const { return nodes_.size(); }
   Span span(FormulaId node) const { return nodes_[node].span; }
 
   // The formula whose result is `root`.

@@ -121,6 +121,7 @@ FormulaParser::Result FormulaParser::term() {
 // Every recursion comes through here.
 FormulaParser::Result FormulaParser::factor() {
   if (depth_ > context_.scope.limits().formula_nesting) return too_deep();
+  if (static_cast<double>(context_.builder.size()) > context_.scope.limits().nodes) return too_long();
   ++depth_;
   Result result;
   if (next_.is('-')) {
@@ -226,6 +227,13 @@ FormulaParser::Result FormulaParser::too_deep() {
   report("E0406", span(next_),
          fmt::format("the formula is nested more than {} deep", context_.scope.limits().formula_nesting),
          "one level too many", {"give inner parts names of their own"});
+  return std::nullopt;
+}
+
+FormulaParser::Result FormulaParser::too_long() {
+  const double most = context_.scope.limits().nodes;
+  report("E0312", span(next_), fmt::format("the formula has more than {} operations and numbers", most), "one too many",
+         {raise(&Limits::nodes, 2 * most)});
   return std::nullopt;
 }
 

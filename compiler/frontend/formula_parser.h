@@ -72,6 +72,7 @@ class FormulaParser {
   Result operation(std::string_view function, FormulaId a, FormulaId b);
 
   Result too_deep();
+  Result too_long();
   Result too_large(const Token& number);
   FormulaId unknown_function(const Token& name);
   FormulaId wrong_count(const Token& name, Span place, const FormulaFunction& function, std::size_t count);

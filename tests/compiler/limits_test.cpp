@@ -63,6 +63,8 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
   check_edge("_0 var-x\n_1 square _0\n", &Limits::tokens, 5, "E0008");
   check_edge(objects(R"f({"type": "expression", "half_size": [1, 1, 1], "formula": "((x)) - 0.5"})f"),
              &Limits::formula_nesting, 2, "E0406");
+  check_edge(objects(R"({"type": "expression", "half_size": [1, 1, 1], "formula": "x + y + z + x + y + z"})"),
+             &Limits::nodes, 10, "E0312");
   check_edge(objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})"), &Limits::nodes, 4, "E0312");
   check_edge(objects(R"({"type": "repetition", "period": [1, 1, 1], "count": [3, 1, 1], "of": )" + kBall + "}"),
              &Limits::copies, 3, "E0312");
