@@ -10,9 +10,8 @@
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/load.h"
 #include "compiler/artefact/programs.h"
-#include "runtime/field.h"
-#include "runtime/render.h"
 #include "tests/support/compiled.h"
+#include "tests/support/draw_small.h"
 #include "tests/support/effort.h"
 #include "tests/support/golden.h"
 #include "tests/support/sealed_file.h"
@@ -99,19 +98,6 @@ Sections without_text(const Bytes& file) {
   Sections sections = sections_of(file);
   sections.text.clear();
   return sections;
-}
-
-// What a stranger's scene is used for, small: no matter what it looks like, it must not break anything.
-void draw(const CompiledScene& scene) {
-  if (scene.distance.cost() > 2000) return;
-  runtime::RenderOptions options;
-  options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.bounces = 1;
-  if (scene.background.type == compiler::Background::Type::Image) return;  // there is no picture
-  runtime::render(scene, options);
-  runtime::Field field = runtime::make_field(scene);
-  runtime::RegionOptions regions;
-  regions.always = true, regions.memory = 1 << 20;
-  runtime::add_regions(field, scene, regions);
 }
 
 }  // namespace
@@ -202,7 +188,7 @@ TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]
       if (row.program->cost() < 100000) vm::evaluate_surface(*row.program, glm::dvec3(0.1, 0.2, 0.3), workspace);
       vm::Expression().read(*row.program);
     }
-    if (accepted % 16 == 0) draw(compiler::unproved(good->scene));
+    if (accepted % 16 == 0) draw_small(compiler::unproved(good->scene));
   };
   const std::size_t stride = few(8) == 8 ? 1 : 8;
   for (std::size_t at = 0; at < parts.code.size(); at += stride) {
@@ -303,7 +289,7 @@ TEST_CASE("what a file claims counts for nothing without the text", "[artefact]"
   REQUIRE(liar.certified);
   const CompiledScene honest = compiler::unproved(liar);
   CHECK_FALSE(honest.certified);
-  CHECK(honest.bound.finite());  // interval arithmetic shows that there is nothing outside
+  CHECK(honest.bound.finite());          // interval arithmetic shows that there is nothing outside
   CHECK(honest.lipschitz == Approx(1));  // as intervals show
   CHECK_THAT(honest.summary, Contains("not proved") && !Contains("(proved)"));
   liar.lipschitz = 0.02;

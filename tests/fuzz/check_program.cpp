@@ -198,6 +198,11 @@ void check_parts(const vm::VerifiedProgram& program, const BoxSet& boxes, Random
 
 }  // namespace
 
+void check_evaluation(const vm::VerifiedProgram& program, Random& random, double reach) {
+  vm::Workspace workspace;
+  check_bits(program, random_cloud(random, reach), workspace);
+}
+
 void check_program(const vm::VerifiedProgram& program, Random& random, double reach) {
   vm::Workspace workspace;
   const auto again = vm::verify(program.program());

@@ -14,4 +14,8 @@ inline constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds a point
 // and enclosures hold the values; parts cut for boxes give the whole program's bits there. Throws BrokenPromise.
 void check_program(const vm::VerifiedProgram& program, test::Random& random, double reach = 2);
 
+// The bits alone: what ranges and parts rely on, that a plane's normal has length 1 and the like, a stranger's
+// program need not keep.
+void check_evaluation(const vm::VerifiedProgram& program, test::Random& random, double reach = 2);
+
 }  // namespace fathom::fuzz

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 
+#include "compiler/artefact/load.h"
+#include "compiler/artefact/programs.h"
 #include "compiler/frontend/json.h"
 #include "compiler/frontend/write_json.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/draw_small.h"
+#include "vm/expression.h"
 
 namespace fathom::fuzz {
 namespace {
@@ -56,6 +60,16 @@ void check_scene(const std::string& text) {
   check_cheap(scene->surface, random, reach);
   for (const compiler::Medium& medium : scene->media) check_cheap(medium.distance, random, reach);
   for (const vm::VerifiedProgram& formula : scene->formulas) check_cheap(formula, random, 4);
+}
+
+void check_stored(const compiler::CompiledScene& scene) {
+  test::Random random(scene.distance.instructions());
+  for (const compiler::NamedProgram& row : compiler::programs_of(scene)) {
+    if (row.program->cost() > kMostCost) continue;
+    check_evaluation(*row.program, random, 4);
+    vm::Expression().read(*row.program);
+  }
+  test::draw_small(compiler::unproved(scene));
 }
 
 }  // namespace fathom::fuzz

@@ -13,4 +13,8 @@ namespace fathom::fuzz {
 // program is checked. Throws BrokenPromise.
 void check_scene(const std::string& text);
 
+// Of a scene that came compiled, from anyone: every program gives the same bits wherever it runs, can be read as an
+// expression or not, and the scene can be drawn. Throws BrokenPromise.
+void check_stored(const compiler::CompiledScene& scene);
+
 }  // namespace fathom::fuzz

@@ -1,21 +1,45 @@
-// Bytes as programs. After an even first byte: one program as vm/binary.h lays it out; what is read is verified, is
-// written as the same bytes, and keeps all promises of programs. After an odd one: a compiled file (.fbc), refused
-// with a reason or a scene whose programs do.
-#include <utility>
+// Bytes as programs. What begins like a compiled file is one. Otherwise the first byte tells: even, and one program
+// follows as vm/binary.h lays it out; odd, and sections of a compiled file follow, which are sealed with the right
+// digests here, for no run would find those: u32 size of the code, u32 size of the tables, u32 size of the debug
+// section, then these and the text. All is refused with a reason, or written as it was read, and can be run.
+#include <algorithm>
 
 #include "compiler/artefact/load.h"
 #include "compiler/compile.h"
 #include "tests/fuzz/check_program.h"
+#include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/seed_programs.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/sealed_file.h"
 #include "vm/binary.h"
 
 namespace fathom::fuzz {
 namespace {
 
-void check_cheap(const vm::VerifiedProgram& program, std::size_t seed) {
-  test::Random random(seed);
-  if (program.cost() <= kMostCost) check_program(program, random);
+Input sealed_input(Bytes input) {
+  vm::ByteReader in(input);
+  std::size_t sizes[3];
+  for (std::size_t& size : sizes) size = in.u32();
+  test::Sections sections;
+  Input* const parts[] = {&sections.code, &sections.tables, &sections.debug};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto part = in.raw(std::min(sizes[i], in.left()));
+    parts[i]->assign(part.begin(), part.end());
+  }
+  const auto text = in.raw(in.left());
+  sections.text.assign(text.begin(), text.end());
+  return test::sealed(sections);
+}
+
+Input sections_of_seed(const Input& file) {
+  const test::Sections sections = test::sections_of(file);
+  vm::ByteWriter out;
+  out.u8(1);
+  for (const Input* part : {&sections.code, &sections.tables, &sections.debug}) {
+    out.u32(static_cast<std::uint32_t>(part->size()));
+  }
+  for (const Input* part : {&sections.code, &sections.tables, &sections.debug, &sections.text}) out.raw(*part);
+  return out.take();
 }
 
 void run_bare_program(Bytes input) {
@@ -25,48 +49,42 @@ void run_bare_program(Bytes input) {
   if (program == nullptr) return promise(!std::get<vm::VerifyError>(read).reason.empty(), "there is a reason");
   vm::ByteWriter writer;
   vm::write_program(writer, *program);
-  const std::vector<std::uint8_t> written = std::move(writer).take();
-  vm::ByteReader again(written);
-  const auto same = vm::read_program(again);
-  const auto* back = std::get_if<vm::VerifiedProgram>(&same);
-  promise(back != nullptr && back->program().words == program->program().words, "what is written is what is read");
-  check_cheap(*program, input.size());
+  const auto size = static_cast<std::ptrdiff_t>(reader.offset());
+  promise(writer.bytes() == Input(input.begin(), input.begin() + size), "what is written is what was read");
+  test::Random random(input.size());
+  if (program->cost() <= kMostCost) check_evaluation(*program, random);
 }
-
-void run_compiled_file(Bytes input) {
-  const auto read = compiler::read_stored(input, "fuzz");
-  const auto* stored = std::get_if<compiler::StoredScene>(&read);
-  if (stored == nullptr) return promise(!std::get<compiler::FileError>(read).reason.empty(), "there is a reason");
-  check_cheap(stored->scene.distance, input.size());
-  check_cheap(stored->scene.surface, input.size());
-}
-
-constexpr const char* kScene = R"({"version": 1, "materials": {"m": {"type": "diffuse"}, "n": {"type": "specular"}},
-  "objects": [{"type": "sphere", "radius": 1, "material": "m"},
-    {"type": "box", "half_size": [1, 2, 1], "translate": [4, 0, 0], "material": "n"}]})";
 
 }  // namespace
 
 void run_program(Bytes input) {
   if (input.empty()) return;
-  if (input[0] % 2 == 0) return run_bare_program(input.subspan(1));
-  run_compiled_file(input.subspan(1));
+  const bool whole = compiler::is_compiled_file(to_text(input));
+  if (!whole && input[0] % 2 == 0) return run_bare_program(input.subspan(1));
+  const Input file = whole ? Input(input.begin(), input.end()) : sealed_input(input.subspan(1));
+  const auto stored = compiler::read_stored(file, "scene.fbc");
+  const auto* good = std::get_if<compiler::StoredScene>(&stored);
+  if (good == nullptr) {
+    promise(!std::get<compiler::FileError>(stored).reason.empty(), "a refusal has a reason");
+    return;
+  }
+  promise(compiler::write_file(good->scene, good->contents) == file, "what is accepted is written as itself");
+  check_stored(good->scene);
 }
 
 std::vector<Input> seeds_of_program() {
   std::vector<Input> seeds;
   for (const vm::VerifiedProgram& program : seed_programs()) {
-    vm::ByteWriter writer;
-    vm::write_program(writer, program);
-    Input seed = std::move(writer).take();
-    seed.insert(seed.begin(), 0);
-    seeds.push_back(std::move(seed));
+    vm::ByteWriter out;
+    out.u8(0);
+    vm::write_program(out, program);
+    seeds.push_back(out.take());
   }
-  compiler::Diagnostics diagnostics;
-  if (const auto scene = compiler::compile({"scene.json", kScene}, diagnostics)) {
-    Input seed = compiler::write_file(*scene);
-    seed.insert(seed.begin(), 1);
-    seeds.push_back(std::move(seed));
+  for (const compiler::CompiledScene& scene : seed_scenes()) {
+    for (const bool all : {false, true}) {
+      seeds.push_back(compiler::write_file(scene, {all, all, {}}));
+      seeds.push_back(sections_of_seed(seeds.back()));
+    }
   }
   return seeds;
 }

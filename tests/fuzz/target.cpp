@@ -29,8 +29,8 @@ std::span<const Target> targets() {
       {"scene", 8192, run_scene, seeds_of_scene},
       {"formula", 1024, run_formula, seeds_of_formula},
       {"import", 8192, run_import, seeds_of_import},
-      {"assembly", 4096, run_assembly, seeds_of_assembly},
-      {"program", 4096, run_program, seeds_of_program},
+      {"assembly", 16384, run_assembly, seeds_of_assembly},
+      {"program", 16384, run_program, seeds_of_program},
       {"picture", 8192, run_picture, seeds_of_picture},
       {"differential", 512, run_differential, seeds_of_differential},
   };

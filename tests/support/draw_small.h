@@ -1,0 +1,23 @@
+// A few pixels of any scene, and its regions: no matter what they look like, nothing may break.
+#pragma once
+
+#include "compiler/compiled_scene.h"
+#include "runtime/field.h"
+#include "runtime/render.h"
+
+namespace fathom::test {
+
+// Of scenes whose picture of light is a file, and of long programs, nothing is drawn.
+inline void draw_small(const compiler::CompiledScene& scene) {
+  constexpr std::uint32_t kMostCost = 2000;  // multiply-adds a point
+  if (scene.background.type == compiler::Background::Type::Image || scene.distance.cost() > kMostCost) return;
+  runtime::RenderOptions options;
+  options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.bounces = 1;
+  runtime::render(scene, options);
+  runtime::Field field = runtime::make_field(scene);
+  runtime::RegionOptions regions;
+  regions.always = true, regions.memory = 1 << 20;
+  runtime::add_regions(field, scene, regions);
+}
+
+}  // namespace fathom::test
