@@ -178,43 +178,52 @@ bool Film::merge(const Film& part, std::size_t stage) {
   const PixelRect rows = part.area_;
   bool room = true;
   for (int y = rows.y0; y < rows.y1; ++y) {
-    for (int x = rows.x0; x < rows.x1; ++x) {
-      const std::size_t from = rows.index(x, y), to = area_.index(x, y);
-      room &= merge_stage(part, stages_[stage], from, to);
-      if (stage >= kSeenStages) continue;
-      room &= merge_first_hit(part, from, to);
-      if (layers_.cost) {
-        costs_[to].evaluations += part.costs_[from].evaluations;
-        costs_[to].instructions += part.costs_[from].instructions;
-      }
-    }
+    const std::size_t from = rows.index(rows.x0, y), to = area_.index(rows.x0, y);
+    const auto count = static_cast<std::size_t>(rows.width());
+    room &= merge_stage(part, stages_[stage], from, to, count);
+    if (stage < kSeenStages) room &= merge_rest(part, from, to, count);
   }
   return room;
 }
 
-bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to) {
+bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to, std::size_t count) {
   const Stage& other = part.stages_.front();
-  stage.pixels[to].samples += other.pixels[from].samples;
-  stage.pixels[to].hits += other.pixels[from].hits;
-  bool room = add_to(stage.pixels[to].radiance, other.pixels[from].radiance);
-  if (layers_.variance) room &= add_to(stage.squares[to].sums, other.squares[from].sums);
-  if (layers_.halves) {
-    stage.odd_halves[to].samples += other.odd_halves[from].samples;
-    room &= add_to(stage.odd_halves[to].radiance, other.odd_halves[from].radiance);
+  bool room = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pixel& term = other.pixels[from + i];
+    Pixel& pixel = stage.pixels[to + i];
+    pixel.samples += term.samples;
+    pixel.hits += term.hits;
+    room &= add_to(pixel.radiance, term.radiance);
+  }
+  for (std::size_t i = 0; layers_.variance && i < count; ++i) {
+    room &= add_to(stage.squares[to + i].sums, other.squares[from + i].sums);
+  }
+  for (std::size_t i = 0; layers_.halves && i < count; ++i) {
+    stage.odd_halves[to + i].samples += other.odd_halves[from + i].samples;
+    room &= add_to(stage.odd_halves[to + i].radiance, other.odd_halves[from + i].radiance);
   }
   return room;
 }
 
-bool Film::merge_first_hit(const Film& part, std::size_t from, std::size_t to) {
+// What all stages have in common.
+bool Film::merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count) {
   bool room = true;
-  if (layers_.first_hit) {
-    const FirstHit& other = part.first_hits_[from];
-    room &= add_to(first_hits_[to].albedo, other.albedo);
-    room &= add_to(first_hits_[to].normal, other.normal);
-    room &= add_to(first_hits_[to].depth, other.depth);
+  for (std::size_t i = 0; layers_.first_hit && i < count; ++i) {
+    const FirstHit& term = part.first_hits_[from + i];
+    FirstHit& sum = first_hits_[to + i];
+    room &= add_to(sum.albedo, term.albedo);
+    room &= add_to(sum.normal, term.normal);
+    room &= add_to(sum.depth, term.depth);
   }
-  if (layers_.position) room &= add_to(positions_[to].sums, part.positions_[from].sums);
-  if (layers_.ids) ids_[to] = std::min(ids_[to], part.ids_[from]);
+  for (std::size_t i = 0; layers_.position && i < count; ++i) {
+    room &= add_to(positions_[to + i].sums, part.positions_[from + i].sums);
+  }
+  for (std::size_t i = 0; layers_.ids && i < count; ++i) ids_[to + i] = std::min(ids_[to + i], part.ids_[from + i]);
+  for (std::size_t i = 0; layers_.cost && i < count; ++i) {
+    costs_[to + i].evaluations += part.costs_[from + i].evaluations;
+    costs_[to + i].instructions += part.costs_[from + i].instructions;
+  }
   return room;
 }
 

@@ -188,8 +188,9 @@ class Film {
   static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
   bool add_squares(Squares& squares, glm::vec3 radiance);
   bool add_first_hit(std::size_t at, const PathSample& sample);
-  bool merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to);
-  bool merge_first_hit(const Film& part, std::size_t from, std::size_t to);
+  // Of a row of pixels.
+  bool merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to, std::size_t count);
+  bool merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count);
   RadianceMeans means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const;
   void read_radiance(int x, int y, PixelMeans& means) const;
   void read_first_hit(std::size_t at, PixelMeans& means) const;

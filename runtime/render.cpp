@@ -100,7 +100,7 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
     CHECK(can_resume(*options.resume_from, settings), "a film of another render");
     static_cast<PartialRender&>(result) = *options.resume_from;
   }
-  const std::uint64_t resumed = result.film.samples();
+  const std::uint64_t resumed = options.resume_from ? result.film.samples() : 0;
   const World world = make_world(scene, settings, options);
   Passes passes(world, options, result, start);
   result.stats = passes.run();

@@ -8,7 +8,7 @@ SharedPicture::SharedPicture(PartialRender& render, std::uint64_t samples, const
     : render_(render),
       options_(options),
       samples_(static_cast<double>(samples)),
-      resumed_(render.film.samples()),
+      resumed_(options.resume_from ? render.film.samples() : 0),
       start_(start),
       done_(resumed_) {}
 

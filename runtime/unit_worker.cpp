@@ -25,7 +25,7 @@ bool UnitWorker::next_pixel() {
     if (y_ == area.y1) {
       taking_ = false;
       open_[unit_].all_begun = true;
-      hand_in_if_done(unit_);
+      if (open_[unit_].ended == open_[unit_].begun) hand_in(unit_);
     }
   }
   if (!taking_ && !next_unit()) return false;
@@ -58,14 +58,12 @@ bool UnitWorker::next_unit() {
 bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
   OpenUnit& unit = open_[key.unit];
   const bool room = unit.film.add(key.x, key.y, sample);
-  ++unit.ended;
-  hand_in_if_done(key.unit);
+  if (++unit.ended == unit.begun && unit.all_begun) hand_in(key.unit);
   return room;
 }
 
-void UnitWorker::hand_in_if_done(std::uint32_t number) {
+void UnitWorker::hand_in(std::uint32_t number) {
   const OpenUnit& unit = open_[number];
-  if (!unit.all_begun || unit.ended < unit.begun) return;
   const std::uint64_t rays = integrator_.stats().march.rays;
   if (!work_.picture.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
   reported_rays_ = rays;

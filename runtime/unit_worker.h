@@ -57,7 +57,7 @@ class UnitWorker : private PathExchange {
   bool add(const PathKey& key, const PathSample& sample) override;
   bool next_pixel();
   bool next_unit();
-  void hand_in_if_done(std::uint32_t number);
+  void hand_in(std::uint32_t number);
 
   const PassWork& work_;
   std::vector<OpenUnit> open_;       // [PathKey::unit]
