@@ -227,7 +227,7 @@ TEST_CASE("adaptive: the whole budget is used, most of it where the noise is", "
   CHECK(fractions.back() == 1);
 }
 
-TEST_CASE("adaptive: threads and tiles leave no trace", "[render]") {
+TEST_CASE("adaptive: threads and tiles leave no trace", "[render][threads]") {
   const auto scene = floor_and_sky();
   for (const compiler::SamplerKind sampler : {compiler::SamplerKind::Blue, compiler::SamplerKind::Independent}) {
     RenderOptions options = adaptive_options(37, 21, 9);
@@ -278,7 +278,7 @@ TEST_CASE("adaptive: stopped after the first stage, a picture is that stage's", 
   CHECK(stopped.film.hash() == first.film.hash());
 }
 
-TEST_CASE("adaptive: what was stopped in either stage goes on to the same bits", "[render]") {
+TEST_CASE("adaptive: what was stopped in either stage goes on to the same bits", "[render][threads]") {
   const auto scene = floor_and_sky();
   RenderOptions options = adaptive_options(30, 20, 40);
   options.layers = kAllLayers;

@@ -162,7 +162,8 @@ compiler::CompiledScene lamp_and_sky() {
                   {"type": "sphere", "radius": 0.4, "translate": [-2.5, 2, 0.5], "material": "lamp"}])");
 }
 
-TEST_CASE("noise: quiet tiles get the least, noisy ones the most, and threads and tiles leave no trace", "[render]") {
+TEST_CASE("noise: quiet tiles get the least, noisy ones the most, and threads and tiles leave no trace",
+          "[render][threads]") {
   const auto scene = lamp_and_sky();
   RenderOptions options = noisy_options();
   options.light_sampling = LightSampling::Hits;
@@ -190,7 +191,7 @@ TEST_CASE("noise: quiet tiles get the least, noisy ones the most, and threads an
   CHECK(all.film.samples(3, 30) == 96);
 }
 
-TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[render]") {
+TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[render][threads]") {
   const auto scene = lamp_and_sky();
   RenderOptions options = noisy_options();
   options.light_sampling = LightSampling::Hits;

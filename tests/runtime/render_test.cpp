@@ -151,7 +151,7 @@ const char* const kVaried = R"("camera": {"position": [0, 1.2, 4], "target": [0,
                  "material": "mirror"},
                 {"type": "box", "half_size": [0.3, 0.05, 0.3], "translate": [0, 2, 0], "material": "lamp"}])";
 
-TEST_CASE("render: threads and tiles leave no trace in the picture", "[render]") {
+TEST_CASE("render: threads and tiles leave no trace in the picture", "[render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(70, 45, 4);
   options.threads = 1;
@@ -252,7 +252,7 @@ TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[
   }
 }
 
-TEST_CASE("render: ranges of samples add up to the whole, and what was stopped goes on", "[render]") {
+TEST_CASE("render: ranges of samples add up to the whole, and what was stopped goes on", "[render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(40, 24, 24);
   options.layers = kAllLayers;
@@ -323,7 +323,7 @@ TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {
   CHECK(result.stats.primary_rays == 160u * 90u * 8u);
 }
 
-TEST_CASE("render: progress ends at one, and a cancelled render returns", "[render]") {
+TEST_CASE("render: progress ends at one, and a cancelled render returns", "[render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(64, 64, 1);
   double last = 0;
