@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -25,7 +26,10 @@ std::string quoted(const std::string& text) {
 
 std::string scalar(const syntax::Value& value) {
   if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
-  if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+  if (const auto* number = std::get_if<double>(&value.data)) {
+    // -0 would be read as a whole number, which has no sign.
+    return *number == 0 && std::signbit(*number) ? "-0.0" : fmt::format("{}", *number);
+  }
   if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
   return "null";
 }
