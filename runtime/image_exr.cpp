@@ -12,6 +12,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfStringVectorAttribute.h>
 #include <fmt/format.h>
+#include <openexr.h>
 
 #include <algorithm>
 #include <cstring>
@@ -60,39 +61,48 @@ class BytesSource : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
-// Whether every attribute of the headers has as many bytes as it says. OpenEXR sets aside what it says before it
-// reads any: two gigabytes for a file of a hundred bytes. Source: "OpenEXR File Layout", openexr.com.
-bool has_its_attributes(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kBegin = 8;  // after the magic number and the version
-  constexpr std::uint8_t kSeveralParts = 0x10;
-  const bool several = bytes.size() > 5 && (bytes[5] & kSeveralParts) != 0;
-  std::size_t at = kBegin;
-  const auto skip_text = [&] {
-    const auto end =
-        std::find(bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at, bytes.size())), bytes.end(), 0);
-    const auto next = static_cast<std::size_t>(end - bytes.begin()) + 1;
-    const bool empty = next == at + 1;
-    at = next;
-    return !empty;
-  };
-  for (bool after_header = true; at < bytes.size();) {
-    if (!skip_text()) {
-      // One empty name ends a header, and in a file of several parts another one all of them.
-      if (!several || after_header) return true;
-      after_header = true;
-      continue;
-    }
-    after_header = false;
-    skip_text();
-    if (at > bytes.size() || bytes.size() - at < 4) return false;
-    const std::size_t size = bytes[at] | std::size_t{bytes[at + 1]} << 8 | std::size_t{bytes[at + 2]} << 16 |
-                             std::size_t{bytes[at + 3]} << 24;
-    at += 4;
-    if (size > bytes.size() - at) return false;
-    at += size;
+// What is wrong with the headers, if anything: the C++ classes below set aside what an attribute says that it has
+// before they read any of it, gigabytes for a file of a hundred bytes; the library's own core looks at the file
+// first.
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+
+  std::optional<std::string> find_damage() {
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    how.user_data = this;
+    how.read_fn = read;
+    how.size_fn = [](exr_const_context_t, void* self) {
+      return static_cast<std::int64_t>(static_cast<HeaderCheck*>(self)->bytes_.size());
+    };
+    how.error_handler_fn = keep_message;
+    how.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
+    exr_context_t context = nullptr;
+    const exr_result_t result = exr_start_read(&context, "picture", &how);
+    if (context != nullptr) exr_finish(&context);
+    if (result == EXR_ERR_SUCCESS) return std::nullopt;
+    return message_.empty() ? exr_get_default_error_message(result) : message_;
   }
-  return false;
-}
+
+ private:
+  static std::int64_t read(exr_const_context_t, void* self, void* out, std::uint64_t size, std::uint64_t offset,
+                           exr_stream_error_func_ptr_t) {
+    const std::vector<std::uint8_t>& bytes = static_cast<HeaderCheck*>(self)->bytes_;
+    const std::uint64_t count = offset < bytes.size() ? std::min<std::uint64_t>(size, bytes.size() - offset) : 0;
+    if (count > 0) std::memcpy(out, bytes.data() + offset, count);
+    return static_cast<std::int64_t>(count);
+  }
+
+  static void keep_message(exr_const_context_t context, exr_result_t, const char* text) {
+    void* self = nullptr;
+    if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS && self != nullptr) {
+      static_cast<HeaderCheck*>(self)->message_ = text;
+    }
+  }
+
+  const std::vector<std::uint8_t>& bytes_;
+  std::string message_;
+};
 
 Imath::Box2i window_of(const PixelRect& area) { return {{area.x0, area.y0}, {area.x1 - 1, area.y1 - 1}}; }
 
@@ -228,7 +238,7 @@ std::optional<std::string> write_exr(const ImageRows& image, const std::string& 
 }
 
 std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory) {
-  if (!has_its_attributes(bytes)) return "the file ends too early";
+  if (auto damage = HeaderCheck(bytes).find_damage()) return *damage;
   try {
     BytesSource source(bytes);
     Imf::InputFile file(source, kNoThreads);

@@ -1,11 +1,12 @@
 #include "runtime/image_png.h"
 
 #include <png.h>
-#include <zlib.h>
 
-#include <array>
+#include <bit>
 #include <csetjmp>
-#include <cstring>
+#include <new>
+
+#include "runtime/float_image.h"
 
 namespace fathom::runtime {
 namespace {
@@ -63,50 +64,101 @@ class Writer {
   png_infop about_;
 };
 
-std::uint32_t big_endian(const std::uint8_t* at) {
-  return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
-}
-
-// A stream of zlib's that is unpacked and thrown away.
-class Unpacked {
+// Reads a file as its bytes come, and no further than its picture goes: libpng's other way to read unpacks what
+// follows, too, a thousand bytes for each of the file's.
+class Reader {
  public:
-  Unpacked() { good_ = inflateInit(&stream_) == Z_OK; }
-  ~Unpacked() { inflateEnd(&stream_); }
-  Unpacked(const Unpacked&) = delete;
-  Unpacked& operator=(const Unpacked&) = delete;
+  Reader(double file_size, double memory)
+      : file_size_(file_size),
+        memory_(memory),
+        png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, keep_problem, be_quiet)),
+        about_(png_ == nullptr ? nullptr : png_create_info_struct(png_)) {
+    if (about_ == nullptr) return;
+    png_set_progressive_read_fn(png_, this, begin, put_row, end);
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // but for those that change samples
+  }
+  ~Reader() {
+    if (png_ != nullptr) png_destroy_read_struct(&png_, &about_, nullptr);
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
 
-  double size() const { return size_; }
-  void take(std::span<const std::uint8_t> packed, double most) {
-    stream_.next_in = const_cast<std::uint8_t*>(packed.data());  // zlib only reads it
-    stream_.avail_in = static_cast<uInt>(packed.size());
-    std::array<std::uint8_t, 1 << 15> thrown_away;
-    while (good_ && size_ <= most && (stream_.avail_in > 0 || stream_.avail_out == 0)) {
-      stream_.next_out = thrown_away.data(), stream_.avail_out = static_cast<uInt>(thrown_away.size());
-      good_ = inflate(&stream_, Z_NO_FLUSH) == Z_OK;
-      size_ += static_cast<double>(thrown_away.size() - stream_.avail_out);
-    }
+  std::variant<PngPicture, std::string> read(std::span<const std::uint8_t> bytes) {
+    if (about_ == nullptr) return "libpng cannot begin";
+    if (!process(const_cast<std::uint8_t*>(bytes.data()), bytes.size())) return std::move(problem_);
+    if (!ended_) return "it ends too early";
+    return std::move(picture_);
   }
 
  private:
-  z_stream stream_{};
-  bool good_;
-  double size_ = 0;
+  static Reader& self(png_structp png) { return *static_cast<Reader*>(png_get_progressive_ptr(png)); }
+
+  [[noreturn]] static void keep_problem(png_structp png, png_const_charp text) {
+    static_cast<Reader*>(png_get_error_ptr(png))->problem_ = text;
+    png_longjmp(png, 1);
+  }
+
+  // libpng only reads them.
+  bool process(std::uint8_t* bytes, std::size_t size) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_process_data(png_, about_, bytes, size);
+    return true;
+  }
+
+  // The header has been read.
+  static void begin(png_structp png, png_infop about) {
+    png_set_expand_16(png);
+    if (std::endian::native == std::endian::little) png_set_swap(png);
+    png_set_interlace_handling(png);
+    png_read_update_info(png, about);
+    PngPicture& picture = self(png).picture_;
+    picture.width = static_cast<int>(png_get_image_width(png, about));
+    picture.height = static_cast<int>(png_get_image_height(png, about));
+    picture.components = png_get_channels(png, about);
+    if (!self(png).reserve()) png_error(png, self(png).problem_.c_str());
+  }
+
+  // Nothing is thrown here: above are frames of C.
+  bool reserve() noexcept try {
+    const double samples = static_cast<double>(picture_.width) * picture_.height * picture_.components;
+    // Beside the file: its samples and the floats that will be made of them.
+    const double needed = file_size_ + samples * (sizeof(std::uint16_t) + sizeof(float));
+    if (needed > memory_) {
+      problem_ = too_much_memory(needed, memory_);
+      return false;
+    }
+    picture_.samples.resize(static_cast<std::size_t>(samples));
+    return true;
+  } catch (const std::bad_alloc&) {
+    problem_ = "it needs more memory than there is";
+    return false;
+  }
+
+  static void put_row(png_structp png, png_bytep bytes, png_uint_32 y, int) {
+    PngPicture& picture = self(png).picture_;
+    const std::size_t row = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.components);
+    png_progressive_combine_row(png, reinterpret_cast<png_bytep>(&picture.samples[y * row]), bytes);
+  }
+
+  static void end(png_structp png, png_infop) { self(png).ended_ = true; }
+
+  const double file_size_, memory_;
+  png_structp png_;
+  png_infop about_;
+  PngPicture picture_;
+  std::string problem_;
+  bool ended_ = false;
 };
 
 }  // namespace
 
-bool png_unpacks_beyond(std::span<const std::uint8_t> bytes, double most) {
-  constexpr std::size_t kSignature = 8, kAround = 12;  // of a chunk: length, name, checksum
-  constexpr double kMostRatio = 1032;                  // of zlib, as its documentation says
-  if (static_cast<double>(bytes.size()) * kMostRatio <= most) return false;
-  Unpacked unpacked;
-  for (std::size_t at = kSignature; bytes.size() >= kAround && at <= bytes.size() - kAround;) {
-    const std::size_t length = big_endian(&bytes[at]);
-    if (length > bytes.size() - at - kAround) break;
-    if (std::memcmp(&bytes[at + 4], "IDAT", 4) == 0) unpacked.take(bytes.subspan(at + 8, length), most);
-    at += kAround + length;
-  }
-  return unpacked.size() > most;
+std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory) {
+  return Reader(static_cast<double>(bytes.size()), memory).read(bytes);
+}
+
+bool is_png(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kSignature = 8;
+  return bytes.size() >= kSignature && png_sig_cmp(bytes.data(), 0, kSignature) == 0;
 }
 
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row) {

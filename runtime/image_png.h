@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace fathom::runtime {
@@ -15,7 +17,17 @@ using PngRow = std::function<void(int y, std::span<std::uint8_t> bytes)>;
 // The file's bytes, with a chunk that says sRGB when `srgb`; empty when libpng fails. `bits` is 8 or 16.
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row);
 
-// Whether a file's picture data unpacks to more than `most` bytes; nothing of it is kept. False where it is no PNG.
-bool png_unpacks_beyond(std::span<const std::uint8_t> bytes, double most);
+// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components, all of 16 bits, whatever the file has.
+struct PngPicture {
+  int width = 0, height = 0, components = 0;
+  std::vector<std::uint16_t> samples;
+};
+
+// What the file shows, or why it cannot be read; a picture that needs more than `memory` bytes is refused before they
+// are taken. A profile of colours is not looked at.
+std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
+
+// Whether the file begins as every PNG does.
+bool is_png(std::span<const std::uint8_t> bytes);
 
 }  // namespace fathom::runtime

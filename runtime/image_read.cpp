@@ -108,37 +108,38 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
   const double numbers = static_cast<double>(width) * height * std::max(3, components);
   const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
   if (needed > memory) return too_much_memory(needed, memory);
-  // stb unpacks all the data of a png before it looks how much the picture needs: with 16 bits and interlaced no more
-  // than this.
-  const double rows = 2.0 * height * (8.0 * width + 8);
-  if (png_unpacks_beyond(bytes, rows)) return "its data is longer than its picture";
   return std::nullopt;
 }
 
-// Whole samples as sRGB signals.
+// Whole samples [y][x][component] as sRGB signals.
 template <typename Sample>
-Decoded decode_signals(Sample* (*load)(const stbi_io_callbacks*, void*, int*, int*, int*, int), const Bytes& bytes,
-                       double memory) {
-  if (auto problem = stb_problem(bytes, sizeof(Sample), memory)) return std::move(*problem);
-  int width = 0, height = 0, components = 0;
-  StbSource source{bytes};
-  const StbPixels<Sample> pixels(load(&kFromSource, &source, &width, &height, &components, 0));
-  if (const char* problem = source.problem(pixels.get())) return problem;
+FloatImage from_signals(const Sample* samples, int width, int height, int components) {
   constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
   std::vector<float> light(kMost + 1);
   for (std::size_t i = 0; i <= kMost; ++i) {
     light[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
   }
   return spread(
-      pixels.get(), width, height, components, [&](Sample sample) { return light[sample]; },
+      samples, width, height, components, [&](Sample sample) { return light[sample]; },
       [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
 }
 
+Decoded decode_deep(const Bytes& bytes, double memory) {
+  const auto read = decode_png(bytes, memory);
+  if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
+  const auto& picture = std::get<PngPicture>(read);
+  return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
+}
+
 Decoded decode_shown(const Bytes& bytes, double memory) {
-  if (stbi_is_16_bit_from_memory(bytes.data(), static_cast<int>(bytes.size()))) {
-    return decode_signals<stbi_us>(stbi_load_16_from_callbacks, bytes, memory);
-  }
-  return decode_signals<stbi_uc>(stbi_load_from_callbacks, bytes, memory);
+  // Whatever its name says: stb sets aside what a chunk says that it has before it reads any of it.
+  if (is_png(bytes)) return decode_deep(bytes, memory);
+  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory)) return std::move(*problem);
+  int width = 0, height = 0, components = 0;
+  StbSource source{bytes};
+  const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
+  if (const char* problem = source.problem(pixels.get())) return problem;
+  return from_signals(pixels.get(), width, height, components);
 }
 
 // Where stb reads the lines of a header it takes the filler for more of them, without end: an empty line must end the

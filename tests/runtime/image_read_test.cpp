@@ -79,6 +79,49 @@ TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
   }
 }
 
+// A file whose bytes are written as two hexadecimal digits each.
+FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+  }
+  std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes;
+  const auto read = read_image(folder.file(std::string(name)));
+  if (const auto* unread = std::get_if<UnreadImage>(&read)) FAIL(unread->problem);
+  return std::get<FloatImage>(read);
+}
+
+TEST_CASE("image_read: every kind of png", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  using Values = std::vector<std::vector<float>>;
+  CHECK(image_of(
+            folder, "grey-of-1-bit.png",
+            "89504e470d0a1a0a0000000d4948445200000003000000010100000000339b29190000000a4944415478da6358000000a200a1"
+            "7105cb410000000049454e44ae426082")
+            .values == Values{{1, 0, 1}, {1, 0, 1}, {1, 0, 1}});
+  CHECK(image_of(
+            folder, "palette-with-alpha.png",
+            "89504e470d0a1a0a0000000d4948445200000002000000010803000000c3fc8fb800000006504c5445ff000000ff00d287ef71"
+            "0000000174524e5380ad5e5b460000000b4944415478da63606400000005000242c2449f0000000049454e44ae426082")
+            .values == Values{{0, 1}, {1, 0}, {0, 0}, {1, 128.f / 255}});
+  CHECK(image_of(
+            folder, "grey-and-alpha-of-16-bits.png",
+            "89504e470d0a1a0a0000000d4948445200000001000000011004000000e58cd0410000000d4944415478da63f8ffdf81010007"
+            "7e023fea81688e0000000049454e44ae426082")
+            .values == Values{{1}, {1}, {1}, {0x4000 / 65535.f}});
+  // Whatever its name says.
+  CHECK(image_of(
+            folder, "interlaced.jpg",
+            "89504e470d0a1a0a0000000d49484452000000020000000208020000018ad3aae50000000f4944415478da63f8cf0004100208"
+            "0020ee05fb4c50558d0000000049454e44ae426082")
+            .values == Values{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}});
+  CHECK(image_of(
+            folder, "more-data-than-a-picture.png",
+            "89504e470d0a1a0a0000000d49484452000000010000000108000000003a7e9b550000001c4944415478daedc1210100000002"
+            "20ff9fd61536200d0000000070378a1e0100cb6d2efe0000000049454e44ae426082")
+            .values == Values{{1}, {1}, {1}});
+}
+
 TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
   const tests::TemporaryFolder folder;
   std::ofstream(folder.file("a.pfm"), std::ios::binary)
