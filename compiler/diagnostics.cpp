@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "vm/printable.h"
+
 namespace fathom::compiler {
 namespace {
 
@@ -17,8 +19,9 @@ constexpr std::size_t kTabWidth = 4;
 constexpr std::size_t kMostBytes = 2000;  // of a message: names and numbers can be as long as the file
 constexpr std::size_t kWindow = 4096;     // bytes on either side of the carets that may be shown
 
-// Cuts a text that is too long, between characters.
-std::string shortened(std::string text) {
+// Text that is not too long, cut between characters, and may be sent to a terminal.
+std::string shown(std::string_view from) {
+  std::string text = vm::printable(from);
   if (text.size() <= kMostBytes) return text;
   std::size_t end = kMostBytes;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
@@ -39,22 +42,6 @@ const char* word(Severity severity) { return severity == Severity::Error ? "erro
 
 bool nowhere(Span span) { return span.begin == 0 && span.end == 0; }
 
-// The bytes of the UTF-8 sequence that starts `text`; 0 when it is not one. Overlong forms and surrogates pass: this
-// only decides what a terminal is sent.
-std::size_t sequence_length(std::string_view text) {
-  const auto byte = static_cast<unsigned char>(text[0]);
-  const std::size_t length = byte < 0x80         ? 1
-                             : (byte >> 5) == 6  ? 2
-                             : (byte >> 4) == 14 ? 3
-                             : (byte >> 3) == 30 ? 4
-                                                 : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) return 0;
-  }
-  return length;
-}
-
 // A source line as it is shown: cells of one column each, tabs as blanks, what a terminal must not see replaced.
 struct Shown {
   std::vector<std::string_view> cells;
@@ -62,11 +49,10 @@ struct Shown {
 
   explicit Shown(std::string_view line) {
     for (std::size_t at = 0; at < line.size();) {
-      const std::size_t length = sequence_length(line.substr(at));
-      const bool control = static_cast<unsigned char>(line[at]) < 0x20 || line[at] == 0x7F;
-      const std::string_view cell = line[at] == '\t'         ? std::string_view(" ")
-                                    : length == 0 || control ? std::string_view("\uFFFD")
-                                                             : line.substr(at, length);
+      const std::size_t length = vm::printable_length(line.substr(at));
+      const std::string_view cell = line[at] == '\t' ? std::string_view(" ")
+                                    : length == 0    ? std::string_view("\uFFFD")
+                                                     : line.substr(at, length);
       const std::size_t columns = line[at] == '\t' ? kTabWidth : 1;
       cells.insert(cells.end(), columns, cell);
       bytes.insert(bytes.end(), columns, static_cast<std::uint32_t>(at));
@@ -175,18 +161,23 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
 
 }  // namespace
 
+void Diagnostics::add(Diagnostic d) {
+  d.message = shown(d.message);
+  d.label = vm::printable(d.label);
+  for (std::string& help : d.help) help = vm::printable(help);
+  all_.push_back(std::move(d));
+}
+
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
   if (++errors_ > kMostKept) return;
-  all_.push_back(
-      {Severity::Error, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
+  add({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
   if (++warnings_ > kMostKept) return;
-  all_.push_back(
-      {Severity::Warning, std::move(code), shortened(std::move(message)), span, std::move(label), std::move(help)});
+  add({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 std::string Diagnostics::print(const Source& source, ErrorFormat format, bool color) const {

@@ -51,6 +51,8 @@ class Diagnostics {
   std::string print(const Source& source, ErrorFormat format, bool color = false) const;
 
  private:
+  void add(Diagnostic d);
+
   static constexpr std::size_t kMostKept = 1000;
 
   std::vector<Diagnostic> all_;

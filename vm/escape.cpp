@@ -15,7 +15,7 @@ std::string escape(std::string_view text, bool quotes) {
     if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos && (quotes || c != '"')) {
       out += '\\';
       out += kLetters[known];
-    } else if (static_cast<unsigned char>(c) < 0x20) {
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
     } else {
       out += c;
@@ -51,7 +51,8 @@ bool unescape(std::string_view text, std::string& out) {
       unsigned code = 0;
       const std::string_view digits = text.substr(std::min(i + 1, text.size()), 4);
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
-      if (text[i] != 'u' || digits.size() != 4 || error != std::errc() || end != digits.data() + 4 || code >= 0x20) {
+      if (text[i] != 'u' || digits.size() != 4 || error != std::errc() || end != digits.data() + 4 ||
+          (code >= 0x20 && code != 0x7f)) {
         return false;
       }
       out += static_cast<char>(code);

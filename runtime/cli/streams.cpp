@@ -2,16 +2,18 @@
 
 #include <ostream>
 
+#include "vm/printable.h"
+
 namespace fathom::cli {
 
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help) {
-  streams.err << (streams.color ? "\033[1;31merror\033[0m: " : "error: ") << message << '\n';
-  for (const std::string& line : help) streams.err << "  = help: " << line << '\n';
+  streams.err << (streams.color ? "\033[1;31merror\033[0m: " : "error: ") << vm::printable(message) << '\n';
+  for (const std::string& line : help) streams.err << "  = help: " << vm::printable(line) << '\n';
   return code;
 }
 
 void note(const Streams& streams, std::string_view message) {
-  streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << message << '\n';
+  streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << vm::printable(message) << '\n';
 }
 
 std::string count_of(std::size_t count, std::string_view noun) {
