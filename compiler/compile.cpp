@@ -94,16 +94,7 @@ std::optional<NodeId> node_beyond_float(const Scene& scene) {
   return std::nullopt;
 }
 
-vm::Limits machine_limits(const Limits& limits) {
-  vm::Limits machine;
-  machine.stack = static_cast<std::uint32_t>(limits.stack);
-  machine.locals = static_cast<std::uint32_t>(limits.locals);
-  machine.loop_count = static_cast<std::uint32_t>(limits.iterations);
-  machine.words = std::max(machine.words, static_cast<std::uint32_t>(16 * limits.instructions));
-  return machine;
-}
-
-void report_limit(const Scene& scene, const vm::VerifyError& error, Diagnostics& diagnostics) {
+void report_unsound(const Scene& scene, const vm::VerifyError& error, Diagnostics& diagnostics) {
   if (const std::optional<NodeId> node = node_beyond_float(scene)) {
     diagnostics.error("E0308", scene.graph.origin(*node).span,
                       fmt::format("evaluating this takes numbers beyond those of float ({})", error.reason), "",
@@ -111,7 +102,7 @@ void report_limit(const Scene& scene, const vm::VerifyError& error, Diagnostics&
     return;
   }
   diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                    fmt::format("the scene's program exceeds a limit of the machine: {}", error.reason), "",
+                    fmt::format("no machine runs the scene's program: {}", error.reason), "",
                     {"make the scene smaller, or cut it into several"});
 }
 
@@ -126,12 +117,18 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
                        raise(&Limits::instructions, 2 * limits.instructions)});
     return std::nullopt;
   }
-  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program), machine_limits(limits));
+  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program), largest_machine());
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
-    report_limit(scene, *error, diagnostics);
+    report_unsound(scene, *error, diagnostics);
     return std::nullopt;
   }
-  return std::get<vm::VerifiedProgram>(std::move(verified));
+  auto& sound = std::get<vm::VerifiedProgram>(verified);
+  if (auto excess = excess_of(sound, limits)) {
+    diagnostics.error("E0305", scene.graph.origin(scene.root).span, std::move(excess->what), "",
+                      {std::move(excess->remedy)});
+    return std::nullopt;
+  }
+  return std::move(sound);
 }
 
 // `optimised` is `scene` after the passes, without paint; `painted`: whether the surface program needs tags.

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "compiler/bounds.h"
+#include "compiler/limits.h"
 #include "compiler/lower.h"
 #include "vm/verify.h"
 
@@ -71,7 +72,7 @@ std::optional<vm::Range> Containment::range(const Graph& graph, NodeId solid, co
   const auto [found, fresh] = programs_.try_emplace(solid);
   if (fresh) {
     if (std::optional<vm::Program> program = lower(graph, solid, Source("", ""), kLongestProgram)) {
-      auto verified = vm::verify(std::move(*program));
+      auto verified = vm::verify(std::move(*program), largest_machine());
       if (auto* sound = std::get_if<vm::VerifiedProgram>(&verified)) found->second = std::move(*sound);
     }
   }

@@ -53,7 +53,7 @@ class Diagnostics {
  private:
   void add(Diagnostic d);
 
-  static constexpr std::size_t kMostKept = 1000;
+  static constexpr std::size_t kMostKept = 100;
 
   std::vector<Diagnostic> all_;
   std::size_t errors_ = 0, warnings_ = 0;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/fuse.h"
+#include "compiler/limits.h"
 #include "compiler/lower.h"
 #include "vm/check.h"
 #include "vm/evaluate.h"
@@ -46,13 +47,16 @@ class Bisection {
  public:
   // `used`: which coordinates the formula has in it; along the others nothing changes.
   Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
-      : length_(static_cast<int>(program.instructions())), whole_(box), used_(used) {
+      : length_(static_cast<int>(program.instructions())), cost_(program.cost()), whole_(box), used_(used) {
     add(box, std::make_shared<const vm::Part>(vm::whole(program)));
   }
 
   FormulaBound run() {
-    // Of the formula's length: a tenth of a second at most, were no cell's part shorter.
-    const int budget = std::clamp(4'000'000 / (length_ + 1), 64, 8192);
+    // Of the formula's length: a tenth of a second at most, were no cell's part shorter. Of one that is so long that
+    // few cells would be left, a second by what its functions cost.
+    const int cells = 4'000'000 / (length_ + 1);
+    const int budget =
+        cells >= kFew ? std::min(cells, 8192) : std::clamp(static_cast<int>(8'000'000 / (cost_ + 1)), 4, kFew);
     for (int i = 0; i < budget && !cells_.empty(); ++i) {
       const Cell steepest = cells_.top();
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
@@ -117,7 +121,10 @@ class Bisection {
     return true;
   }
 
+  static constexpr int kFew = 64;
+
   const int length_;
+  const std::uint32_t cost_;
   const Box whole_;
   const std::array<bool, 3> used_;
   vm::Workspace workspace_;
@@ -126,12 +133,13 @@ class Bisection {
   double seen_ = 0;
 };
 
-vm::VerifiedProgram program_of(const Graph& graph, NodeId formula) {
-  constexpr std::size_t kUnlimited = 10'000'000;
-  std::optional<vm::Program> program = lower(graph, formula, Source("", ""), kUnlimited);
-  CHECK(program.has_value(), "a formula's program is as long as the formula");
-  auto verified = vm::verify(fuse(std::move(*program)));
-  CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "a formula's program is sound");
+// nullopt when no machine runs it; the scene's program, of which it is a part, is refused later.
+std::optional<vm::VerifiedProgram> program_of(const Graph& graph, NodeId formula) {
+  const auto longest = static_cast<std::size_t>(limit_row(&Limits::instructions).largest);
+  std::optional<vm::Program> program = lower(graph, formula, Source("", ""), longest);
+  if (!program) return std::nullopt;
+  auto verified = vm::verify(fuse(std::move(*program)), largest_machine());
+  if (std::holds_alternative<vm::VerifyError>(verified)) return std::nullopt;
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }
 
@@ -196,8 +204,10 @@ DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowled
 }  // namespace
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
-  const vm::VerifiedProgram program = program_of(graph, formula);
-  return Bisection(program, box, coordinates_of(graph, formula)).run();
+  const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity};
+  return Bisection(*program, box, coordinates_of(graph, formula)).run();
 }
 
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vm/verify.h"
+
 namespace fathom::compiler {
 
 std::string raise(double Limits::*value, double needed) {
@@ -14,6 +16,33 @@ std::string raise(double Limits::*value, double needed) {
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(needed)) - 1));
   const double enough = std::min(row.largest, std::ceil(needed / step) * step);
   return fmt::format("`--limit {}={}` allows more", row.name, enough);
+}
+
+vm::Limits largest_machine() {
+  vm::Limits machine;
+  machine.stack = static_cast<std::uint32_t>(limit_row(&Limits::stack).largest);
+  machine.locals = static_cast<std::uint32_t>(limit_row(&Limits::locals).largest);
+  machine.words = static_cast<std::uint32_t>(16 * limit_row(&Limits::instructions).largest);
+  return machine;
+}
+
+std::optional<Excess> excess_of(const vm::VerifiedProgram& program, const Limits& limits) {
+  const struct {
+    double Limits::*limit;
+    double needed;
+    const char* sentence;
+  } sizes[] = {
+      {&Limits::instructions, static_cast<double>(program.instructions()), "the program has {} instructions"},
+      {&Limits::stack, static_cast<double>(std::max(program.max_values(), program.max_points())),
+       "the program needs a stack of {} values"},
+      {&Limits::locals, static_cast<double>(program.program().locals), "the program remembers {} values"},
+  };
+  for (const auto& [limit, needed, sentence] : sizes) {
+    if (needed <= limits.*limit) continue;
+    return Excess{fmt::format("{}, and {} are allowed", fmt::format(fmt::runtime(sentence), needed), limits.*limit),
+                  raise(limit, needed)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace fathom::compiler

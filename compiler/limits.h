@@ -5,8 +5,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
+
+namespace fathom::vm {
+struct Limits;
+class VerifiedProgram;
+}  // namespace fathom::vm
 
 namespace fathom::compiler {
 
@@ -18,7 +24,7 @@ struct Limits {
   double formula_nesting = 1000;
   double nodes = 1e6;
   double copies = 512;
-  double iterations = 4096;
+  double iterations = 256;
   double instructions = 1e6;
   double stack = 4096;
   double locals = 65536;
@@ -41,16 +47,19 @@ struct LimitRow {
 inline constexpr double kAnySize = 1e15;
 
 inline constexpr std::array<LimitRow, 15> kLimits = {{
-    {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a list of points", "places in a text have 32 bits"},
+    {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",
+     "places in a text have 32 bits"},
     {"tokens", &Limits::tokens, 1 << 30, "values and names", "a scene's text", "places in a text have 32 bits"},
     {"nesting", &Limits::nesting, 4096, "levels", "lists and objects within each other", "the stack's size"},
     {"formula-nesting", &Limits::formula_nesting, 1000, "levels", "parentheses and signs within each other",
      "the stack's size"},
-    {"nodes", &Limits::nodes, 1e9, "nodes", "the graph, each node in every object that paints it anew",
+    {"nodes", &Limits::nodes, 1e9, "nodes",
+     "the graph before it is optimised, each node in every object that paints it anew",
      "nodes are numbered in 32 bits"},
-    {"copies", &Limits::copies, 512, "copies", "evaluations of one node for each point, of a repetition",
+    {"copies", &Limits::copies, 512, "copies", "evaluations of its node for each point, of each repetition",
      "the program of one node"},
-    {"iterations", &Limits::iterations, 4096, "iterations", "a fractal's loop", "time at every point"},
+    {"iterations", &Limits::iterations, 256, "iterations", "a fractal's loop, and its power",
+     "the opcodes that loop"},
     {"instructions", &Limits::instructions, 16e6, "instructions", "a program", "places in a program have 24 bits"},
     {"stack", &Limits::stack, 65536, "values", "either stack of the machine", "the machine's scratch memory"},
     {"locals", &Limits::locals, 262143, "values", "what a program remembers for later uses",
@@ -59,9 +68,9 @@ inline constexpr std::array<LimitRow, 15> kLimits = {{
      "squares of floats end at 1e38"},
     {"image-side", &Limits::image_side, 65535, "pixels", "a picture's width and height",
      "what image formats can say"},
-    {"pixels", &Limits::pixels, 2147483648.0, "pixels", "a picture", "pixels are numbered in 31 bits"},
+    {"pixels", &Limits::pixels, 1 << 28, "pixels", "a picture", "films and pictures of floats hold no more"},
     {"samples", &Limits::samples, 1 << 20, "samples a pixel", "a render", "samples are numbered in 20 bits"},
-    {"memory", &Limits::memory, kAnySize, "bytes", "film, regions and pictures that are read, together",
+    {"memory", &Limits::memory, kAnySize, "bytes", "a render's film and regions; each picture that is read",
      "no machine has more"},
 }};
 
@@ -82,5 +91,15 @@ constexpr const LimitRow& limit_row(double Limits::*value) {
 
 // How to allow `needed`, a line of help: "--limit nodes=2000000 allows more", or why nothing does.
 std::string raise(double Limits::*value, double needed);
+
+// The most that the table can be set to: what the programs have that the compiler makes for itself.
+vm::Limits largest_machine();
+
+// What goes beyond the limits of a program that largest_machine() allows, and how to allow it; nullopt when nothing
+// does.
+struct Excess {
+  std::string what, remedy;
+};
+std::optional<Excess> excess_of(const vm::VerifiedProgram& program, const Limits& limits);
 
 }  // namespace fathom::compiler

@@ -72,7 +72,7 @@ class Codes {
 // ask for any number.
 class ValueCounter {
  public:
-  ValueCounter(const Graph& graph, std::size_t most) : graph_(graph), most_(most), chains_(graph.size()) {}
+  ValueCounter(const Graph& graph, std::size_t most) : graph_(graph), most_(most) {}
 
   bool more(NodeId root) {
     add(root, 0);
@@ -141,7 +141,7 @@ class ValueCounter {
   const Graph& graph_;
   const std::size_t most_;
   std::size_t count_ = 0;
-  std::vector<std::unique_ptr<Chains>> chains_;  // [node] of those with one child, once asked for
+  std::unordered_map<NodeId, std::unique_ptr<Chains>> chains_;  // of those with one child, once asked for
   std::vector<std::pair<NodeId, std::uint64_t>> pending_;
   std::vector<std::uint64_t> table_;  // hashes of the values so far; 0 is a free place
 };

@@ -139,7 +139,7 @@ class Probing {
     const std::optional<vm::Program> program =
         lower(field_.graph(), id, Source("", ""), static_cast<std::size_t>(Limits{}.instructions));
     if (!program) return;
-    const auto verified = vm::verify(*program);
+    const auto verified = vm::verify(*program, largest_machine());
     if (const auto* sound = std::get_if<vm::VerifiedProgram>(&verified)) run(*sound, points, row);
   }
 

@@ -216,8 +216,28 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   return spread(values.data(), *width, *height, components, same, same);
 }
 
-// False, and errno tells why. What is longer than `most` bytes is cut off there: a device may have no end.
-bool read_bytes(const std::string& path, double most, Bytes& bytes) {
+// Whether a file's first bytes are those of its format, or for a format that is shown of any of these.
+bool has_signature(ImageFormat format, const Bytes& bytes) {
+  constexpr struct {
+    ImageFormat format;
+    std::string_view bytes;
+  } kSignatures[] = {
+      {ImageFormat::Png, "\x89PNG\r\n\x1a\n"}, {ImageFormat::Jpeg, "\xff\xd8\xff"}, {ImageFormat::Bmp, "BM"},
+      {ImageFormat::Exr, "\x76\x2f\x31\x01"},   {ImageFormat::Pfm, "PF"},           {ImageFormat::Pfm, "Pf"},
+      {ImageFormat::Hdr, "#?"},
+  };
+  const auto shown = [](ImageFormat f) {
+    return f == ImageFormat::Png || f == ImageFormat::Jpeg || f == ImageFormat::Bmp;
+  };
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return std::any_of(std::begin(kSignatures), std::end(kSignatures), [&](const auto& row) {
+    return (row.format == format || (shown(row.format) && shown(format))) && text.starts_with(row.bytes);
+  });
+}
+
+// False, and errno tells why. What does not begin as its format does is read no further than its first piece, and what
+// is longer than `most` bytes is cut off there: a device may have no end.
+bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes& bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return false;
   constexpr std::size_t kPiece = std::size_t{1} << 20;
@@ -226,11 +246,13 @@ bool read_bytes(const std::string& path, double most, Bytes& bytes) {
     bytes.resize(size + kPiece);
     count = std::fread(bytes.data() + size, 1, kPiece, file.get());
     bytes.resize(size + count);
+    if (size == 0 && !has_signature(format, bytes)) break;
   }
   return std::ferror(file.get()) == 0;
 }
 
 Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
+  if (!has_signature(format, bytes)) return "it does not begin as such a file does";
   if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
   switch (format) {
     case ImageFormat::Exr:
@@ -253,7 +275,7 @@ std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const 
         fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
   }
   Bytes bytes;
-  if (!read_bytes(path, limits.memory, bytes)) {
+  if (!read_bytes(path, format->format, limits.memory, bytes)) {
     return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
   }
   if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {

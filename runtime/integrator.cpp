@@ -23,16 +23,22 @@ std::size_t under_way(const Marcher& marcher) {
 
 Integrator::Integrator(const World& world, const Pass& pass, PathExchange& exchange)
     : world_(world), pass_(pass), exchange_(exchange) {
-  marchers_.push_back(make_marcher(world.field, world.settings.marching));
-  int paths = marchers_[0]->capacity();
+  marchers_.resize(1 + world.media.size());
+  int paths = marcher(0).capacity();
   for (std::size_t i = 0; i < world.media.size(); ++i) {
-    marchers_.push_back(make_marcher(world.media.field(i), world.settings.marching));
-    paths = std::min(paths, marchers_.back()->capacity());
+    paths = std::min(paths, Marcher::capacity_for(world.media.field(i)));
   }
   paths_.resize(static_cast<std::size_t>(paths));
   vertices_.resize(kVertexBatch);
   if (world.materials.pass_straight()) shadows_.resize(paths_.size());
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
+}
+
+// Made when the first ray is in the medium: it takes 300 KB, and a scene may have thousands of media.
+Marcher& Integrator::marcher(std::size_t field) {
+  std::unique_ptr<Marcher>& marcher = marchers_[field];
+  if (!marcher) marcher = make_marcher(this->field(field), world_.settings.marching);
+  return *marcher;
 }
 
 void Integrator::run() {
@@ -50,13 +56,15 @@ void Integrator::run() {
 }
 
 bool Integrator::idle() const {
-  return std::all_of(marchers_.begin(), marchers_.end(),
-                     [](const auto& marcher) { return marcher->empty() && marcher->arrivals().empty(); });
+  return std::all_of(marchers_.begin(), marchers_.end(), [](const auto& marcher) {
+    return !marcher || (marcher->empty() && marcher->arrivals().empty());
+  });
 }
 
 // Rays within a medium wait until they fill registers, or until there are no others.
 bool Integrator::due(std::size_t field) const {
   if (field == 0) return true;
+  if (!marchers_[field]) return false;
   const std::size_t rays = under_way(*marchers_[field]);
   return rays > 0 && rays >= std::min(kShadeBatch, under_way(*marchers_[0]));
 }
@@ -128,7 +136,7 @@ void Integrator::follow(std::uint32_t id, const Ray& ray) {
   Path& path = paths_[id];
   path.origin = ray.origin;
   path.direction = ray.direction;
-  marchers_[path.space.field]->add(id, ray);
+  marcher(path.space.field).add(id, ray);
 }
 
 void Integrator::settle_arrivals(std::size_t field) {
@@ -230,7 +238,9 @@ void Integrator::hand_in(std::uint32_t id) {
 
 Stats Integrator::stats() const {
   Stats stats = stats_;
-  for (const auto& marcher : marchers_) stats.march.merge(marcher->counters());
+  for (const auto& marcher : marchers_) {
+    if (marcher) stats.march.merge(marcher->counters());
+  }
   if (world_.settings.profile) stats.stages = marchers_[0]->clock().seconds();
   return stats;
 }

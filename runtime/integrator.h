@@ -113,6 +113,7 @@ class Integrator {
   void leave_scene(const Arrival& arrival);
   void hand_in(std::uint32_t id);  // and frees the id
 
+  Marcher& marcher(std::size_t field);
   const Field& field(std::size_t number) const { return number == 0 ? world_.field : world_.media.field(number - 1); }
 
   // shade.cpp
@@ -150,7 +151,7 @@ class Integrator {
   const World& world_;
   const Pass pass_;
   PathExchange& exchange_;
-  std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]
+  std::vector<std::unique_ptr<Marcher>> marchers_;  // [0]: of the scene's field; [1 + medium]: once a ray was there
   std::vector<Path> paths_;                         // [id]
   std::vector<ShadowRay> shadows_;                  // [id], where surfaces may let light straight through
   std::vector<std::uint32_t> free_ids_, ended_;

@@ -31,11 +31,11 @@ class Certifier final : public Marcher {
 
 }  // namespace
 
+int Marcher::capacity_for(const Field& field) { return field.regions ? kMostRays : kMostRays / 2; }
+
 // With regions every point has its own program, and nothing is gained by asking for many.
 Marcher::Marcher(const Field& field)
-    : field_(field),
-      capacity_(field.regions ? kMostRays : kMostRays / 2),
-      side_by_side_(field.regions ? 1 : kSideBySide) {}
+    : field_(field), capacity_(capacity_for(field)), side_by_side_(field.regions ? 1 : kSideBySide) {}
 
 void Marcher::refuse() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
 

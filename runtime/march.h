@@ -50,6 +50,7 @@ class Marcher {
 
   // Rays under way at once, kMostRays at most: with regions many, so that many are in programs of one skeleton.
   int capacity() const { return capacity_; }
+  static int capacity_for(const Field& field);
   int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }
   bool empty() const { return live_ == 0 && waiting_.count == 0 && searched_.empty(); }
 

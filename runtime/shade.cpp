@@ -303,7 +303,7 @@ bool Integrator::survives(Path& path, float roulette) const {
 void Integrator::look_along(std::uint32_t id, const ShadowRay& shadow) {
   ++stats_.shadow_rays;
   if (!shadows_.empty()) shadows_[id] = shadow;
-  marchers_[shadow.space.field]->add(id, shadow.ray);
+  marcher(shadow.space.field).add(id, shadow.ray);
 }
 
 // Where a shadow ray met a surface; of the vertex only what concerns the surface is made.

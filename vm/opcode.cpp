@@ -1,6 +1,7 @@
 #include "vm/opcode.h"
 
 #include <array>
+#include <charconv>
 
 namespace fathom::vm {
 namespace {
@@ -107,8 +108,13 @@ std::uint64_t instruction_cost(std::uint32_t word) {
 
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
 
-bool is_integer_immediate(const OpcodeInfo& opcode, int index) {
-  return nth_name(opcode.immediate_names, index).ends_with(":i");
+std::uint32_t largest_integer(const OpcodeInfo& opcode, int index) {
+  const std::string_view name = nth_name(opcode.immediate_names, index);
+  const std::size_t colon = name.find(':');
+  if (colon == name.npos) return 0;
+  std::uint32_t largest = 0;
+  std::from_chars(name.data() + colon + 1, name.data() + name.size(), largest);
+  return largest;
 }
 
 std::string_view immediate_name(const OpcodeInfo& opcode, int index) {

@@ -59,7 +59,7 @@ struct OpcodeInfo {
   Opcode opcode;
   std::string_view mnemonic;
   Form form;
-  std::string_view immediate_names;  // blank separated, ":i" marks an integer
+  std::string_view immediate_names;  // blank separated, ":24" marks a whole number from 1 to 24
   int immediates;                    // words after the opcode word; of an Outline, of one group
   Choice choice;
   int cost;            // multiply-adds per point; of an Outline, of one group
@@ -85,8 +85,9 @@ std::uint64_t instruction_cost(std::uint32_t word);
 // The i-th row, or nullptr when `byte` names no opcode.
 const OpcodeInfo* find_opcode(std::uint32_t byte);
 
-// Whether immediate `index` of `opcode` is an unsigned integer rather than a float.
-bool is_integer_immediate(const OpcodeInfo& opcode, int index);
+// The most that immediate `index` of `opcode` can be, an unsigned integer from 1; 0 when it is a float.
+std::uint32_t largest_integer(const OpcodeInfo& opcode, int index);
+inline bool is_integer_immediate(const OpcodeInfo& opcode, int index) { return largest_integer(opcode, index) > 0; }
 std::string_view immediate_name(const OpcodeInfo& opcode, int index);
 
 // What the head of vm/opcodes.def promises of a Shape's float error, per unit of max(1, |p|, |d|).

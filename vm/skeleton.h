@@ -45,7 +45,7 @@ inline constexpr std::size_t kAnyShapeImmediates = 4;
 constexpr bool can_be_any_shape(Opcode opcode, std::string_view immediates, int cost) {
   constexpr int kMostCost = 64;  // of a dear one the other lanes should be spared
   const auto count = static_cast<std::size_t>(count_names(immediates));
-  return count > 0 && count <= kAnyShapeImmediates && immediates.find(":i") == std::string_view::npos &&
+  return count > 0 && count <= kAnyShapeImmediates && immediates.find(':') == std::string_view::npos &&
          opcode != Opcode::Constant && cost <= kMostCost;
 }
 

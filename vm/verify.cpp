@@ -17,8 +17,7 @@ struct State {
   std::vector<bool> written;  // [local]
 };
 
-std::optional<std::string> check_immediates(const Program& program, std::size_t at, const OpcodeInfo& row,
-                                            const Limits& limits) {
+std::optional<std::string> check_immediates(const Program& program, std::size_t at, const OpcodeInfo& row) {
   const std::size_t count = instruction_length(program.words[at]) - 1;
   const auto leading = static_cast<std::size_t>(leading_immediates(program.words[at]));
   for (std::size_t n = 0; n < count; ++n) {
@@ -28,9 +27,10 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
                                   : row.form == Form::Shape ? std::string_view("xyz").substr(n, 1)
                                                             : "constant";
     const std::uint32_t bits = program.words[word];
-    if (n >= leading && is_integer_immediate(row, i)) {
-      if (bits == 0 || bits > limits.loop_count) {
-        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, name, bits, limits.loop_count);
+    const std::uint32_t largest = n >= leading ? largest_integer(row, i) : 0;
+    if (largest > 0) {
+      if (bits == 0 || bits > largest) {
+        return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, name, bits, largest);
       }
     } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
       return fmt::format("{}: {} is not finite", row.mnemonic, name);
@@ -117,7 +117,7 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
                               group_count(word), minimum_groups(row->opcode)));
     }
     if (size - at < instruction_length(word)) return fail(fmt::format("{} is cut off", row->mnemonic));
-    if (auto reason = check_immediates(program, at, *row, limits)) return fail(std::move(*reason));
+    if (auto reason = check_immediates(program, at, *row)) return fail(std::move(*reason));
     if (auto reason = check_stacks(*row, word, limits, state)) return fail(std::move(*reason));
     if (auto reason = check_operand(*row, word, state)) return fail(std::move(*reason));
     at += instruction_length(word);

@@ -23,7 +23,6 @@ struct Limits {
   std::uint32_t words = 16u << 20;
   std::uint32_t stack = 4096;  // values, and points
   std::uint32_t locals = 65536;
-  std::uint32_t loop_count = 4096;  // of an integer immediate
 };
 
 struct VerifyError {

@@ -10,6 +10,7 @@
 #include "compiler/artefact/byte_archive.h"
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/programs.h"
+#include "compiler/limits.h"
 #include "vm/binary.h"
 
 namespace fathom::compiler {
@@ -85,7 +86,7 @@ std::variant<ProgramList, FileError> read_code(std::span<const std::uint8_t> byt
   ProgramList list(media, formulas);
   while (!list.full()) {
     const std::size_t begin = in.offset();
-    auto program = vm::read_program(in);
+    auto program = vm::read_program(in, largest_machine());
     if (const auto* error = std::get_if<vm::VerifyError>(&program)) {
       return FileError{fmt::format("program `{}` at byte {} of the code, word {}: {}", list.next(), begin,
                                    error->offset, error->reason),

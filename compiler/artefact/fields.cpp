@@ -201,16 +201,24 @@ void media(Archive& a, CompiledScene& scene) {
   a.end();
 }
 
-// A pattern of patterns: how deep the deepest is.
-int texture_depth(const std::vector<Texture>& textures) {
-  std::vector<int> depths;  // [texture]
-  int deepest = 0;
+// Of patterns of patterns: how deep the deepest is, and how many are evaluated at a point for the dearest; one that
+// two share counts twice.
+struct TextureWork {
+  int depth = 0;
+  double evaluations = 1;
+};
+TextureWork work_of(const std::vector<Texture>& textures) {
+  std::vector<TextureWork> each;  // [texture]
+  TextureWork most;
   for (const Texture& texture : textures) {
-    const auto* pattern = std::get_if<Pattern>(&texture);
-    depths.push_back(pattern ? 1 + std::max(depths[pattern->a], depths[pattern->b]) : 0);
-    deepest = std::max(deepest, depths.back());
+    TextureWork& work = each.emplace_back();
+    if (const auto* pattern = std::get_if<Pattern>(&texture)) {
+      const TextureWork &a = each[pattern->a], &b = each[pattern->b];
+      work = {1 + std::max(a.depth, b.depth), 1 + a.evaluations + b.evaluations};
+    }
+    most = {std::max(most.depth, work.depth), std::max(most.evaluations, work.evaluations)};
   }
-  return deepest;
+  return most;
 }
 
 void textures(Archive& a, CompiledScene& scene) {
@@ -224,8 +232,14 @@ void textures(Archive& a, CompiledScene& scene) {
     a.end_record();
   }
   a.end();
-  if (a.reading() && !a.failed() && texture_depth(scene.textures) > kMaxPatternDepth + 1) {
-    a.fail(fmt::format("patterns are more than {} deep", kMaxPatternDepth));
+  if (!a.reading() || a.failed()) return;
+  // No more than a scene's text can ask for that is as long as the file.
+  const double allowed = std::max(4096.0, static_cast<double>(scene.textures.size()));
+  const TextureWork most = work_of(scene.textures);
+  if (most.depth > kMaxPatternDepth + 1) a.fail(fmt::format("patterns are more than {} deep", kMaxPatternDepth));
+  if (most.evaluations > allowed) {
+    a.fail(
+        fmt::format("a pattern evaluates {} others at each point, more than {}", most.evaluations - 1, allowed - 1));
   }
 }
 

@@ -84,18 +84,12 @@ class ListingReader {
   // As many as the tags of a program alone name.
   bool name_surfaces(CompiledScene& scene) {
     constexpr std::size_t kMostSurfaces = 65536;
-    scene.surfaces.push_back({"surface 0", 0, false});
-    while (const auto fault = check_tags(scene)) {
-      const std::size_t needed = std::size_t{vm::operand_of(scene.distance.program().words[fault->word])} + 1;
-      if (needed > kMostSurfaces) {
-        return report(line_of_word(0, text_.size(), fault->word),
-                      fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
-      }
-      while (scene.surfaces.size() < needed) {
-        scene.surfaces.push_back({fmt::format("surface {}", scene.surfaces.size()), 0, false});
-      }
-    }
-    return true;
+    const std::size_t named = std::min(surfaces_named(scene.distance), kMostSurfaces);
+    for (std::size_t i = 0; i < named; ++i) scene.surfaces.push_back({fmt::format("surface {}", i), 0, false});
+    const auto fault = check_tags(scene);
+    if (!fault) return true;
+    return report(line_of_word(0, text_.size(), fault->word),
+                  fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
   }
   void read_head(TextArchiveReader& in) {
     in.expect(kHead);
@@ -164,7 +158,7 @@ class ListingReader {
       return refuse_line(begin, *wrong);
     }
     const std::vector<vm::DebugEntry> places = std::get<vm::Program>(program).debug;
-    auto verified = vm::verify(std::get<vm::Program>(std::move(program)));
+    auto verified = vm::verify(std::get<vm::Program>(std::move(program)), largest_machine());
     if (const auto* wrong = std::get_if<vm::VerifyError>(&verified)) {
       return error_at<vm::VerifiedProgram>(line_of_word(begin, end, wrong->offset), wrong->reason);
     }

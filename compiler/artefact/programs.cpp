@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -40,17 +42,61 @@ CompiledScene ProgramList::scene() && {
   return scene;
 }
 
+namespace {
+
+// of(word, surface) for every tag of a program, until it returns false.
+template <typename F>
+void for_each_tag(const vm::VerifiedProgram& program, const F& of) {
+  const std::vector<std::uint32_t>& words = program.program().words;
+  for (std::size_t at = 0; at < words.size(); at += vm::instruction_length(words[at])) {
+    const bool tag = (words[at] & 0xff) == static_cast<std::uint32_t>(vm::Opcode::Tag);
+    if (tag && !of(static_cast<std::uint32_t>(at), vm::operand_of(words[at]))) return;
+  }
+}
+
+}  // namespace
+
 std::optional<TagFault> check_tags(const CompiledScene& scene) {
   const std::vector<NamedProgram> all = programs_of(scene);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::vector<std::uint32_t>& words = all[i].program->program().words;
-    for (std::size_t at = 0; at < words.size(); at += vm::instruction_length(words[at])) {
-      const bool tag = (words[at] & 0xff) == static_cast<std::uint32_t>(vm::Opcode::Tag);
-      if (!tag || vm::operand_of(words[at]) < scene.surfaces.size()) continue;
-      return TagFault{i, static_cast<std::uint32_t>(at),
-                      fmt::format("tag {}: the scene has {} {}", vm::operand_of(words[at]), scene.surfaces.size(),
-                                  scene.surfaces.size() == 1 ? "surface" : "surfaces")};
-    }
+  const std::size_t count = scene.surfaces.size();
+  std::optional<TagFault> fault;
+  for (std::size_t i = 0; i < all.size() && !fault; ++i) {
+    for_each_tag(*all[i].program, [&](std::uint32_t word, std::uint32_t surface) {
+      if (surface < count) return true;
+      fault = TagFault{
+          i, word, fmt::format("tag {}: the scene has {} {}", surface, count, count == 1 ? "surface" : "surfaces")};
+      return false;
+    });
+  }
+  return fault;
+}
+
+std::size_t surfaces_named(const vm::VerifiedProgram& program) {
+  std::size_t count = 1;
+  for_each_tag(program, [&](std::uint32_t, std::uint32_t surface) {
+    count = std::max(count, std::size_t{surface} + 1);
+    return true;
+  });
+  return count;
+}
+
+std::optional<Excess> excess_of(const CompiledScene& stored, const Limits& limits) {
+  for (const NamedProgram& row : programs_of(stored)) {
+    if (auto excess = excess_of(*row.program, limits)) return excess;
+  }
+  const double width = stored.film.width, height = stored.film.height;
+  if (const double side = std::max(width, height); side > limits.image_side) {
+    return Excess{
+        fmt::format("a picture of {} by {} pixels, and {} are allowed in a row", width, height, limits.image_side),
+        raise(&Limits::image_side, side)};
+  }
+  if (width * height > limits.pixels) {
+    return Excess{fmt::format("a picture of {} by {} pixels, and {} are allowed", width, height, limits.pixels),
+                  raise(&Limits::pixels, width * height)};
+  }
+  if (stored.settings.spp > limits.samples) {
+    return Excess{fmt::format("{} samples a pixel, and {} are allowed", stored.settings.spp, limits.samples),
+                  raise(&Limits::samples, stored.settings.spp)};
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "compiler/artefact/listing.h"
+#include "compiler/artefact/programs.h"
 #include "runtime/atomic_file.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
@@ -87,7 +88,11 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   compiler::FileContents contents;
   const auto scene = compiler::read_listing(listing, diagnostics, contents);
   streams.err << diagnostics.print(listing, static_cast<compiler::ErrorFormat>(error_format), streams.color);
-  return scene ? write_compiled(*scene, contents, *output, streams) : kBadScene;
+  if (!scene) return kBadScene;
+  if (const auto excess = compiler::excess_of(*scene, limits)) {
+    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), excess->what), {excess->remedy});
+  }
+  return write_compiled(*scene, contents, *output, streams);
 }
 
 }  // namespace fathom::cli

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "compiler/knowledge.h"
+#include "compiler/limits.h"
 #include "runtime/field.h"
 #include "vm/check.h"
 #include "vm/disassemble.h"
@@ -28,7 +29,7 @@ vm::VerifiedProgram as_program(const vm::Part& part, const vm::Program& whole) {
     program.debug.back().offset = at;
     at += static_cast<std::uint32_t>(vm::instruction_length(program.words[at]));
   }
-  auto verified = vm::verify(std::move(program));
+  auto verified = vm::verify(std::move(program), compiler::largest_machine());
   CHECK(std::holds_alternative<vm::VerifiedProgram>(verified), "the part of a sound program is sound");
   return std::get<vm::VerifiedProgram>(std::move(verified));
 }

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <span>
 
+#include "compiler/artefact/programs.h"
 #include "compiler/frontend/formula.h"
 
 namespace fathom::cli {
@@ -51,7 +53,8 @@ Verdict read_definition(std::string_view text, std::pair<std::string, double>& d
 Verdict read_limit(std::string_view text, compiler::Limits& limits) {
   std::pair<std::string, double> given;
   if (Verdict verdict = read_definition(text, given)) {
-    if (text.find('=') == std::string_view::npos) verdict->help = "write it as nodes=2000000";
+    if (text.find('=') == std::string_view::npos || text.starts_with('='))
+      verdict->help = "write it as nodes=2000000";
     return verdict;
   }
   const auto& [name, value] = given;
@@ -63,9 +66,11 @@ Verdict read_limit(std::string_view text, compiler::Limits& limits) {
     return Complaint{fmt::format("there is no limit `{}`", name),
                      near.empty() ? "`fathom help limits` lists them" : fmt::format("did you mean `{}`?", near)};
   }
-  if (!(value >= 1 && value <= row->largest)) {
-    return Complaint{fmt::format("`{}` can be from 1 to {:.15g} {}", name, row->largest, row->unit),
-                     value > row->largest ? fmt::format("it goes no higher for {}", row->why) : ""};
+  const bool whole = value == std::floor(value) || row->value == &compiler::Limits::coordinate;
+  if (!(value >= 1 && value <= row->largest && whole)) {
+    return Complaint{
+        fmt::format("`{}` can be from 1 to {:.15g} {}{}", name, row->largest, row->unit, whole ? "" : ", whole ones"),
+        value > row->largest ? fmt::format("it goes no higher for {}", row->why) : ""};
   }
   limits.*row->value = value;
   return std::nullopt;
@@ -103,6 +108,16 @@ bool asks_for_graph(const compiler::CompileOptions& options) {
   return options.stop_after || options.on_syntax || options.lint;
 }
 
+// Stored programs as they are to be run, unless they are too much.
+std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::CompiledScene stored,
+                                                              const SceneArguments& arguments,
+                                                              const Streams& streams) {
+  if (const auto excess = compiler::excess_of(stored, arguments.limits)) {
+    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(arguments.path), excess->what), {excess->remedy});
+  }
+  return compiler::unproved(std::move(stored));
+}
+
 // Of a file without the scene's text.
 std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
                                                             const SceneArguments& arguments, const Streams& streams,
@@ -121,7 +136,7 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
   }
   note(streams,
        fmt::format("{} holds programs without their scene: nothing is proved of them", quoted(arguments.path)));
-  return compiler::unproved(std::move(stored.scene));
+  return within_limits(std::move(stored.scene), arguments, streams);
 }
 
 // Whether anything is wrong with the command line's values for parameters (E05xx).
@@ -215,7 +230,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
                               "and nothing is proved of them. `fathom compile` makes it anew",
                               quoted(arguments.path)));
-    return compiler::unproved(std::move(input.stored->scene));
+    return within_limits(std::move(input.stored->scene), arguments, streams);
   }
   return std::move(*scene);
 }

@@ -319,6 +319,23 @@ TEST_CASE("names of any length and with any printable characters read back", "[a
   check_round_trips(scene);
 }
 
+// A pattern of the one before and itself again: each doubles the work at a point.
+TEST_CASE("patterns that share others may not make a point dear without end", "[artefact]") {
+  CompiledScene scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1})");
+  scene.textures = {glm::dvec3(1)};
+  const auto add = [&] {
+    const auto last = static_cast<std::uint32_t>(scene.textures.size() - 1);
+    compiler::Pattern pattern{};
+    pattern.kind = compiler::Pattern::Checker{};
+    pattern.a = pattern.b = last;
+    scene.textures.push_back(pattern);
+  };
+  for (int i = 0; i < 11; ++i) add();
+  CHECK(reason_of(compiler::write_file(scene, {true, false})).empty());
+  add();
+  CHECK_THAT(reason_of(compiler::write_file(scene, {true, false})), Contains("evaluates 8190 others at each point"));
+}
+
 TEST_CASE("a program alone has as many surfaces as its tags name", "[artefact]") {
   FileContents contents;
   CHECK(reread("sphere 1\ntag 0\nsphere 1 at 3 0 0\ntag 2\nmin\n", contents).surfaces.size() == 3);

@@ -94,7 +94,9 @@ TEST_CASE("limits: the length of a program and its stack", "[limits]") {
   limits = {};
   CHECK(outcome_of(deep, limits).good);
   limits.stack = 1;
-  CHECK(outcome_of(deep, limits).text.find("a stack grows beyond 1") != std::string::npos);
+  const Outcome refused = outcome_of(deep, limits);
+  CHECK(refused.text.find("values, and 1 are allowed") != std::string::npos);
+  CHECK(refused.text.find("`--limit stack=") != std::string::npos);
 }
 
 TEST_CASE("limits: forty doublings of a node are forty nodes, and moved ones are refused before they are made",
@@ -119,6 +121,32 @@ TEST_CASE("limits: forty doublings of a node are forty nodes, and moved ones are
   CHECK(other.text.find("--limit instructions=2000000") != std::string::npos);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   CHECK(seconds.count() < 20);  // 2^40 would take days; hostile_test.cpp asks how much of a second it is
+}
+
+// A formula's own program was held to the machine's usual limits, and the scene's said to be a fault of ours.
+TEST_CASE("limits: what a program remembers", "[limits]") {
+  std::string list = "a0 var-x\nm0 var-y\n";
+  for (int i = 0; i < 40; ++i) list += fmt::format("a{1} add a{0} m{0}\nm{1} sin a{0}\n", i, i + 1);
+  Limits limits;
+  limits.locals = 10;
+  const Outcome refused = outcome_of(list, limits);
+  INFO(refused.text);
+  CHECK_FALSE(refused.good);
+  CHECK(refused.text.find("values, and 10 are allowed") != std::string::npos);
+  CHECK(refused.text.find("`--limit locals=") != std::string::npos);
+  limits.locals = 100;
+  CHECK(outcome_of(list, limits).good);
+}
+
+// Each error looked for a word like its own among all that are known, letter by letter.
+TEST_CASE("limits: looking for what was meant ends soon", "[limits]") {
+  const std::string begin(40000, 'a'), end(40000, 'b');
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_FALSE(
+      outcome_of(objects(R"({"use": ")" + begin + R"("})", R"("nodes": {")" + end + "\": " + kBall + "}, "), {})
+          .good);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  CHECK(seconds.count() < 5);  // it was minutes
 }
 
 // Lists of operands were made for each of them, as long as all that came before.

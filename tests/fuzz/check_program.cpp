@@ -4,13 +4,16 @@
 
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "tests/fuzz/target.h"
 #include "tests/vm/float_bits.h"
 #include "vm/disassemble.h"
 #include "vm/specialise.h"
+#include "vm/trace.h"
 
 namespace fathom::fuzz {
 namespace {
@@ -128,12 +131,33 @@ std::vector<float> distances(const vm::Code& program, const Cloud& cloud, vm::Wo
   return d;
 }
 
+struct Enclosed {
+  alignas(64) float lo[vm::kEnclosedBoxes], hi[vm::kEnclosedBoxes];
+};
+
+// On every instruction set, bit for bit.
+Enclosed enclosed(const vm::VerifiedProgram& program, const BoxSet& boxes, vm::Workspace& workspace) {
+  static const std::vector<std::string_view> isas = vm::available_isas();
+  const test::IsaGuard guard;
+  std::vector<vm::ChoiceBounds> choices;
+  Enclosed first;
+  vm::enclose(program, boxes.view(), first.lo, first.hi, choices, workspace);
+  for (const std::string_view isa : isas) {
+    vm::force_isa(isa);
+    Enclosed other;
+    vm::enclose(program, boxes.view(), other.lo, other.hi, choices, workspace);
+    for (std::size_t box = 0; box < vm::kEnclosedBoxes; ++box) {
+      promise(first.lo[box] == other.lo[box] && first.hi[box] == other.hi[box],
+              fmt::format("{} encloses another range in box {}", isa, box));
+    }
+  }
+  return first;
+}
+
 // What the f32 machine computes is within its enclosure, and where that says nothing is NaN, nothing is.
 void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random,
                       vm::Workspace& workspace) {
-  alignas(64) float lo[vm::kEnclosedBoxes], hi[vm::kEnclosedBoxes];
-  std::vector<vm::ChoiceBounds> choices;
-  vm::enclose(program, boxes.view(), lo, hi, choices, workspace);
+  const auto [lo, hi] = enclosed(program, boxes, workspace);
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; ++box) {
     const Cloud cloud = points_in(boxes, box, random);
     const std::vector<float> values = distances(program, cloud, workspace);
@@ -146,7 +170,16 @@ void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, R
   }
 }
 
-// Ranges hold the values in double. Where a value is not defined (the root of a negative number) they say nothing.
+// Whether an operation has no value there (the root of a negative number), though a min or max may hide it.
+bool is_undefined_at(const vm::Code& program, dvec3 point) {
+  bool undefined = false;
+  vm::trace(program, point, [&](const vm::TraceStep& step) {
+    for (const float value : step.values) undefined |= std::isnan(value);
+  });
+  return undefined;
+}
+
+// Ranges hold the values in double where every operation has one; of other points they say nothing.
 void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
     const dvec3 lo(boxes.lo[0][box], boxes.lo[1][box], boxes.lo[2][box]);
@@ -154,9 +187,35 @@ void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
     const vm::Range range = vm::evaluate_range(program, lo, hi, workspace);
     const Cloud cloud = points_in(boxes, box, random);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const double value = vm::evaluate_distance(program, dvec3(cloud.x[i], cloud.y[i], cloud.z[i]), workspace);
-      promise(std::isnan(value) || (range.lo <= value && value <= range.hi),
+      const dvec3 point(cloud.x[i], cloud.y[i], cloud.z[i]);
+      const double value = vm::evaluate_distance(program, point, workspace);
+      promise((range.lo <= value && value <= range.hi) || std::isnan(value) || is_undefined_at(program, point),
               fmt::format("{} is not in the range {} .. {} {}", value, range.lo, range.hi, place(cloud, i)));
+    }
+  }
+}
+
+// No two values differ by more than the constant says, and none in f32 from the one in double by more than the error.
+void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
+  for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 7) {
+    const dvec3 lo(boxes.lo[0][box], boxes.lo[1][box], boxes.lo[2][box]);
+    const dvec3 hi(boxes.hi[0][box], boxes.hi[1][box], boxes.hi[2][box]);
+    const vm::SlopeBound bound = vm::evaluate_slope(program, lo, hi, workspace);
+    const Cloud cloud = points_in(boxes, box, random);
+    const std::vector<float> rounded = distances(program, cloud, workspace);
+    std::optional<dvec3> last;
+    double last_value = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const dvec3 point(cloud.x[i], cloud.y[i], cloud.z[i]);
+      const double value = vm::evaluate_distance(program, point, workspace), slack = 1e-12 * (1 + std::abs(value));
+      const double error = std::abs(static_cast<double>(rounded[i]) - value);
+      const double moved = last ? std::abs(value - last_value) : 0, path = last ? glm::distance(point, *last) : 0;
+      promise((error <= bound.float_error + slack &&
+               (moved <= slack || moved <= bound.lipschitz * path * (1 + 1e-12) + slack)) ||
+                  is_undefined_at(program, point) || (last && is_undefined_at(program, *last)),
+              fmt::format("{} in double, {} in float with an error up to {}; {} over {} at most {} times that, {}",
+                          value, rounded[i], bound.float_error, moved, path, bound.lipschitz, place(cloud, i)));
+      last = point, last_value = value;
     }
   }
 }
@@ -212,6 +271,7 @@ void check_program(const vm::VerifiedProgram& program, Random& random, double re
   const BoxSet boxes = random_boxes(random, reach);
   check_enclosures(program, boxes, random, workspace);
   check_ranges(program, boxes, random, workspace);
+  check_slopes(program, boxes, random, workspace);
   check_parts(program, boxes, random, workspace);
 }
 

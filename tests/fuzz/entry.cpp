@@ -9,6 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fathom::fuzz;
   static const Target& target = *find_target(FATHOM_FUZZ_TARGET);
+  if (size > target.longest) return -1;  // libFuzzer forgets it
   try {
     target.run({data, size});
   } catch (const BrokenPromise& broken) {

@@ -1,9 +1,11 @@
 // Every fuzz target over its seeds and over what once broke it (tests/fuzz/found/NAME): what `scripts/fuzz` goes on
 // from.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/random_scene.h"
 
 namespace fathom::fuzz {
 namespace {
@@ -16,6 +18,28 @@ void run_all(std::string_view name, const std::vector<Input>& inputs) {
   }
 }
 
+// A number below n, n > 0.
+std::ptrdiff_t pick(test::Random& random, std::size_t n) { return random.below(static_cast<int>(n)); }
+
+// One of the ways in which files go wrong: another byte, a stretch left out, said twice or taken from another file.
+void damage(Input& input, const Input& other, test::Random& random) {
+  constexpr std::size_t kLongest = 16;
+  const auto stretch_from = [&](const Input& of, std::ptrdiff_t at) {
+    return pick(random, std::min(of.size() - static_cast<std::size_t>(at), kLongest) + 1);
+  };
+  const std::ptrdiff_t at = pick(random, input.size() + 1);
+  const int way = random.below(4);
+  if (way == 0) {
+    if (at < std::ssize(input)) input[static_cast<std::size_t>(at)] = static_cast<std::uint8_t>(random.bits());
+  } else if (way == 1) {
+    input.erase(input.begin() + at, input.begin() + at + stretch_from(input, at));
+  } else {
+    const Input from = way == 2 ? input : other;
+    const std::ptrdiff_t begin = pick(random, from.size() + 1);
+    input.insert(input.begin() + at, from.begin() + begin, from.begin() + begin + stretch_from(from, begin));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("fuzz targets keep their promises on their seeds", "[fuzz]") {
@@ -23,6 +47,21 @@ TEST_CASE("fuzz targets keep their promises on their seeds", "[fuzz]") {
   const std::vector<Input> seeds = find_target(name)->seeds();
   CHECK(seeds.size() >= 8);
   run_all(name, seeds);
+}
+
+// A short run of what `scripts/fuzz` does for long, without coverage to lead it: seeds with a few bytes changed.
+TEST_CASE("fuzz targets keep their promises on seeds that were damaged", "[fuzz]") {
+  constexpr int kRuns = 100;
+  const char* name = GENERATE("scene", "formula", "import", "assembly", "program", "picture", "differential");
+  const std::vector<Input> seeds = find_target(name)->seeds();
+  test::Random random(7);
+  std::vector<Input> damaged;
+  for (int i = 0; i < kRuns; ++i) {
+    const auto any = [&] { return seeds[static_cast<std::size_t>(pick(random, seeds.size()))]; };
+    damaged.push_back(any());
+    for (int left = 1 + random.below(3); left > 0; --left) damage(damaged.back(), any(), random);
+  }
+  run_all(name, damaged);
 }
 
 TEST_CASE("fuzz targets keep their promises on what once broke them", "[fuzz]") {

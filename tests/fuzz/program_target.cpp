@@ -44,7 +44,7 @@ Input sections_of_seed(const Input& file) {
 
 void run_bare_program(Bytes input) {
   vm::ByteReader reader(input);
-  const auto read = vm::read_program(reader);
+  const auto read = vm::read_program(reader, compiler::largest_machine());
   const auto* program = std::get_if<vm::VerifiedProgram>(&read);
   if (program == nullptr) return promise(!std::get<vm::VerifyError>(read).reason.empty(), "there is a reason");
   vm::ByteWriter writer;

@@ -136,6 +136,24 @@ TEST_CASE("of programs without their text it is said that nothing is proved", "[
   CHECK_THAT(folder.run("dump ball.fbc").out, Contains("Lipschitz <= 1 (proved)"));
 }
 
+TEST_CASE("what a compiled scene asks for is limited as what a scene asks for", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile two.json --no-text -o bare.fbc").code == 0);
+  CHECK(folder.run("eval bare.fbc --at 0,0,0").code == 0);
+  for (const char* limit : {"instructions=1", "stack=1", "image-side=9", "pixels=99"}) {
+    const Result refused = folder.run(std::string("render -q bare.fbc -s 1 -o no.png --limit ") + limit);
+    INFO(limit << ": " << refused.err);
+    CHECK(refused.code == 65);
+    CHECK_THAT(refused.err, Contains("`bare.fbc`: ") && Contains("`--limit "));
+    CHECK_FALSE(folder.has("no.png"));
+  }
+  folder.write("two.fasm", folder.run("dump two.json --stage file").out);
+  const Result refused = folder.run("asm two.fasm -o no.fbc --limit instructions=1");
+  CHECK(refused.code == 65);
+  CHECK_THAT(refused.err, Contains("`two.fasm`: the program has ") && Contains("`--limit instructions="));
+  CHECK_FALSE(folder.has("no.fbc"));
+}
+
 TEST_CASE("a damaged file is refused with its name, and nothing is written", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);

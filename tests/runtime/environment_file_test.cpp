@@ -59,7 +59,7 @@ TEST_CASE("environment file: bad files say why", "[lights]") {
   const tests::TemporaryFolder folder;
   write(folder.file("a.hdr"), "no picture");
   write(folder.file("b.exr"), "no picture");
-  CHECK(reason(folder.file("a.hdr")).find("Radiance") != std::string::npos);
+  CHECK(reason(folder.file("a.hdr")).find("begin") != std::string::npos);
   CHECK(reason(folder.file("b.exr")).find("exr") != std::string::npos);
   CHECK(!reason(folder.file("none.hdr")).empty());
   CHECK(!reason(folder.file("none.exr")).empty());

@@ -72,7 +72,8 @@ class Builder {
       const int own =
           static_cast<int>((i - leading) % static_cast<std::size_t>(row.immediates == 0 ? 1 : row.immediates));
       const bool integer = i >= leading && vm::is_integer_immediate(row, own);
-      immediates.push_back(integer ? 1 + random_.below(4096) : random_constant(random_));
+      immediates.push_back(integer ? 1 + random_.below(static_cast<int>(vm::largest_integer(row, own)))
+                                   : random_constant(random_));
     }
     program_.append(row.opcode, row.form == Form::Outline ? 0 : operand, immediates, random_place());
     const vm::StackEffect effect = vm::effect_of(word);

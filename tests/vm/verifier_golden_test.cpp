@@ -5,7 +5,7 @@
 //     f=1  f=1/1.5        a float immediate, and its unrounded constant where that is another
 //     i=8  #000000ff      an integer immediate; any word
 //     locals 2            what the program declares
-//     limit stack 2       a limit other than the machine's: words, stack, locals, loop_count
+//     limit stack 2       a limit other than the machine's: words, stack, locals
 //
 // FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
 #include <fmt/format.h>
@@ -27,7 +27,6 @@ void set_limit(vm::Limits& limits, const std::string& name, std::uint32_t value)
   if (name == "words") limits.words = value;
   if (name == "stack") limits.stack = value;
   if (name == "locals") limits.locals = value;
-  if (name == "loop_count") limits.loop_count = value;
 }
 
 std::uint32_t opcode_named(const std::string& name) {
