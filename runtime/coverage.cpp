@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace fathom::runtime {
@@ -83,6 +84,36 @@ void cut(const SampleBlock& from, const SampleBlock& hole, std::vector<SampleBlo
   keep({a.x0, h.y1, a.x1, a.y1}, from.samples);
 }
 
+using Blocks = std::span<const SampleBlock>;
+
+// The first blocks, as many as have a side in common with the very first.
+Blocks run_of(Blocks blocks, int PixelRect::*side) {
+  std::size_t count = 1;
+  while (count < blocks.size() && blocks[count].area.*side == blocks[0].area.*side) ++count;
+  return blocks.first(count);
+}
+
+// Whether they are columns in order, apart and, where two touch, not alike; each of ranges in order and apart.
+bool is_tidy_row(Blocks row) {
+  Blocks before;
+  while (!row.empty()) {
+    const Blocks column = run_of(row, &PixelRect::x0);
+    for (std::size_t i = 0; i + 1 < column.size(); ++i) {
+      if (column[i].area != column[i + 1].area || column[i].samples.last >= column[i + 1].samples.first) return false;
+    }
+    const auto same = [](const SampleBlock& a, const SampleBlock& b) { return a.samples == b.samples; };
+    if (!before.empty()) {
+      const PixelRect &left = before[0].area, &right = column[0].area;
+      if (left.x1 > right.x0 || left.y1 != right.y1) return false;
+      const bool touch = left.x1 == right.x0;
+      if (touch && std::equal(before.begin(), before.end(), column.begin(), column.end(), same)) return false;
+    }
+    before = column;
+    row = row.subspan(column.size());
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b) {
@@ -121,6 +152,23 @@ void Coverage::tidy() {
         blocks_.push_back({{column.x0, row.y0, column.x1, row.y1}, range});
     }
   }
+}
+
+bool Coverage::is_tidy() const {
+  Blocks rest = blocks_, before;
+  while (!rest.empty()) {
+    const Blocks row = run_of(rest, &PixelRect::y0);
+    if (!is_tidy_row(row)) return false;
+    const auto same = [](const SampleBlock& a, const SampleBlock& b) {
+      return a.area.x0 == b.area.x0 && a.area.x1 == b.area.x1 && a.samples == b.samples;
+    };
+    if (!before.empty() && before[0].area.y1 > row[0].area.y0) return false;
+    const bool touch = !before.empty() && before[0].area.y1 == row[0].area.y0;
+    if (touch && std::equal(before.begin(), before.end(), row.begin(), row.end(), same)) return false;
+    before = row;
+    rest = rest.subspan(row.size());
+  }
+  return true;
 }
 
 std::uint64_t Coverage::size() const {

@@ -19,7 +19,7 @@ void run_all(std::string_view name, const std::vector<Input>& inputs) {
 }  // namespace
 
 TEST_CASE("fuzz targets keep their promises on their seeds", "[fuzz]") {
-  const char* name = GENERATE("scene", "formula", "import", "assembly", "program", "picture", "differential");
+  const char* name = GENERATE("scene", "formula", "import", "assembly", "program", "picture", "film", "differential");
   const std::vector<Input> seeds = find_target(name)->seeds();
   CHECK(seeds.size() >= 8);
   run_all(name, seeds);

@@ -55,6 +55,33 @@ Coverage random_coverage(RandomBlocks& random, int blocks) {
   return covered;
 }
 
+TEST_CASE("coverage: the tidy form is known when it is seen") {
+  int tidy = 0, untidy = 0;
+  for (unsigned seed = 0; seed < 4000; ++seed) {
+    RandomBlocks random(seed);
+    Coverage covered;
+    // A tidy one with one block too few, too many or changed, or none of these.
+    std::vector<SampleBlock> blocks = random_coverage(random, random.whole(4)).blocks();
+    const int change = random.whole(5);
+    if (change == 1 && !blocks.empty()) blocks.pop_back();
+    if (change == 2)
+      blocks.insert(blocks.begin() + random.whole(static_cast<int>(blocks.size()) + 1), random.block());
+    if (change >= 3 && !blocks.empty()) {
+      SampleBlock& block = blocks[static_cast<std::size_t>(random.whole(static_cast<int>(blocks.size())))];
+      if (change == 3) block = random.block();
+      if (change == 4) ++block.samples.last;
+    }
+    for (const SampleBlock& block : blocks) covered.add(block);
+    Coverage form = covered;
+    form.tidy();
+    CHECK(form.is_tidy());
+    CHECK(covered.is_tidy() == (covered == form));
+    ++(covered.is_tidy() ? tidy : untidy);
+  }
+  CHECK(tidy > 500);
+  CHECK(untidy > 500);
+}
+
 TEST_CASE("coverage: missing is what is not there, once") {
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomBlocks random(seed);
