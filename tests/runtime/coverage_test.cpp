@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <random>
 #include <vector>
 
@@ -138,6 +139,22 @@ TEST_CASE("coverage: overlaps are found, and only those") {
   }
   CHECK(some > 50);
   CHECK(some < 290);
+}
+
+// A row of the picture alone may have as many blocks as a file has room for: minutes, when each was held against
+// each.
+TEST_CASE("coverage: whether many blocks are apart is soon known") {
+  Coverage even, odd;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    even.add({{0, 0, 9, 1}, {4 * i, 4 * i + 1}});
+    odd.add({{0, 0, 9, 1}, {4 * i + 2, 4 * i + 3}});
+  }
+  REQUIRE(even.is_tidy());
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_FALSE(even.overlap(odd));
+  CHECK(even.overlap(even));
+  CHECK(even.missing({{0, 0, 9, 1}, {0, 800000}}).size() == 200000);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
 }
 
 }  // namespace
