@@ -2,18 +2,22 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace fathom::runtime {
 namespace {
 
 constexpr const char* kOpenFiles = "/proc/self/fd";
+constexpr std::string_view kBeside = ".fathom-";  // short, for a name may be as long as names can be
 
 std::string reason() { return std::strerror(errno); }
 
@@ -23,12 +27,64 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// A new file gets the permissions any other program would give it, not mkstemp's.
-void grant_usual_access(int file) {
+// What a new file gets from any other program, not only its owner's rights.
+mode_t usual_access() {
   const mode_t mask = ::umask(0);
   ::umask(mask);
-  (void)!::fchmod(file, 0666 & ~mask);
+  return 0666 & ~mask;
 }
+
+// The file itself, where links lead to it; nothing where they lead nowhere.
+std::optional<std::string> target_of(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  return error ? std::nullopt : std::optional(target.string());
+}
+
+// Calls make(name) with names in the folder until it succeeds or fails for another reason than that there is one.
+template <class Make>
+std::string find_name(const std::string& folder, const Make& make) {
+  for (int i = 0; i < 1000; ++i) {
+    std::string name = fmt::format("{}/{}{}-{}", folder, kBeside, ::getpid(), i);
+    if (make(name)) return name;
+    if (errno != EEXIST) break;
+  }
+  return "";
+}
+
+// A file of that name, locked for as long as it is open, by which it is known not to be left behind; -1 with errno.
+int create_locked(const std::string& name) {
+  const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file < 0) return -1;
+  struct stat status {};
+  // Without locks nothing is ever taken for left behind.
+  if (::flock(file, LOCK_EX) != 0 || ::fstat(file, &status) != 0 || status.st_nlink > 0) return file;
+  ::close(file);  // somebody took it for that before it was locked
+  errno = EEXIST;
+  return -1;
+}
+
+// Whether the name is one of find_name().
+bool is_beside(std::string_view name) {
+  if (!name.starts_with(kBeside)) return false;
+  name.remove_prefix(kBeside.size());
+  return name.find_first_not_of("0123456789-") == std::string_view::npos;
+}
+
+void remove_left_behind(const std::string& folder) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (!is_beside(at->path().filename().string())) continue;
+    const int file = ::open(at->path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());
+    ::close(file);
+  }
+}
+
+constexpr const char* kNowhere = "it is a link that leads nowhere";
+constexpr const char* kIrregular = "it is not a regular file";
 
 // So that the new name outlives a loss of power. The file is there either way: what cannot be synced is no failure.
 void sync_folder(const std::string& folder) {
@@ -41,44 +97,67 @@ void sync_folder(const std::string& folder) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
-  // Renaming over a device or a folder would destroy it.
-  struct stat existing {};
-  if (::stat(path_.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
-    give_up("it is not a regular file");
+  const auto target = target_of(path_);
+  if (!target) {
+    give_up(kNowhere);
     return;
   }
-  if (open_beside()) {
-    grant_usual_access(file_);
+  target_ = *target;
+  struct stat existing {};
+  const bool replaces = ::stat(target_.c_str(), &existing) == 0;
+  // Renaming over a device or a folder would destroy it.
+  if (replaces && !S_ISREG(existing.st_mode)) {
+    give_up(kIrregular);
+  } else if (open_beside()) {
+    (void)!::fchmod(file_, replaces ? existing.st_mode & 0777 : usual_access());
   } else {
     give_up(reason());
   }
 }
 
 bool AtomicFile::open_beside() {
+  const std::string folder = folder_of(target_);
 #ifdef O_TMPFILE
-  if (::access(kOpenFiles, X_OK) == 0)
-    file_ = ::open(folder_of(path_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
-  if (file_ >= 0) return true;
+  if (::access(kOpenFiles, X_OK) == 0) file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file_ >= 0) {
+    (void)!::flock(file_, LOCK_EX);
+    return true;
+  }
 #endif
-  beside_ = path_ + ".XXXXXX";
-  file_ = ::mkstemp(beside_.data());
-  if (file_ < 0) beside_.clear();
+  beside_ = find_name(folder, [&](const std::string& name) { return (file_ = create_locked(name)) >= 0; });
   return file_ >= 0;
 }
 
-// Renaming needs a name to rename; whoever has taken this one was killed, or is another program.
+// Renaming needs a name to rename.
 bool AtomicFile::name_beside() {
   if (!beside_.empty()) return true;
   const std::string file = fmt::format("{}/{}", kOpenFiles, file_);
-  for (int i = 0; i < 1000; ++i) {
-    std::string name = fmt::format("{}.{}-{}", path_, ::getpid(), i);
-    if (::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
-      beside_ = std::move(name);
-      return true;
-    }
-    if (errno != EEXIST) return false;
+  beside_ = find_name(folder_of(target_), [&](const std::string& name) {
+    return ::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  });
+  return !beside_.empty() || copy_beside();
+}
+
+// Where a file without a name can be made but not be given one: some network and layered file systems.
+bool AtomicFile::copy_beside() {
+  const int from = file_;
+  struct stat status {};
+  int to = -1;
+  beside_ = find_name(folder_of(target_), [&](const std::string& name) { return (to = create_locked(name)) >= 0; });
+  if (to < 0) return false;
+  file_ = to;
+  bool good =
+      ::fstat(from, &status) == 0 && ::fchmod(to, status.st_mode & 0777) == 0 && ::lseek(from, 0, SEEK_SET) == 0;
+  std::vector<std::uint8_t> bytes(1 << 20);
+  ssize_t count = 0;
+  while (good && (count = ::read(from, bytes.data(), bytes.size())) > 0) {
+    good = write({bytes.data(), static_cast<std::size_t>(count)});
   }
-  return false;
+  good = good && count == 0 && ::fsync(to) == 0;
+  const int why = errno;
+  ::close(from);
+  errno = why;
+  return good;
 }
 
 AtomicFile::~AtomicFile() {
@@ -112,22 +191,38 @@ bool AtomicFile::seek(std::uint64_t position) {
 
 std::optional<std::string> AtomicFile::commit() {
   if (problem_) return problem_;
-  if (::fsync(file_) != 0 || !name_beside()) give_up(reason());
-  if (::close(std::exchange(file_, -1)) != 0) give_up(reason());
-  if (!problem_ && ::rename(beside_.c_str(), path_.c_str()) != 0) give_up(reason());
+  if (::fsync(file_) != 0 || !name_beside() || ::rename(beside_.c_str(), target_.c_str()) != 0) give_up(reason());
   if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
-  if (!problem_) sync_folder(folder_of(path_));
+  ::close(std::exchange(file_, -1));  // not before: the name is known to be in use by the lock
+  if (!problem_) sync_folder(folder_of(target_));
   return problem_;
 }
 
 std::optional<std::string> check_file_path(const std::string& path) {
+  const auto target = target_of(path);
+  if (!target) return fmt::format("cannot write `{}`: {}", path, kNowhere);
   struct stat status;
-  if (::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return fmt::format("`{}` is a folder", path);
-  const std::string folder = folder_of(path);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    return fmt::format("cannot write to the folder `{}`: {}", folder, reason());
+  if (::stat(target->c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) return fmt::format("`{}` is a folder", path);
+    if (!S_ISREG(status.st_mode)) return fmt::format("cannot write `{}`: {}", path, kIrregular);
+  } else if (errno == ENAMETOOLONG) {
+    return fmt::format("cannot write `{}`: {}", path, reason());
   }
+  const std::string folder = folder_of(*target);
+  remove_left_behind(folder);
+  int file = -1;
+  const std::string name =
+      find_name(folder, [&](const std::string& each) { return (file = create_locked(each)) >= 0; });
+  if (file < 0) return fmt::format("cannot write to the folder `{}`: {}", folder, reason());
+  ::unlink(name.c_str());
+  ::close(file);
   return std::nullopt;
+}
+
+std::optional<FileStamp> stamp_of(const std::string& path) {
+  struct stat status;
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return FileStamp{status.st_dev, status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
 }
 
 std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path) {

@@ -1,11 +1,15 @@
 // Files that appear whole or not at all: written beside their target, synced, and renamed. Where the file system can,
-// what is written has no name until it is whole: a program that is killed leaves nothing behind.
+// what is written has no name until it is whole, so a program that is killed leaves nothing behind but for one that
+// is killed between naming and renaming. What it left there, `.fathom-PID-N`, goes when the next one asks whether it
+// can write in that folder.
+//
+// A link's target is what is written; a file that is replaced leaves its permissions to the new one.
 //
 //     AtomicFile file(path);
 //     file.write(bytes);
 //     if (auto problem = file.commit()) ...
 //
-// Without commit() the target stays as it was. Tested by: tests/runtime/image_io_test.cpp
+// Without commit() the target stays as it was. Tested by: tests/runtime/atomic_file_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -37,17 +41,28 @@ class AtomicFile {
   bool give_up(std::string_view why);  // false
   bool open_beside();
   bool name_beside();
+  bool copy_beside();
 
-  std::string path_;
+  std::string path_;    // for people
+  std::string target_;  // the same with links followed
   std::string beside_;  // the name of what is written; empty: it has none yet
   int file_ = -1;
   std::uint64_t position_ = 0;
   std::optional<std::string> problem_;
 };
 
-// Whether a file can be written under this name: whether its folder is there and open to us. The reason when not; to
-// be asked before the work that makes it.
+// Whether a file can be written under this name, as far as can be known by trying: another beside it is created and
+// removed. The reason when not; to be asked before the work that makes it.
 std::optional<std::string> check_file_path(const std::string& path);
+
+// Which file lies under a name, and since when: one that was put there later differs.
+struct FileStamp {
+  std::uint64_t device = 0, file = 0;
+  std::int64_t seconds = 0, nanoseconds = 0;  // when it was written last
+
+  bool operator==(const FileStamp&) const = default;
+};
+std::optional<FileStamp> stamp_of(const std::string& path);  // nothing where there is no file
 
 // The bytes as a file; the reason when it cannot be done, and then the target is as it was.
 [[nodiscard]] std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace fathom::runtime {
@@ -83,6 +84,71 @@ void cut(const SampleBlock& from, const SampleBlock& hole, std::vector<SampleBlo
   keep({a.x0, h.y1, a.x1, a.y1}, from.samples);
 }
 
+using Blocks = std::span<const SampleBlock>;
+
+// The first blocks, as many as have a side in common with the very first.
+Blocks run_of(Blocks blocks, int PixelRect::*side) {
+  std::size_t count = 1;
+  while (count < blocks.size() && blocks[count].area.*side == blocks[0].area.*side) ++count;
+  return blocks.first(count);
+}
+
+// Whether they are columns in order, apart and, where two touch, not alike; each of ranges in order and apart.
+bool is_tidy_row(Blocks row) {
+  Blocks before;
+  while (!row.empty()) {
+    const Blocks column = run_of(row, &PixelRect::x0);
+    for (std::size_t i = 0; i + 1 < column.size(); ++i) {
+      if (column[i].area != column[i + 1].area || column[i].samples.last >= column[i + 1].samples.first) return false;
+    }
+    const auto same = [](const SampleBlock& a, const SampleBlock& b) { return a.samples == b.samples; };
+    if (!before.empty()) {
+      const PixelRect &left = before[0].area, &right = column[0].area;
+      if (left.x1 > right.x0 || left.y1 != right.y1) return false;
+      const bool touch = left.x1 == right.x0;
+      if (touch && std::equal(before.begin(), before.end(), column.begin(), column.end(), same)) return false;
+    }
+    before = column;
+    row = row.subspan(column.size());
+  }
+  return true;
+}
+
+// Whether neither the tidy block `at` nor any that follows has anything in common with the piece.
+bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
+  const PixelRect &a = piece.area, &b = at.area;
+  if (a.y1 <= b.y0) return true;
+  if (a.y0 < b.y0 || a.y1 > b.y1) return false;
+  return a.x1 <= b.x0 || (a.x0 >= b.x0 && a.x1 <= b.x1 && piece.samples.last <= at.samples.first);
+}
+
+// Calls use() with those of the tidy blocks that have something in common with `block`, in order, while it says true.
+// What is in order is skipped by bisection: rows by y1, columns by x1, ranges by their ends.
+template <class Use>
+void each_common(Blocks tidy, const SampleBlock& block, const Use& use) {
+  const auto skip = [](Blocks from, const auto& before) {
+    return from.subspan(
+        static_cast<std::size_t>(std::partition_point(from.begin(), from.end(), before) - from.begin()));
+  };
+  const auto split = [&](Blocks& from, const auto& in) {  // what is `in` of the front
+    const Blocks rest = skip(from, in), front = from.first(from.size() - rest.size());
+    from = rest;
+    return front;
+  };
+  Blocks rows = skip(tidy, [&](const SampleBlock& b) { return b.area.y1 <= block.area.y0; });
+  while (!rows.empty() && rows[0].area.y0 < block.area.y1) {
+    Blocks row = split(rows, [y0 = rows[0].area.y0](const SampleBlock& b) { return b.area.y0 == y0; });
+    row = skip(row, [&](const SampleBlock& b) { return b.area.x1 <= block.area.x0; });
+    while (!row.empty() && row[0].area.x0 < block.area.x1) {
+      Blocks column = split(row, [x0 = row[0].area.x0](const SampleBlock& b) { return b.area.x0 == x0; });
+      column = skip(column, [&](const SampleBlock& b) { return b.samples.last <= block.samples.first; });
+      for (std::size_t i = 0; i < column.size() && column[i].samples.first < block.samples.last; ++i) {
+        if (!use(column[i])) return;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b) {
@@ -123,6 +189,23 @@ void Coverage::tidy() {
   }
 }
 
+bool Coverage::is_tidy() const {
+  Blocks rest = blocks_, before;
+  while (!rest.empty()) {
+    const Blocks row = run_of(rest, &PixelRect::y0);
+    if (!is_tidy_row(row)) return false;
+    const auto same = [](const SampleBlock& a, const SampleBlock& b) {
+      return a.area.x0 == b.area.x0 && a.area.x1 == b.area.x1 && a.samples == b.samples;
+    };
+    if (!before.empty() && before[0].area.y1 > row[0].area.y0) return false;
+    const bool touch = !before.empty() && before[0].area.y1 == row[0].area.y0;
+    if (touch && std::equal(before.begin(), before.end(), row.begin(), row.end(), same)) return false;
+    before = row;
+    rest = rest.subspan(row.size());
+  }
+  return true;
+}
+
 std::uint64_t Coverage::size() const {
   return std::accumulate(blocks_.begin(), blocks_.end(), std::uint64_t{0},
                          [](std::uint64_t sum, const SampleBlock& block) { return sum + block.size(); });
@@ -134,35 +217,36 @@ std::vector<SampleRange> Coverage::ranges() const {
   return joined(std::move(all));
 }
 
-// Tidy blocks lie in rows that are apart, so their y1 are in order, too.
 std::vector<SampleBlock> Coverage::missing(const SampleBlock& block) const {
-  std::vector<SampleBlock> rest = {block}, pieces;
-  auto at = std::partition_point(blocks_.begin(), blocks_.end(),
-                                 [&](const SampleBlock& other) { return other.area.y1 <= block.area.y0; });
-  for (; at != blocks_.end() && at->area.y0 < block.area.y1 && !rest.empty(); ++at) {
-    if (!common(*at, block)) continue;
+  std::vector<SampleBlock> rest = {block}, pieces, settled;
+  each_common(blocks_, block, [&](const SampleBlock& at) {
     pieces.clear();
     for (const SampleBlock& piece : rest) {
-      if (const auto hole = common(piece, *at)) {
+      if (is_behind(piece, at)) {
+        settled.push_back(piece);
+      } else if (const auto hole = common(piece, at)) {
         cut(piece, *hole, pieces);
       } else {
         pieces.push_back(piece);
       }
     }
     std::swap(rest, pieces);
-  }
-  return rest;
+    return !rest.empty();
+  });
+  settled.insert(settled.end(), rest.begin(), rest.end());
+  return settled;
 }
 
 std::optional<SampleBlock> Coverage::overlap(const Coverage& other) const {
+  std::optional<SampleBlock> both;
   for (const SampleBlock& block : other.blocks_) {
-    auto at = std::partition_point(blocks_.begin(), blocks_.end(),
-                                   [&](const SampleBlock& mine) { return mine.area.y1 <= block.area.y0; });
-    for (; at != blocks_.end() && at->area.y0 < block.area.y1; ++at) {
-      if (const auto both = common(*at, block)) return both;
-    }
+    each_common(blocks_, block, [&](const SampleBlock& at) {
+      both = common(at, block);
+      return false;
+    });
+    if (both) break;
   }
-  return std::nullopt;
+  return both;
 }
 
 }  // namespace fathom::runtime

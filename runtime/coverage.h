@@ -46,6 +46,7 @@ class Coverage {
   void add(const SampleBlock& block) { blocks_.push_back(block); }
   void add(const Coverage& other);
   void tidy();
+  bool is_tidy() const;  // in one look at each block, which may be any
 
   const std::vector<SampleBlock>& blocks() const { return blocks_; }
   bool empty() const { return blocks_.empty(); }

@@ -20,7 +20,7 @@ std::int64_t to_fixed(double value) {
   return static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }
 
-// A full sum stays full, and says so.
+// What goes beyond is cut off, and so is told.
 bool add_to(std::int64_t& sum, std::int64_t term) {
   std::int64_t result;
   if (!__builtin_add_overflow(sum, term, &result)) {

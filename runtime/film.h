@@ -2,8 +2,9 @@
 //
 // Sums are whole multiples of 2^-32 in 64 bits, those of squares of 2^-64 in 128 bits: the exact squares of the
 // terms. Integer addition does not depend on its order, and a pixel's ids are those of its sample with the least
-// number, so any partition of the work gives the same bits. A sum may reach 2^31 (of squares 2^63); beyond that it
-// stays there and is counted.
+// number, so any partition of the work gives the same bits. A sum may reach 2^31 (of squares 2^63); beyond that it is
+// cut off, which add() and merge() tell, and what it is then depends on the order: terms of the other sign come after
+// the cut or before it.
 //
 // A film of two stages (runtime/adaptive.h) keeps what is made of radiance for each, with the samples counted apart:
 //

@@ -20,10 +20,7 @@ namespace {
 
 constexpr std::string_view kMagic = "FATHOMFM";
 constexpr std::uint32_t kFormat = 1;
-constexpr int kTileSide = 64;                 // pixels; each tile has a checksum
-constexpr std::size_t kPreamble = 8 + 4 + 8;  // magic, format, size of the head
-constexpr std::size_t kDigest = 16;
-constexpr std::uint64_t kMostHead = 64u << 20;  // bytes
+constexpr std::size_t kPreamble = 4 + 8;  // after the magic: format, size of the head
 
 void write_digest(std::span<const std::uint8_t> bytes, AtomicFile& file) {
   const vm::Digest digest = vm::digest(bytes);
@@ -40,12 +37,12 @@ class Input {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
       unread_ = {fmt::format("cannot read `{}`: {}", path, error ? error.message() : "it is not a regular file"),
-                 true};
+                 true, false};
       return;
     }
     left_ = std::filesystem::file_size(path, error);
     file_.open(path, std::ios::binary);
-    if (error || !file_) unread_ = {fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+    if (error || !file_) unread_ = {fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true, false};
   }
 
   const std::optional<UnreadFilm>& unread() const { return unread_; }
@@ -57,7 +54,7 @@ class Input {
     if (count > left_) return refuse("it ends too early");
     bytes_.resize(count);
     if (!file_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(count))) {
-      unread_ = {fmt::format("cannot read `{}`: {}", path_, std::strerror(errno)), true};
+      unread_ = {fmt::format("cannot read `{}`: {}", path_, std::strerror(errno)), true, false};
       return {};
     }
     left_ -= count;
@@ -65,7 +62,8 @@ class Input {
   }
   // The same with the checksum that follows them.
   std::span<const std::uint8_t> take_checked(std::uint64_t count) {
-    const std::span<const std::uint8_t> all = take(count + kDigest);
+    if (count > left_) return refuse("it ends too early");
+    const std::span<const std::uint8_t> all = take(count + kDigestSize);
     if (all.empty()) return {};
     vm::ByteReader digest(all.subspan(count));
     const vm::Digest found = vm::digest(all.first(count));
@@ -73,8 +71,8 @@ class Input {
     if (found.low != low || found.high != high) return refuse("it is damaged: a checksum does not fit");
     return all.first(count);
   }
-  std::span<const std::uint8_t> refuse(std::string_view why) {
-    if (!unread_) unread_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false};
+  std::span<const std::uint8_t> refuse(std::string_view why, bool foreign = false) {
+    if (!unread_) unread_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false, foreign};
     return {};
   }
 
@@ -86,41 +84,35 @@ class Input {
   std::vector<std::uint8_t> bytes_;
 };
 
-std::optional<FilmFile> read_head_of(Input& in) {
-  vm::ByteReader preamble(in.take(kPreamble));
-  const std::span<const std::uint8_t> magic = preamble.raw(kMagic.size());
-  if (in.unread()) return std::nullopt;
+bool is_allowed(double needed, const ReadLimits& limits, Input& in) {
+  if (needed > limits.memory) in.refuse(too_much_memory(needed, limits.memory));
+  return needed <= limits.memory;
+}
+
+std::optional<FilmFile> read_head_of(Input& in, const ReadLimits& limits) {
+  const std::span<const std::uint8_t> magic = in.take(std::min<std::uint64_t>(in.left(), kMagic.size()));
   if (!std::equal(magic.begin(), magic.end(), kMagic.begin(), kMagic.end())) {
-    in.refuse("it does not begin as one");
+    in.refuse("it does not begin as one", true);
     return std::nullopt;
   }
+  vm::ByteReader preamble(in.take(kPreamble));
+  if (in.unread()) return std::nullopt;
   if (const std::uint32_t format = preamble.u32(); format != kFormat) {
     in.refuse(fmt::format("it is of format {}, and this program reads {}", format, kFormat));
     return std::nullopt;
   }
   const std::uint64_t size = preamble.u64();
-  if (size > kMostHead) {
-    in.refuse("its head is too long");
-    return std::nullopt;
-  }
+  // Its bytes and what they become.
+  if (!is_allowed(2 * static_cast<double>(size), limits, in)) return std::nullopt;
   vm::ByteReader bytes(in.take_checked(size));
   if (in.unread()) return std::nullopt;
-  auto head = read_head(bytes);
-  if (const std::string* problem = std::get_if<std::string>(&head)) {
-    in.refuse(*problem);
-    return std::nullopt;
-  }
-  return std::get<FilmFile>(std::move(head));
-}
-
-// Before anything is set aside for them.
-bool has_all_sums(const FilmShape& shape, Input& in) {
-  const Tiles tiles(shape.area, kTileSide);
-  const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
-  const auto digests = static_cast<std::uint64_t>(tiles.count()) * kDigest;
-  if (in.left() == shape.area.pixels() * pixel + digests) return true;
-  in.refuse("it is not as long as its head says");
-  return false;
+  FilmFile file;
+  auto problem = read_shape(bytes, file);
+  if (!problem && sums_size(file.shape) != in.left()) problem = "it is not as long as its head says";
+  if (!problem) problem = read_covered(bytes, file);
+  if (!problem) return file;
+  in.refuse(*problem);
+  return std::nullopt;
 }
 
 bool read_sums(const FilmShape& shape, Film& film, Input& in) {
@@ -128,7 +120,7 @@ bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   if (shape.stages == 2) film.begin_second_stage(shape.first_share);
   if (shape.stages == kNoiseStages) film.begin_halves();
   const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
-  const Tiles tiles(shape.area, kTileSide);
+  const Tiles tiles(shape.area, kFilmTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     const PixelRect tile = tiles.at(i);
     vm::ByteReader bytes(in.take_checked(tile.pixels() * pixel));
@@ -137,32 +129,37 @@ bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   return true;
 }
 
-std::variant<FilmFile, UnreadFilm> read(const std::string& path, bool with_sums) {
+std::variant<FilmFile, UnreadFilm> read(const std::string& path, const ReadLimits& limits, bool with_sums) {
   Input in(path);
   if (in.unread()) return *in.unread();
-  std::optional<FilmFile> head = read_head_of(in);
-  if (!head || !has_all_sums(head->shape, in)) return *in.unread();
-  if (with_sums && !read_sums(head->shape, head->render.film, in)) return *in.unread();
+  std::optional<FilmFile> head = read_head_of(in, limits);
+  if (!head) return *in.unread();
+  if (!with_sums) return *std::move(head);
+  const bool read =
+      is_allowed(static_cast<double>(in.left()), limits, in) && read_sums(head->shape, head->render.film, in);
+  if (!read) return *in.unread();
   return *std::move(head);
 }
 
 }  // namespace
 
-std::vector<std::string> differences(const Identity& there, const Identity& here) {
+std::vector<std::string> differences(const Identity& first, const Identity& second, std::string_view there,
+                                     std::string_view here) {
   const auto value_in = [](const Identity& identity, const std::string& name) -> const std::string* {
     const auto found =
         std::find_if(identity.begin(), identity.end(), [&](const auto& row) { return row.first == name; });
     return found == identity.end() ? nullptr : &found->second;
   };
   std::vector<std::string> result;
-  for (const auto& [name, value] : there) {
-    const std::string* other = value_in(here, name);
-    if (!other || *other != value) {
-      result.push_back(fmt::format("{} is {} there and {} here", name, value, other ? *other : "unknown"));
-    }
+  const auto differ = [&](const std::string& name, const std::string& one, const std::string& other) {
+    result.push_back(fmt::format("{} is {} {} and {} {}", name, one, there, other, here));
+  };
+  for (const auto& [name, value] : first) {
+    const std::string* other = value_in(second, name);
+    if (!other || *other != value) differ(name, value, other ? *other : "unknown");
   }
-  for (const auto& [name, value] : here) {
-    if (!value_in(there, name)) result.push_back(fmt::format("{} is unknown there and {} here", name, value));
+  for (const auto& [name, value] : second) {
+    if (!value_in(first, name)) differ(name, "unknown", value);
   }
   return result;
 }
@@ -176,7 +173,7 @@ void write_film(const FilmHeader& header, const PartialRender& render, AtomicFil
   file.write(preamble.bytes());
   file.write(head.bytes());
   write_digest(head.bytes(), file);
-  const Tiles tiles(render.film.area(), kTileSide);
+  const Tiles tiles(render.film.area(), kFilmTile);
   for (std::int64_t i = 0; i < tiles.count() && !file.problem(); ++i) {
     vm::ByteWriter sums;
     render.film.write_sums(tiles.at(i), sums);
@@ -192,8 +189,12 @@ std::optional<std::string> write_film(const FilmHeader& header, const PartialRen
   return file.commit();
 }
 
-std::variant<FilmFile, UnreadFilm> read_film(const std::string& path) { return read(path, true); }
+std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const ReadLimits& limits) {
+  return read(path, limits, true);
+}
 
-std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path) { return read(path, false); }
+std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits) {
+  return read(path, limits, false);
+}
 
 }  // namespace fathom::runtime

@@ -13,12 +13,14 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "runtime/atomic_file.h"
 #include "runtime/float_image.h"
+#include "runtime/image_read.h"
 #include "runtime/partial_render.h"
 
 namespace fathom::runtime {
@@ -26,8 +28,9 @@ namespace fathom::runtime {
 // The names and values of what renders must agree in; any order, but always the same.
 using Identity = std::vector<std::pair<std::string, std::string>>;
 
-// What two identities differ in, for people: "spp is 64 there and 128 here".
-std::vector<std::string> differences(const Identity& there, const Identity& here);
+// What two identities differ in, for people, with words for where each is: "spp is 64 there and 128 here".
+std::vector<std::string> differences(const Identity& first, const Identity& second, std::string_view there = "there",
+                                     std::string_view here = "here");
 
 struct FilmHeader {
   Identity identity;
@@ -55,7 +58,8 @@ struct FilmFile {
 
 struct UnreadFilm {
   std::string problem;  // for people
-  bool missing;         // there is no such file, or it cannot be opened
+  bool missing;         // there is no such file, or it cannot be read
+  bool foreign;         // it does not begin as a film: it is something else of somebody's
 };
 
 // Appends everything to the file, whose problems are its own.
@@ -63,8 +67,9 @@ void write_film(const FilmHeader& header, const PartialRender& render, AtomicFil
 [[nodiscard]] std::optional<std::string> write_film(const FilmHeader& header, const PartialRender& render,
                                                     const std::string& path);
 
-std::variant<FilmFile, UnreadFilm> read_film(const std::string& path);
+// Refuses one that would take more memory than the limits say before it takes it.
+std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const ReadLimits& limits = {});
 // The same without the sums: the film has no pixels.
-std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path);
+std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

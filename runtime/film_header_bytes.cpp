@@ -9,7 +9,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr std::size_t kMostText = 1 << 16;  // bytes of a name or value
+constexpr const char* kNoSense = "its head makes no sense";
 
 // The bits of a film's layers.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
@@ -30,6 +30,9 @@ FilmLayers read_layers(vm::ByteReader& in) {
   for (std::size_t i = 0; i < std::size(kLayerBits); ++i) layers.*kLayerBits[i] = (bits >> i & 1) != 0;
   return layers;
 }
+
+// As long as it likes, for scenes name things as they like: no longer than what is there.
+std::string text_of(vm::ByteReader& in) { return in.text(in.left()); }
 
 void write_value(const Attribute& value, vm::ByteWriter& out) {
   out.u8(static_cast<std::uint8_t>(value.index()));
@@ -55,7 +58,7 @@ Attribute read_value(vm::ByteReader& in) {
     case 1:
       return number();
     case 2:
-      return in.text(kMostText);
+      return text_of(in);
     case 3: {
       Matrix4 matrix;
       for (float& value : matrix) value = number();
@@ -63,7 +66,7 @@ Attribute read_value(vm::ByteReader& in) {
     }
     case 4: {
       std::vector<std::string> list(in.count(4));
-      for (std::string& text : list) text = in.text(kMostText);
+      for (std::string& text : list) text = text_of(in);
       return list;
     }
     default:
@@ -92,7 +95,8 @@ bool is_range(SampleRange samples) {
   return samples.first < samples.last && samples.last <= static_cast<std::uint32_t>(compiler::kMaxSpp);
 }
 
-// Blocks that are not in their one form may be there twice.
+// Blocks that are not in their one form may be there twice. That is looked at, not made: what is read may be
+// anything, and tidying what overlaps takes far longer than reading it.
 Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   Coverage covered;
   const std::size_t count = in.count(24);
@@ -107,9 +111,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
     }
     covered.add(block);
   }
-  const Coverage as_read = covered;
-  covered.tidy();
-  if (!(covered == as_read)) in.fail();
+  if (!covered.is_tidy()) in.fail();
   return covered;
 }
 
@@ -138,10 +140,17 @@ bool makes_sense(const FilmFile& head) {
          std::int64_t{header.width} * header.height <= kMostPixels &&
          is_within(head.shape.area, {0, 0, header.width, header.height}) &&
          (head.shape.stages == 1 || head.shape.stages == 2 || head.shape.stages == kNoiseStages) &&
-         head.shape.first_share >= 0 && head.shape.first_share <= 1;
+         head.shape.first_share >= 0 && head.shape.first_share <= 1 &&
+         (head.shape.stages > 1 || head.shape.first_share == 1) &&
+         (head.shape.stages != kNoiseStages || head.shape.first_share == 0.5);
 }
 
 }  // namespace
+
+std::uint64_t sums_size(const FilmShape& shape) {
+  const auto tiles = static_cast<std::uint64_t>(Tiles(shape.area, kFilmTile).count());
+  return shape.area.pixels() * Film::bytes_per_pixel(shape.layers, shape.stages) + tiles * kDigestSize;
+}
 
 void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteWriter& out) {
   out.u32(static_cast<std::uint32_t>(header.identity.size()));
@@ -179,17 +188,17 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
   }
 }
 
-std::variant<FilmFile, std::string> read_head(vm::ByteReader& in) {
-  FilmFile head;
+std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   FilmHeader& header = head.header;
   header.identity.resize(in.count(8));
   for (auto& [name, value] : header.identity) {
-    name = in.text(kMostText);
-    value = in.text(kMostText);
+    name = text_of(in);
+    value = text_of(in);
   }
   const std::size_t attributes = in.count(5);
   for (std::size_t i = 0; i < attributes && !in.failed(); ++i) {
-    const std::string name = in.text(kMostText);
+    const std::string name = text_of(in);
+    if (!header.attributes.empty() && header.attributes.rbegin()->first >= name) in.fail();  // as they are written
     header.attributes[name] = read_value(in);
   }
   header.width = static_cast<int>(in.u32());
@@ -201,13 +210,15 @@ std::variant<FilmFile, std::string> read_head(vm::ByteReader& in) {
   head.shape.layers = read_layers(in);
   head.shape.first_share = in.f64();
   head.shape.stages = in.u8();
-  if (in.failed() || !makes_sense(head)) return "its head makes no sense";
+  return in.failed() || !makes_sense(head) ? std::optional<std::string>(kNoSense) : std::nullopt;
+}
+
+std::optional<std::string> read_covered(vm::ByteReader& in, FilmFile& head) {
   for (std::size_t i = 0; i < head.shape.stages; ++i) {
     head.render.covered.push_back(read_coverage(head.shape.area, in));
   }
   head.render.noise = read_noise(head.shape, in);
-  if (in.failed() || in.left() > 0) return "its head makes no sense";
-  return head;
+  return in.failed() || in.left() > 0 ? std::optional<std::string>(kNoSense) : std::nullopt;
 }
 
 }  // namespace fathom::runtime

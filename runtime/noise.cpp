@@ -16,7 +16,7 @@ constexpr double kDark = 0.01;  // as in runtime/adaptive.cpp
 }  // namespace
 
 std::uint32_t next_end(std::uint32_t judged, int least, int most) {
-  const auto first = static_cast<std::uint32_t>(std::max(kLeastNoiseSpp, least) / 2);
+  const auto first = static_cast<std::uint32_t>((std::max(kLeastNoiseSpp, least) + 1) / 2);
   const auto last = static_cast<std::uint32_t>(most / 2);
   if (judged >= last) return 0;
   return std::min(last, judged == 0 ? first : 2 * judged);

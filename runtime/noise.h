@@ -50,7 +50,7 @@ struct NoiseState {
 };
 
 // How many samples each half has at the next judgement, when a pixel gets at least `least` and at most `most` of both
-// together; 0 when there is none.
+// together, one of each half at a time; 0 when there is none.
 std::uint32_t next_end(std::uint32_t judged, int least, int most);
 
 // The noise of a picture made of two such halves: over a tile's pixels the root of the mean of

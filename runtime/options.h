@@ -68,12 +68,15 @@ struct RenderOptions {
   // Of each pixel these samples alone, of the `spp` there are in all; films of other ranges add up to the whole. Not
   // with `adaptive` or `noise`.
   std::optional<SampleRange> sample_range;
-  // What an earlier render with the same settings, but for threads and tile, has done.
-  std::shared_ptr<const PartialRender> resume_from;
-  // After so many seconds no unit of work is begun, and render() returns what there is.
+  // What an earlier render with the same settings, but for threads and tile, has done. render() takes it, and leaves
+  // it empty: a film is large.
+  std::shared_ptr<PartialRender> resume_from;
+  // After so many seconds no unit of work is begun, but for a pixel's first sample, and render() returns what there
+  // is.
   std::optional<double> time_limit;
 
-  // Called when a unit of work is done, by one thread at a time, from the threads that render.
+  // Called when a unit of work is done and when it shows how much is left, by one thread at a time, from the threads
+  // that render.
   std::function<void(const Progress&)> on_progress;
   // Called every kTickSeconds from a thread of its own. What it is given calls its argument with what is done so far,
   // which does not change meanwhile: threads that have finished a unit wait.
@@ -110,6 +113,11 @@ struct Settings {
   FilmLayers layers;
   bool profile;
 };
+
+// How many stages the film may come to have (runtime/film.h).
+inline std::size_t stages_of(const Settings& settings) {
+  return settings.noise ? kNoiseStages : settings.adaptive ? 2 : 1;
+}
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);
 

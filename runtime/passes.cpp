@@ -65,7 +65,8 @@ Stats run_threads(const PassWork& pass, int threads) {
 }
 
 std::uint64_t samples_of(const Settings& settings) {
-  return std::uint64_t{settings.crop.pixels()} * settings.samples.size();
+  const std::uint32_t each = settings.samples.size();
+  return std::uint64_t{settings.crop.pixels()} * (settings.noise ? each / 2 * 2 : each);  // as many of both halves
 }
 
 // That the open tiles may take at most.

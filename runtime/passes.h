@@ -15,9 +15,11 @@ class Passes {
   Passes(const World& world, const RenderOptions& options, PartialRender& render,
          SharedPicture::Clock::time_point start);
 
+  // Until all samples are taken or the options say stop; what was counted, of all threads together. Once.
   Stats run();
+  // Why run() came back.
   RenderEnd end() const;
-  double seconds() const { return picture_.seconds(); }
+  double seconds() const { return picture_.seconds(); }  // since `start`
 
  private:
   Stats run_adaptive();

@@ -86,19 +86,20 @@ bool can_resume(const PartialRender& render, const Settings& settings) {
   const auto tiles = static_cast<std::size_t>(settings.noise ? Tiles(settings.crop, kNoiseTile).count() : 0);
   return render.film.area() == settings.crop && render.film.layers() == settings.layers &&
          render.covered.size() == stages && render.noise.tiles.size() == (stages == kNoiseStages ? tiles : 0) &&
-         (stages == 1 || stages == (settings.noise      ? kNoiseStages
-                                    : settings.adaptive ? 2
-                                                        : 1));
+         (stages == 1 || stages == stages_of(settings));
 }
 
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options) {
   const auto start = SharedPicture::Clock::now();
   const Settings settings = resolve(scene, options);
   check(settings);
-  RenderResult result{{Film(settings.crop, settings.layers), std::vector<Coverage>(1), {}}, settings, {}};
+  RenderResult result{{}, settings, {}};
   if (options.resume_from) {
     CHECK(can_resume(*options.resume_from, settings), "a film of another render");
-    static_cast<PartialRender&>(result) = *options.resume_from;
+    static_cast<PartialRender&>(result) = std::exchange(*options.resume_from, {});
+  } else {
+    result.film = Film(settings.crop, settings.layers);
+    result.covered.resize(1);
   }
   const std::uint64_t resumed = options.resume_from ? result.film.samples() : 0;
   const World world = make_world(scene, settings, options);

@@ -19,11 +19,19 @@ bool SharedPicture::add(const Film& film, const SampleBlock& unit, std::size_t s
   render_.covered[stage].add(unit);
   done_ += samples;
   rays_ += rays;
-  if (options_.on_progress && samples > 0) {
-    const auto share = [&](std::uint64_t count) { return static_cast<double>(count) / samples_; };
-    options_.on_progress({share(done_), share(resumed_), rays_, seconds()});
-  }
+  if (samples > 0) report();
   return room;
+}
+
+void SharedPicture::expect(std::uint64_t left) {
+  samples_ = static_cast<double>(done_ + left);
+  report();
+}
+
+void SharedPicture::report() const {
+  if (!options_.on_progress) return;
+  const auto share = [&](std::uint64_t count) { return static_cast<double>(count) / samples_; };
+  options_.on_progress({share(done_), share(resumed_), rays_, seconds()});
 }
 
 void SharedPicture::look(const std::function<void(const PartialRender&)>& use) {
@@ -37,13 +45,13 @@ void SharedPicture::change(const std::function<void()>& make) {
   make();
 }
 
-bool SharedPicture::stopped() {
+bool SharedPicture::stopped(bool first) {
   if (options_.cancel && options_.cancel->load(std::memory_order_relaxed)) {
     end_ = RenderEnd::Cancelled;
-  } else if (options_.time_limit && seconds() >= *options_.time_limit) {
+  } else if (!first && options_.time_limit && seconds() >= *options_.time_limit) {
     end_ = RenderEnd::TimeLimit;
   }
-  return end_ != RenderEnd::Done;
+  return end_ == RenderEnd::Cancelled || (end_ == RenderEnd::TimeLimit && !first);
 }
 
 double SharedPicture::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }

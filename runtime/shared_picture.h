@@ -16,9 +16,9 @@ namespace fathom::runtime {
 
 class SharedPicture {
  public:
-  // `samples` is how many there are to be in all.
   using Clock = std::chrono::steady_clock;
 
+  // `samples` is how many there are to be in all; seconds are counted from `start`.
   SharedPicture(PartialRender& render, std::uint64_t samples, const RenderOptions& options, Clock::time_point start);
 
   // A unit is done: its samples, of a stage of the film, were added up in `film`, by so many rays. False when some
@@ -32,14 +32,17 @@ class SharedPicture {
   void change(const std::function<void()>& make);
 
   // How many samples there are to be from now on, where that shows late; to be called within change().
-  void expect(std::uint64_t left) { samples_ = static_cast<double>(done_ + left); }
+  void expect(std::uint64_t left);
 
-  // To be asked when there is more to do: whether it is to be left. That is then how the render ended.
-  bool stopped();
+  // To be asked when there is more to do: whether it is to be left. That is then how the render ended. Without the
+  // `first` samples of a pixel there is no picture: no time limit holds for them.
+  bool stopped(bool first = false);
   RenderEnd end() const { return end_; }
-  double seconds() const;  // since `start`
+  double seconds() const;
 
  private:
+  void report() const;  // how far it is; while nobody adds
+
   PartialRender& render_;
   const RenderOptions& options_;
   double samples_;

@@ -113,7 +113,8 @@ std::size_t Expression::slot_of(const Code& code, const Place& place) const {
   const std::size_t length = instruction_length(code.words[place.at]);
   std::uint64_t hash = 0xcbf29ce484222325u ^ place.before;  // FNV-1a (Fowler, Noll, Vo, 1991)
   for (std::size_t i = 0; i < length; ++i) hash = (hash ^ code.words[place.at + i]) * 0x100000001b3u;
-  for (std::size_t at = hash >> 20;; ++at) {
+  hash *= 0x9e3779b97f4a7c15u;  // numbers that are near each other must not lie near each other
+  for (std::size_t at = hash >> 32;; ++at) {
     const std::size_t index = at & (slots_.size() - 1);
     const Slot& slot = slots_[index];
     if (slot.reading != reading_) return index;

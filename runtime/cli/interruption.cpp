@@ -10,7 +10,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void on_signal(int signal) {
   if (signal == SIGUSR1) {
     picture_asked = true;
-  } else if (stop_asked.exchange(true)) {
+  } else if (stop_asked.exchange(true) && signal != SIGHUP) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
@@ -24,7 +24,10 @@ Interruption::Interruption() {
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &before_[i]);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], &action, &before_[i]);
+    if (kSignals[i] == SIGHUP && before_[i].sa_handler == SIG_IGN) sigaction(SIGHUP, &before_[i], nullptr);
+  }
 }
 
 Interruption::~Interruption() {

@@ -1,6 +1,7 @@
-// Signals while a render is under way: SIGINT and SIGTERM ask it to stop, and a second one ends the program at once;
-// SIGUSR1 asks for the picture so far. Outside the object's life signals do what they did before.
-// Tested by: tests/runtime/cli_checkpoint_test.cpp
+// Signals while a render is under way: SIGINT, SIGTERM and SIGHUP ask it to stop, and a second one ends the program
+// at once, but for SIGHUP, which shell and terminal may both send; SIGUSR1 asks for the picture so far. Under nohup
+// SIGHUP stays ignored. Outside the object's life signals do what they did before. Tested by:
+// tests/runtime/cli_checkpoint_test.cpp
 #pragma once
 
 #include <array>
@@ -17,13 +18,13 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  // Becomes true with the first SIGINT or SIGTERM.
+  // Becomes true with the first signal that asks to stop.
   const std::atomic<bool>& stop() const;
   // Whether a picture was asked for since the last call.
   bool picture_wanted();
 
  private:
-  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGUSR1};
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   std::array<struct sigaction, kSignals.size()> before_{};
 };
 

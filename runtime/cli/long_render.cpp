@@ -23,6 +23,12 @@ Verdict read_sample_range(std::string_view text, runtime::SampleRange& range) {
   return std::nullopt;
 }
 
+Verdict read_file_name(std::string_view text, std::string& name) {
+  if (text.empty()) return Complaint{"the file's name is empty", "name it, as now.film"};
+  name = text;
+  return std::nullopt;
+}
+
 bool is_adaptive(const compiler::CompiledScene& scene, const runtime::RenderOptions& options) {
   return options.adaptive.value_or(scene.settings.adaptive);
 }
@@ -35,10 +41,11 @@ std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::C
   if (!request.noise) return std::nullopt;
   const int spp = options.spp.value_or(scene.settings.spp);
   const int least = request.min_spp.value_or(runtime::kLeastNoiseSpp);
-  if (spp < least) {
-    return fail(streams, kUsage,
-                fmt::format("--noise: {} of a pixel are too few", count_of(static_cast<std::size_t>(spp), "sample")),
-                {fmt::format("ask for --spp {} or more: it is the most that a pixel may get", least)});
+  if (spp / 2 * 2 < least) {
+    return fail(
+        streams, kUsage,
+        fmt::format("--noise: {} of a pixel are too few", count_of(static_cast<std::size_t>(spp), "sample")),
+        {fmt::format("ask for --spp {} or more: it is the most that a pixel may get, by twos", (least + 1) / 2 * 2)});
   }
   if (is_adaptive(scene, options)) {
     return fail(streams, kUsage, "--noise does not go with adaptive sampling: both share samples out",
@@ -59,15 +66,16 @@ void add_long_render_options(Arguments& arguments, LongRender& request) {
   arguments.option("--checkpoint", "FILE",
                    "Where what is done is kept, now and then and when a signal ends the render (the first output's "
                    "name with .checkpoint, removed when the pictures are written; FILE stays)",
-                   any_text(request.checkpoint));
+                   into(read_file_name, request.checkpoint));
   arguments.option("--checkpoint-interval", "TIME", "How often: 30s, 5m, 1h (60s)",
                    into(read_duration, request.interval));
   arguments.flag("--resume", "Go on from the checkpoint: the same bits as without the interruption", request.resume);
   arguments.option("--time-limit", "TIME", "Stop after so long and write the picture so far: 30s, 10m, 1.5h",
                    into(read_duration, request.time_limit));
-  arguments.option("--noise", "LIMIT",
-                   "Take no more samples where the noise is below this, as 0.02: --spp is then the most of a pixel",
-                   into(read_positive, request.noise));
+  arguments.option(
+      "--noise", "LIMIT",
+      "Take no more samples where the noise is below this, as 0.02: --spp is then the most of a pixel, by twos",
+      into(read_positive, request.noise));
   arguments.option("--min-spp", "N", "Samples of a pixel before --noise may stop it (16)",
                    whole(request.min_spp, runtime::kLeastNoiseSpp, compiler::kMaxSpp));
   arguments.option("--sample-range", "A:B",

@@ -8,14 +8,11 @@
 #include "runtime/options.h"
 
 namespace fathom::cli {
-namespace {
 
 std::string in_words(double bytes) {
   constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
   return bytes < kGiB ? fmt::format("{:.0f} MiB", bytes / kMiB) : fmt::format("{:.1f} GiB", bytes / kGiB);
 }
-
-}  // namespace
 
 double allowed_memory(const compiler::Limits& limits) {
   if (limits.memory > 0) return limits.memory;
@@ -25,18 +22,18 @@ double allowed_memory(const compiler::Limits& limits) {
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits) { return {allowed_memory(limits)}; }
 
-double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
+double film_bytes_per_pixel(const runtime::FilmLayers& layers, std::size_t stages) {
   constexpr double kRadiance = 32, kFirstHit = 56, kCost = 16, kPosition = 24, kIds = 12, kVariance = 48,
                    kHalves = 32;
-  const runtime::FilmLayers& layers = settings.layers;
-  const double stages = settings.adaptive ? 2 : 1;
-  const double of_stage =
-      kRadiance + (layers.variance || settings.adaptive ? kVariance : 0) + (layers.halves ? kHalves : 0);
-  const double shared = (layers.first_hit ? kFirstHit : 0) + (layers.cost ? kCost : 0) +
-                        (layers.position ? kPosition : 0) + (layers.ids ? kIds : 0);
-  constexpr double kPicture = 24;  // three floats, and what is encoded of them
-  constexpr double kDenoising = 128;
-  return stages * of_stage + shared + kPicture + (denoise ? kDenoising : 0);
+  const double of_stage = kRadiance + (layers.variance ? kVariance : 0) + (layers.halves ? kHalves : 0);
+  return static_cast<double>(stages) * of_stage + (layers.first_hit ? kFirstHit : 0) + (layers.cost ? kCost : 0) +
+         (layers.position ? kPosition : 0) + (layers.ids ? kIds : 0);
+}
+
+double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
+  const double film = film_bytes_per_pixel(settings.layers, runtime::stages_of(settings));
+  // SIGUSR1 denoises a copy, beside which the render goes on.
+  return film + kPicture + (denoise ? film + kDenoising : 0);
 }
 
 std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,

@@ -8,9 +8,11 @@
 #include <ostream>
 
 #include "runtime/cli/arguments.h"
+#include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/picture_files.h"
+#include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise.h"
 
@@ -30,6 +32,7 @@ struct MergeRequest {
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int bits = 0;   // an index into 8, 16
   bool denoise = false, quiet = false;
+  compiler::Limits limits;
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MergeRequest& request) {
@@ -46,6 +49,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.flag("--denoise", "Take the noise out of the pictures; FILE-noisy beside each is without",
                  request.denoise);
   arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   request.pictures.deep = request.bits != 0;
   request.pictures.noisy = request.denoise;
@@ -64,13 +68,15 @@ struct Part {
   runtime::FilmFile file;
 };
 
-std::variant<std::vector<Part>, ExitCode> read_parts(const std::vector<std::string>& paths, const Streams& streams) {
+ExitCode fail_to_read(const runtime::UnreadFilm& unread, const Streams& streams) {
+  return fail(streams, unread.missing ? kIo : kBadScene, unread.problem);
+}
+
+std::variant<std::vector<Part>, ExitCode> read_parts(const MergeRequest& request, const Streams& streams) {
   std::vector<Part> parts;
-  for (const std::string& path : paths) {
-    auto read = runtime::read_film_header(path);
-    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
-      return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
-    }
+  for (const std::string& path : request.inputs) {
+    auto read = runtime::read_film_header(path, read_limits(request.limits));
+    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return fail_to_read(*unread, streams);
     parts.push_back({path, std::get<runtime::FilmFile>(std::move(read))});
   }
   // What the sum takes from the first of them does not depend on the order either.
@@ -91,8 +97,10 @@ std::string text_of(const runtime::SampleBlock& block) {
 std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Streams& streams) {
   const Part& first = parts.front();
   for (const Part& part : parts) {
-    const auto problems = runtime::differences(first.file.header.identity, part.file.header.identity);
+    auto problems = runtime::differences(first.file.header.identity, part.file.header.identity,
+                                         fmt::format("in `{}`", first.path), fmt::format("in `{}`", part.path));
     if (!problems.empty()) {
+      problems.push_back("leave one out, or render it again with the scene and settings of the other");
       return fail(streams, kBadScene, fmt::format("`{}` and `{}` are of different renders", first.path, part.path),
                   problems);
     }
@@ -103,7 +111,9 @@ std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Stream
       return fail(
           streams, kBadScene,
           fmt::format("`{}` cannot be merged: {}", part.path,
-                      alike ? "its pixels' samples depend on the whole picture" : "its layers or size differ"));
+                      alike ? "its pixels' samples depend on the whole picture" : "its layers or size differ"),
+          {alike ? "merge it alone, or render the parts without --adaptive and --noise"
+                 : "leave it out, or render it again as the others"});
     }
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -118,36 +128,71 @@ std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Stream
   return std::nullopt;
 }
 
-// The sum, read part by part; the parts' heads are known to fit.
-std::variant<runtime::FilmFile, ExitCode> sum_of(const std::vector<Part>& parts, const Streams& streams) {
-  if (parts.size() == 1) {
-    auto read = runtime::read_film(parts.front().path);
-    if (auto* file = std::get_if<runtime::FilmFile>(&read)) return std::move(*file);
-    return fail(streams, kBadScene, std::get<runtime::UnreadFilm>(read).problem);
-  }
+// The sum's head: what the parts lie in.
+runtime::FilmFile frame_of(const std::vector<Part>& parts) {
   runtime::FilmFile sum = parts.front().file;
   runtime::PixelRect& area = sum.shape.area;
   runtime::SampleRange& samples = sum.header.samples;
   for (const Part& part : parts) {
-    const runtime::FilmShape& shape = part.file.shape;
-    area = {std::min(area.x0, shape.area.x0), std::min(area.y0, shape.area.y0), std::max(area.x1, shape.area.x1),
-            std::max(area.y1, shape.area.y1)};
+    const runtime::PixelRect& other = part.file.shape.area;
+    area = {std::min(area.x0, other.x0), std::min(area.y0, other.y0), std::max(area.x1, other.x1),
+            std::max(area.y1, other.y1)};
     samples.first = std::min(samples.first, part.file.header.samples.first);
     samples.last = std::max(samples.last, part.file.header.samples.last);
   }
-  sum.render = {runtime::Film(area, sum.shape.layers), std::vector<runtime::Coverage>(1), {}};
+  return sum;
+}
+
+// The sum lies in memory whole, and one part beside it.
+std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vector<Part>& parts,
+                                     const runtime::FilmShape& sum, const Streams& streams) {
+  const double film = film_bytes_per_pixel(sum.layers, sum.stages);
+  const double each = film + kPicture + (request.denoise ? kDenoising : 0);
+  double needed = each * static_cast<double>(sum.area.pixels()), part = 0;
+  for (const Part& other : parts) part = std::max(part, film * static_cast<double>(other.file.shape.area.pixels()));
+  if (parts.size() > 1) needed += part;
+  const double allowed = allowed_memory(request.limits);
+  if (needed <= allowed) return std::nullopt;
+  return fail(
+      streams, kBadScene,
+      fmt::format("the sum would take {} of memory ({}x{} pixels of {:.0f} bytes, and a part); {} are allowed",
+                  in_words(needed), sum.area.width(), sum.area.height(), each, in_words(allowed)),
+      {"merge films that lie closer together, for what lies between them counts, too",
+       compiler::raise(&compiler::Limits::memory, needed)});
+}
+
+// The part once more, with its sums.
+std::variant<runtime::FilmFile, ExitCode> read_sums(const Part& part, const compiler::Limits& limits,
+                                                    const Streams& streams) {
+  auto read = runtime::read_film(part.path, read_limits(limits));
+  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return fail_to_read(*unread, streams);
+  auto& file = std::get<runtime::FilmFile>(read);
+  if (file.shape == part.file.shape && file.render.covered == part.file.render.covered &&
+      file.header.identity == part.file.header.identity) {
+    return std::move(file);
+  }
+  return fail(streams, kIo, fmt::format("`{}` changed while it was read", part.path),
+              {"merge once nobody writes to it any more"});
+}
+
+// Into `sum`, which is the parts' frame, part by part; their heads are known to fit.
+std::optional<ExitCode> add_up(const std::vector<Part>& parts, const compiler::Limits& limits, runtime::FilmFile& sum,
+                               const Streams& streams) {
+  if (parts.size() > 1)
+    sum.render = {runtime::Film(sum.shape.area, sum.shape.layers), std::vector<runtime::Coverage>(1), {}};
   for (const Part& part : parts) {
-    auto read = runtime::read_film(part.path);
-    const auto* file = std::get_if<runtime::FilmFile>(&read);
-    if (!file) return fail(streams, kBadScene, std::get<runtime::UnreadFilm>(read).problem);
-    if (!(file->shape == part.file.shape) || !(file->render.covered == part.file.render.covered)) {
-      return fail(streams, kIo, fmt::format("`{}` changed while it was read", part.path));
+    auto read = read_sums(part, limits, streams);
+    if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+    auto& file = std::get<runtime::FilmFile>(read);
+    if (parts.size() == 1) {
+      sum.render = std::move(file.render);
+      return std::nullopt;
     }
-    sum.render.film.merge(file->render.film);
-    sum.render.covered.front().add(file->render.covered.front());
+    if (!sum.render.film.merge(file.render.film)) warn(streams, lost_text(fmt::format("samples of `{}`", part.path)));
+    sum.render.covered.front().add(file.render.covered.front());
   }
   sum.render.covered.front().tidy();
-  return sum;
+  return std::nullopt;
 }
 
 void put_tone(const MergeRequest& request, runtime::Attributes& attributes) {
@@ -171,13 +216,13 @@ std::optional<ExitCode> denoise(runtime::FilmFile& sum, const Streams& streams) 
 int run_merge(std::span<const std::string> args, const Streams& streams) {
   MergeRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  auto read = read_parts(request.inputs, streams);
+  auto read = read_parts(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   const auto& parts = std::get<std::vector<Part>>(read);
   if (const auto code = check_parts(parts, streams)) return *code;
-  auto summed = sum_of(parts, streams);
-  if (const auto* code = std::get_if<ExitCode>(&summed)) return *code;
-  auto& sum = std::get<runtime::FilmFile>(summed);
+  runtime::FilmFile sum = frame_of(parts);
+  if (const auto code = check_memory(request, parts, sum.shape, streams)) return *code;
+  if (const auto code = add_up(parts, request.limits, sum, streams)) return *code;
   const runtime::SampleBlock all{sum.shape.area, sum.header.samples};
   const auto missing = sum.render.covered.front().missing(all);
   if (sum.shape.stages == 1 && !missing.empty() && !request.quiet) {

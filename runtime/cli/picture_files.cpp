@@ -88,6 +88,13 @@ std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& 
   return std::nullopt;
 }
 
+std::string lost_text(std::string_view what) {
+  return fmt::format(
+      "{} lost: what a pixel's samples add up to, light, depths or places, ends at {:.2g}; where it is light, scale "
+      "the lights down, else the scene",
+      what, runtime::kFullPixel);
+}
+
 std::optional<std::string> write_pictures(const PictureFiles& pictures, const runtime::FilmHeader& header,
                                           const runtime::PartialRender& render, std::optional<double> seconds,
                                           std::vector<std::string>& lines) {

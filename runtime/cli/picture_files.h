@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/cli/streams.h"
@@ -24,6 +25,9 @@ std::vector<std::string> files_of(const PictureFiles& pictures);
 // are asked for and a format has 8.
 std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams& streams);
 std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& streams);
+
+// The warning that "3 samples" overfilled a sum of the film.
+std::string lost_text(std::string_view what);
 
 // Writes everything; `lines` collects what was written. The reason when one cannot be written: those after it are
 // not. `seconds` is the time the render took, for files that say so.

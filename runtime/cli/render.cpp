@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -52,9 +53,9 @@ PictureFiles pictures_of(const RenderRequest& request) {
 std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
   if (request.watch) return std::nullopt;
   const LongRender& asked = request.long_render;
-  return std::optional<Checkpoint>(std::in_place,
-                                   asked.checkpoint.value_or(request.outputs.front() + kCheckpointEnding),
-                                   asked.checkpoint.has_value(), asked.interval.value_or(kCheckpointInterval));
+  return std::optional<Checkpoint>(
+      std::in_place, asked.checkpoint.value_or(request.outputs.front() + kCheckpointEnding),
+      asked.checkpoint.has_value(), asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
 }
 
 // Every file the run will write, but for streams.
@@ -118,6 +119,8 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
+constexpr const char* kNoPictureYet = "no picture is written: there are pixels without a sample";
+
 // A render from its compiled scene to its files.
 class Job {
  public:
@@ -133,7 +136,7 @@ class Job {
   ExitCode run() {
     if (const auto code = begin()) return *code;
     std::optional<Interruption> interruption;
-    if (!watching_) interruption.emplace();
+    if (!watching_) interruption.emplace();  // --watch ends as any program does
     runtime::RenderResult result = render(interruption);
     line_.wipe();
     if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
@@ -145,7 +148,7 @@ class Job {
     if (!checkpoint_) return std::nullopt;
     if (request_.long_render.resume)
       return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_);
-    return checkpoint_->begin_afresh(streams_);
+    return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
   }
 
   // All that is printed meanwhile comes from the thread that ticks.
@@ -174,15 +177,30 @@ class Job {
     return runtime::render(scene_, options);
   }
 
-  // For SIGUSR1: the render goes on, so what cannot be written now is no failure.
+  // For SIGUSR1: the render goes on, so what cannot be written now is no failure. Threads wait for the pictures, but
+  // not for the denoiser.
   void write_so_far(const runtime::RenderOptions::Look& look) {
-    runtime::PartialRender so_far;
-    look([&](const runtime::PartialRender& render) { so_far = render; });
-    if (request_.denoise) runtime::denoise(so_far.film, 1);
+    std::optional<std::string> problem;
     std::vector<std::string> lines;
-    const auto problem = write_pictures(pictures_of(request_), header_, so_far, std::nullopt, lines);
+    runtime::PartialRender copy;
+    const auto write = [&](const runtime::PartialRender& render) {
+      problem = write_pictures(pictures_of(request_), header_, render, std::nullopt, lines);
+    };
+    look([&](const runtime::PartialRender& render) {
+      if (!has_every_pixel(render.film)) {
+        problem = kNoPictureYet;
+      } else if (request_.denoise) {
+        copy = render;
+      } else {
+        write(render);
+      }
+    });
+    if (request_.denoise && !problem) {
+      runtime::denoise(copy.film, 1);
+      write(copy);
+    }
     line_.wipe();
-    if (problem) streams_.err << "warning: " << *problem << '\n';
+    if (problem) warn(streams_, *problem);
     for (const std::string& line : lines) note(streams_, line + ", so far");
     streams_.err.flush();
   }
@@ -192,31 +210,54 @@ class Job {
     using End = runtime::RenderEnd;
     const End ended = result.stats.end;
     warn_of_lost(result.stats);
-    const bool keep = checkpoint_ && (ended == End::Cancelled || checkpoint_->named() ||
-                                      (ended == End::TimeLimit && checkpoint_->is_ours()));
+    const bool undone = ended == End::Cancelled || ended == End::TimeLimit;
+    const bool keep = checkpoint_ && (undone || checkpoint_->named());
     if (keep) checkpoint_->write(header_, result, streams_);
     if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
-    if (request_.denoise) runtime::denoise(result.film, result.settings.threads);
-    if (const auto problem = write_all(result)) return fail_to_write(*problem, result, keep);
+    const bool pictures = ended != End::Cancelled || has_every_pixel(result.film);
+    if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
+    if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
+    if (!pictures) note(streams_, kNoPictureYet);
     if (ended == End::Noise && !request_.quiet) {
       note(streams_, "the noise is below the limit: " + samples_in(result.film));
     }
-    if (ended == End::TimeLimit) note(streams_, "the time limit ended the render: " + samples_in(result.film));
-    if (ended == End::Cancelled) {
-      note(streams_, "interrupted: " + samples_in(result.film));
-      if (checkpoint_->failed()) return kIo;
-      note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
-      return kInterrupted;
-    }
-    if (checkpoint_ && !checkpoint_->named() && ended != End::TimeLimit) checkpoint_->remove();
-    return keep && checkpoint_->failed() ? kIo : kDone;
+    if (undone) return end_undone(result);
+    if (checkpoint_ && !checkpoint_->named()) checkpoint_->remove(streams_);
+    return keep && checkpoint_->problem() ? fail_to_keep() : kDone;
+  }
+
+  ExitCode end_undone(const runtime::RenderResult& result) {
+    const bool limit = result.stats.end == runtime::RenderEnd::TimeLimit;
+    note(streams_, (limit ? "the time limit ended the render: " : "interrupted: ") + samples_in(result.film));
+    if (checkpoint_ && checkpoint_->problem()) return fail_to_keep();
+    if (checkpoint_) note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
+    return limit ? kDone : kInterrupted;
+  }
+
+  ExitCode fail_to_keep() {
+    Help help;
+    if (checkpoint_->holds_state()) help.push_back(earlier_state());
+    return fail(streams_, kIo, fmt::format("what was rendered is not kept: {}", *checkpoint_->problem()), help);
+  }
+
+  std::string earlier_state() const {
+    return fmt::format("an earlier state of it is in {}; --resume goes on from that", checkpoint_->path());
   }
 
   void warn_of_lost(const runtime::Stats& stats) {
     if (stats.saturated == 0) return;
-    streams_.err << fmt::format(
-        "warning: {} lost: a pixel's samples add up to {:.2g} at most; scale the lights down\n",
-        count_of(stats.saturated, "sample"), runtime::kFullPixel);
+    warn(streams_, lost_text(count_of(stats.saturated, "sample")));
+  }
+
+  // A picture of less would have black holes, and may take the place of a good one.
+  static bool has_every_pixel(const runtime::Film& film) {
+    const runtime::PixelRect area = film.area();
+    for (int y = area.y0; y < area.y1; ++y) {
+      for (int x = area.x0; x < area.x1; ++x) {
+        if (film.samples(x, y) == 0) return false;
+      }
+    }
+    return true;
   }
 
   // "a pixel has 3 samples at least, 5.20 on average, 8 at most"
@@ -233,13 +274,14 @@ class Job {
                        static_cast<double>(film.samples()) / static_cast<double>(area.pixels()), most);
   }
 
-  // Writes everything and prints the closing numbers, whose memory is that of writing, too.
-  std::optional<std::string> write_all(runtime::RenderResult& result) {
+  // Writes everything, or all but the pictures, and prints the closing numbers, whose memory is that of writing, too.
+  std::optional<std::string> write_all(runtime::RenderResult& result, bool pictures) {
     std::vector<std::string> lines;
     std::optional<double> seconds;
+    std::optional<std::string> problem;
     if (request_.options.profile) seconds = result.stats.seconds;
-    auto problem = write_pictures(pictures_of(request_), header_, result, seconds, lines);
-    if (request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
+    if (pictures) problem = write_pictures(pictures_of(request_), header_, result, seconds, lines);
+    if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
     result.stats.peak_memory = runtime::peak_memory();
     if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
     if (!request_.quiet) {
@@ -252,8 +294,10 @@ class Job {
   // What was rendered is not lost with the picture.
   ExitCode fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
     Help help;
-    if (checkpoint_ && (kept ? !checkpoint_->failed() : checkpoint_->write(header_, result, streams_))) {
+    if (checkpoint_ && (kept ? !checkpoint_->problem() : checkpoint_->write(header_, result, streams_))) {
       help.push_back(fmt::format("what was rendered is in {}; --resume writes the pictures", checkpoint_->path()));
+    } else if (checkpoint_ && checkpoint_->holds_state()) {
+      help.push_back(earlier_state());
     }
     return fail(streams_, kIo, problem, help);
   }
@@ -310,6 +354,8 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
 }  // namespace
 
 int run_render(std::span<const std::string> args, const Streams& streams) {
+  std::signal(SIGUSR1, SIG_IGN);  // who asks for a picture when there is none gets none
+  std::signal(SIGPIPE, SIG_IGN);  // who reads the messages may go before the render is done
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "compiler/artefact/compiled_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/version.h"
@@ -38,13 +40,10 @@ std::string view_of(const compiler::Camera& camera) {
 
 std::string environment_of(const runtime::RenderOptions& options) {
   if (!options.environment) return "none";
-  vm::ByteWriter bytes;
-  bytes.u32(static_cast<std::uint32_t>(options.environment->width));
-  bytes.u32(static_cast<std::uint32_t>(options.environment->height));
-  for (const glm::vec3 pixel : options.environment->pixels) {
-    for (int i = 0; i < 3; ++i) bytes.f64(static_cast<double>(pixel[i]));
-  }
-  return vm::digest(bytes.bytes()).text();
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  const auto pixels = std::as_bytes(std::span(options.environment->pixels));
+  const vm::Digest digest = vm::digest({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()});
+  return fmt::format("{}x{} {}", options.environment->width, options.environment->height, digest.text());
 }
 
 std::string marching_of(const runtime::Marching& marching) {
@@ -98,6 +97,7 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
   const auto name = [](const auto& names, auto value) { return std::string(names[static_cast<std::size_t>(value)]); };
   return {
       {"fathom", std::string(kVersion)},
+      {"renderer", std::to_string(kRendererBits)},
       {"scene", scene_hash(scene)},
       {"program", program_hash(scene)},
       {"size", fmt::format("{}x{}", settings.width, settings.height)},

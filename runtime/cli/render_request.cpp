@@ -75,7 +75,7 @@ Verdict read_filter_width(std::string_view text, double& width) {
   return std::nullopt;
 }
 
-void add_renderer_options(Arguments& arguments, RenderRequest& request, bool& no_denoise) {
+void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (what is not given comes from the scene file)");
   arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
@@ -108,6 +108,10 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request, bool& no
       into(read_positive, options.clamp));
   arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
                    into(read_positive, options.far));
+}
+
+// How the work is done; of the same group.
+void add_running_options(Arguments& arguments, RenderRequest& request, bool& no_denoise) {
   arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
   arguments.flag("--denoise",
@@ -231,22 +235,21 @@ std::optional<ExitCode> check_adaptive(const RenderRequest& request, const compi
       {request.adaptive ? "leave out --adaptive, or render the whole" : "add --no-adaptive, or render the whole"});
 }
 
-}  // namespace
+std::optional<ExitCode> check_watch(const RenderRequest& request, const Streams& streams) {
+  if (!request.watch) return std::nullopt;
+  if (request.scene.path == "-") {
+    return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
+  }
+  const LongRender& asked = request.long_render;
+  if (asked.checkpoint || asked.interval || asked.resume) {
+    return fail(streams, kUsage, "--watch begins again with every change: it goes with no checkpoint",
+                {"leave out --checkpoint, --checkpoint-interval and --resume"});
+  }
+  return std::nullopt;
+}
 
-std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
-  RenderRequest request;
-  Arguments arguments("render", "Renders a scene to image files.", kExamples);
-  add_scene_arguments(arguments, request.scene);
-  arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
-  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
-  add_output_options(arguments, request);
-  bool no_denoise = false;
-  add_renderer_options(arguments, request, no_denoise);
-  add_long_render_options(arguments, request.long_render);
-  add_comparing_options(arguments, request);
-  add_marching_options(arguments, request);
-  if (const auto code = arguments.parse(args, streams)) return *code;
-
+// Of options that do not go together, whatever the scene.
+std::optional<ExitCode> check_together(const RenderRequest& request, bool no_denoise, const Streams& streams) {
   if (request.size && (request.resolution || request.aspect)) {
     return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
   }
@@ -255,62 +258,57 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     return fail(streams, kUsage, "--quiet leaves out the numbers that --profile adds to",
                 {"leave out --quiet, or ask for --stats-json FILE"});
   }
-  if (request.outputs.empty()) {
-    request.outputs.push_back(default_output(request.scene.path));
-    request.default_output = true;
-  }
-  if (request.watch && request.scene.path == "-") {
-    return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
-  }
-  if (request.watch && (request.long_render.checkpoint || request.long_render.resume)) {
-    return fail(streams, kUsage, "--watch begins again with every change: it goes with no checkpoint");
-  }
+  if (const auto code = check_watch(request, streams)) return code;
   if (request.denoise && no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
   if (request.adaptive && request.no_adaptive) {
     return fail(streams, kUsage, "--adaptive does not go with --no-adaptive");
   }
-  if (request.preview) {
-    request.denoise = !no_denoise;
-    if (!request.options.spp) request.options.spp = kPreviewSpp;
-  }
-  request.options.layers = {.first_hit = request.albedo || request.depth || request.normal,
-                            .cost = request.cost_map.has_value()};
-  if (std::any_of(request.outputs.begin(), request.outputs.end(), holds_layers)) {
-    request.options.layers = runtime::kAllLayers;
-  }
-  if (request.denoise) request.options.layers.first_hit = request.options.layers.halves = true;
-  request.options.threads = request.threads.value_or(0);
-  if (request.adaptive || request.no_adaptive) request.options.adaptive = request.adaptive;
-  if (request.light_sampling >= 0) {
-    request.options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
-  }
-  if (request.sampler >= 0) request.options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
-  if (request.filter >= 0) request.options.filter = static_cast<compiler::FilterKind>(request.filter);
-  const auto marching = marching_of(request, streams);
-  if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
-  request.options.marching = std::get<runtime::Marching>(marching);
-  request.options.regions = !request.no_regions;
-  if (request.region_memory) request.options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
-  return request;
+  return std::nullopt;
 }
 
-std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
-                                       const Streams& streams) {
-  if (request.fov) {
-    if (scene.camera.projection == compiler::Camera::Projection::Orthographic) {
-      return fail(streams, kUsage, "--fov: the scene's camera is orthographic and has no field of view",
-                  {"its `width` in the scene file says how much it sees"});
-    }
-    if (scene.camera.projection == compiler::Camera::Projection::Panorama) {
-      return fail(streams, kUsage, "--fov: the scene's camera is a panorama, which shows all directions");
-    }
-    scene.camera.fov = *request.fov;
-    scene.camera.vertical_fov.reset();
-    scene.camera.focal_length.reset();
+// What the flags mean for the renderer.
+void settle(RenderRequest& request, bool no_denoise) {
+  runtime::RenderOptions& options = request.options;
+  if (request.preview) {
+    request.denoise = !no_denoise;
+    if (!options.spp) options.spp = kPreviewSpp;
   }
-  double width = request.resolution.value_or(scene.film.width), height = scene.film.height;
+  options.layers = {.first_hit = request.albedo || request.depth || request.normal,
+                    .cost = request.cost_map.has_value()};
+  if (std::any_of(request.outputs.begin(), request.outputs.end(), holds_layers)) {
+    options.layers = runtime::kAllLayers;
+  }
+  if (request.denoise) options.layers.first_hit = options.layers.halves = true;
+  options.threads = request.threads.value_or(0);
+  if (request.adaptive || request.no_adaptive) options.adaptive = request.adaptive;
+  if (request.light_sampling >= 0) {
+    options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
+  }
+  if (request.sampler >= 0) options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
+  if (request.filter >= 0) options.filter = static_cast<compiler::FilterKind>(request.filter);
+  options.regions = !request.no_regions;
+  if (request.region_memory) options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
+}
+
+std::optional<ExitCode> override_fov(const RenderRequest& request, compiler::Camera& camera, const Streams& streams) {
+  if (!request.fov) return std::nullopt;
+  if (camera.projection == compiler::Camera::Projection::Orthographic) {
+    return fail(streams, kUsage, "--fov: the scene's camera is orthographic and has no field of view",
+                {"its `width` in the scene file says how much it sees"});
+  }
+  if (camera.projection == compiler::Camera::Projection::Panorama) {
+    return fail(streams, kUsage, "--fov: the scene's camera is a panorama, which shows all directions");
+  }
+  camera.fov = *request.fov;
+  camera.vertical_fov.reset();
+  camera.focal_length.reset();
+  return std::nullopt;
+}
+
+std::optional<ExitCode> override_size(const RenderRequest& request, compiler::Film& film, const Streams& streams) {
+  double width = request.resolution.value_or(film.width), height = film.height;
   if (request.aspect || request.resolution) {
-    const double aspect = request.aspect.value_or(static_cast<double>(scene.film.width) / scene.film.height);
+    const double aspect = request.aspect.value_or(static_cast<double>(film.width) / film.height);
     height = std::max(1.0, std::round(width / aspect));
   }
   if (request.size) {
@@ -321,13 +319,49 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
     width = std::max(1.0, std::round(width / kPreviewShrink));
     height = std::max(1.0, std::round(height / kPreviewShrink));
   }
+  if (const auto code = check_picture_size(width, height, request.scene.limits, streams)) return code;
+  film.width = static_cast<int>(width);
+  film.height = static_cast<int>(height);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
+  RenderRequest request;
+  Arguments arguments("render", "Renders a scene to image files.", kExamples);
+  add_scene_arguments(arguments, request.scene);
+  arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
+  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  add_output_options(arguments, request);
+  bool no_denoise = false;
+  add_renderer_options(arguments, request);
+  add_running_options(arguments, request, no_denoise);
+  add_long_render_options(arguments, request.long_render);
+  add_comparing_options(arguments, request);
+  add_marching_options(arguments, request);
+  if (const auto code = arguments.parse(args, streams)) return *code;
+
+  if (request.outputs.empty()) {
+    request.outputs.push_back(default_output(request.scene.path));
+    request.default_output = true;
+  }
+  if (const auto code = check_together(request, no_denoise, streams)) return *code;
+  const auto marching = marching_of(request, streams);
+  if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
+  request.options.marching = std::get<runtime::Marching>(marching);
+  settle(request, no_denoise);
+  return request;
+}
+
+std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
+                                       const Streams& streams) {
+  if (const auto code = override_fov(request, scene.camera, streams)) return code;
   if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
     return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
                 {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
-  if (const auto code = check_picture_size(width, height, request.scene.limits, streams)) return code;
-  scene.film.width = static_cast<int>(width);
-  scene.film.height = static_cast<int>(height);
+  if (const auto code = override_size(request, scene.film, streams)) return code;
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
   if (const auto code = check_adaptive(request, scene, streams)) return code;

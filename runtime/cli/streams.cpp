@@ -16,6 +16,10 @@ void note(const Streams& streams, std::string_view message) {
   streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << vm::printable(message) << '\n';
 }
 
+void warn(const Streams& streams, std::string_view message) {
+  streams.err << (streams.color ? "\033[1;33mwarning\033[0m: " : "warning: ") << vm::printable(message) << '\n';
+}
+
 std::string count_of(std::size_t count, std::string_view noun) {
   return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
 }

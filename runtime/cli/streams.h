@@ -31,6 +31,7 @@ using Help = std::vector<std::string>;  // each a line after "= help:"
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help = {});
 
 void note(const Streams& streams, std::string_view message);
+void warn(const Streams& streams, std::string_view message);
 
 // "1 error", "2 errors".
 std::string count_of(std::size_t count, std::string_view noun);

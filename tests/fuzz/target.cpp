@@ -17,6 +17,8 @@ void run_import(Bytes input);
 std::vector<Input> seeds_of_import();
 void run_picture(Bytes input);
 std::vector<Input> seeds_of_picture();
+void run_film(Bytes input);
+std::vector<Input> seeds_of_film();
 void run_differential(Bytes input);
 std::vector<Input> seeds_of_differential();
 void run_assembly(Bytes input);
@@ -32,6 +34,7 @@ std::span<const Target> targets() {
       {"assembly", 16384, run_assembly, seeds_of_assembly},
       {"program", 16384, run_program, seeds_of_program},
       {"picture", 8192, run_picture, seeds_of_picture},
+      {"film", 16384, run_film, seeds_of_film},
       {"differential", 512, run_differential, seeds_of_differential},
   };
   return kTargets;

@@ -33,10 +33,10 @@ class SlowFolder : public Folder {
   SlowFolder() { write("slow.json", kSlow); }
 };
 
-TEST_CASE("cli checkpoint: SIGINT and SIGTERM end with 75, the picture so far and a checkpoint to go on from") {
+TEST_CASE("cli checkpoint: signals end it with 75, the picture so far and a checkpoint to go on from") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
-  for (const char* signal : {"INT", "TERM"}) {
+  for (const char* signal : {"INT", "TERM", "HUP"}) {
     const Result stopped = folder.run_script(interrupted("slow.json -o a.exr", signal, "a.exr.checkpoint"));
     INFO(signal << stopped.err);
     REQUIRE(stopped.out == "75\n");
@@ -128,20 +128,134 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
   CHECK(folder.run("render spaced.json -s 4 -o a.exr --checkpoint done.film --resume").code == 0);
 }
 
-TEST_CASE("cli checkpoint: without --resume an earlier one is not lost in silence, and what is no film stays") {
+TEST_CASE("cli checkpoint: without --resume a state of this very render is not overwritten") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
-  const Result again = folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film");
-  CHECK(again.code == 0);
-  CHECK_THAT(again.err, Contains("add --resume"));
-  folder.write("notes.txt", "mine");
-  const Result other = folder.run("render slow.json -s 4 -o a.exr --checkpoint notes.txt");
-  CHECK(other.code == 65);
-  CHECK(folder.read("notes.txt") == "mine");
-  CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint slow.json").code == 2);
-  const Result none = folder.run("render slow.json -s 4 -o a.exr --resume");
+  REQUIRE(folder.run_script(interrupted("slow.json -o b.exr", "INT", "b.exr.checkpoint")).out == "75\n");
+  for (const auto& [arguments, file] : {std::pair{"slow.json -s 4 -o a.exr --checkpoint done.film", "done.film"},
+                                        {"slow.json -o b.exr", "b.exr.checkpoint"},
+                                        {"slow.json -o b.exr --time-limit 0.1s", "b.exr.checkpoint"}}) {
+    const std::string before = folder.read(file);
+    const Result again = folder.run(std::string("render ") + arguments);
+    INFO(arguments << again.err);
+    CHECK(again.code == 2);
+    CHECK_THAT(again.err, Contains(file) && Contains("samples a pixel of this very render") &&
+                              Contains("add --resume") && Contains("remove `"));
+    CHECK(folder.read(file) == before);
+  }
+}
+
+TEST_CASE("cli checkpoint: of another render it gives way under the name that nobody chose") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
+  const std::string film = folder.read("done.film");
+  const Result named = folder.run("render slow.json -s 5 -o a.exr --checkpoint done.film");
+  CHECK(named.code == 65);
+  CHECK_THAT(named.err, Contains("spp is 4 there and 5 here") && Contains("remove `done.film`"));
+  CHECK(folder.read("done.film") == film);
+  folder.write("a.exr.checkpoint", film);
+  const Result other = folder.run("render slow.json -s 5 -o a.exr");
+  CHECK(other.code == 0);
+  CHECK_THAT(other.err, Contains("`a.exr.checkpoint` is there from another render and will be replaced"));
+  CHECK(folder.read("a.exr.checkpoint") == film);  // it was done before the first was due
+  CHECK(folder.run("render slow.json -s 5 -o a.exr --time-limit 1e-9").code == 0);
+  CHECK(folder.read("a.exr.checkpoint") != film);
+  const Result none = folder.run("render slow.json -s 4 -o c.exr --resume");
   CHECK(none.code == 0);
   CHECK_THAT(none.err, Contains("there is no checkpoint"));
+}
+
+TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is no film stays") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
+  std::string damaged = folder.read("done.film"), newer = damaged;
+  damaged[damaged.size() - 9] ^= 1;  // in the sums
+  newer[8] = 9;
+  for (const std::string& broken : {damaged, newer}) {
+    folder.write("done.film", broken);
+    folder.write("a.exr.checkpoint", broken);
+    CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film").code == 65);
+    for (const char* file : {"a.exr.checkpoint", "done.film"}) {
+      const Result resumed = folder.run("render slow.json -s 4 -o a.exr --resume --checkpoint " + std::string(file));
+      CHECK(resumed.code == 65);
+      CHECK_THAT(resumed.err, Contains("remove `" + std::string(file)));
+      CHECK(folder.read(file) == broken);
+    }
+    const Result afresh = folder.run("render slow.json -s 4 -o a.exr");
+    CHECK(afresh.code == 0);
+    CHECK_THAT(afresh.err, Contains("will be replaced"));
+  }
+  for (const char* mine : {"mine", "mine, and as long as the head of a film", ""}) {
+    folder.write("notes.txt", mine);
+    folder.write("a.exr.checkpoint", mine);
+    CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint notes.txt").code == 65);
+    CHECK(folder.run("render slow.json -s 4 -o a.exr").code == 65);
+    CHECK(folder.read("notes.txt") == mine);
+    CHECK(folder.read("a.exr.checkpoint") == mine);
+  }
+  CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint slow.json").code == 2);
+}
+
+// Once, the first to end removed what the other had written.
+TEST_CASE("cli checkpoint: what another run has written meanwhile is its own") {
+  const SlowFolder folder;
+  REQUIRE(folder.run("render slow.json -s 4 -o b.exr --checkpoint other.film -q").code == 0);
+  const std::string other = folder.read("other.film");
+  for (const bool stopped : {false, true}) {
+    const Result result = folder.run_script(
+        "rm -f a.exr.checkpoint\n\"$fathom\" render slow.json -o a.exr -q --checkpoint-interval 0.01s &\npid=$!\n"
+        "while ! [ -e a.exr.checkpoint ]; do sleep 0.02; done\ncp other.film copy; mv copy a.exr.checkpoint\n" +
+        std::string(stopped ? "kill -INT $pid\n" : "") + "wait $pid; echo $?");
+    INFO(result.err);
+    CHECK(result.out == (stopped ? "74\n" : "0\n"));
+    CHECK_THAT(result.err, Contains("another run has written `a.exr.checkpoint`"));
+    CHECK(folder.read("a.exr.checkpoint") == other);
+  }
+}
+
+TEST_CASE("cli checkpoint: an interruption before every pixel has a sample leaves the picture that was there") {
+  const SlowFolder folder;
+  folder.write("a.png", "good");
+  const Result stopped =
+      folder.run_script(interrupted("slow.json -o a.png --size 900x900 --threads 1", "INT", "a.png.checkpoint"));
+  INFO(stopped.err);
+  CHECK(stopped.out == "75\n");
+  CHECK_THAT(stopped.err, Contains("no picture is written"));
+  CHECK(folder.read("a.png") == "good");
+  CHECK(folder.has("a.png.checkpoint"));
+  const Result limited = folder.run("render slow.json -o b.png --time-limit 1e-9 --threads 3 -t 5");
+  CHECK(limited.code == 0);
+  CHECK_THAT(limited.err, Contains("a pixel has 1 sample at least, 1.00 on average"));
+}
+
+TEST_CASE("cli checkpoint: nobody who listens need stay") {
+  const SlowFolder folder;
+  // Messages go into a pipe that nobody reads any more.
+  const std::string render = "\"$fathom\" render slow.json -o a.exr --checkpoint-interval 0.01s -v &\npid=$!\n";
+  folder.run_script("( sleep 0.1\n" + render +
+                    "wait $pid; echo $? >done ) 2>&1 | true; while ! [ -s done ]; do sleep 0.02; done");
+  CHECK(folder.read("done") == "0\n");
+  CHECK(folder.has("a.exr"));
+  folder.run_script("( sleep 0.1\n" + render +
+                    "while ! [ -e a.exr.checkpoint ]; do sleep 0.02; done\nkill -INT $pid\n" +
+                    "wait $pid; echo $? >stopped ) 2>&1 | true; while ! [ -s stopped ]; do sleep 0.02; done");
+  CHECK(folder.read("stopped") == "75\n");
+  // Under nohup the terminal's end is none of its business.
+  const Result nohup =
+      folder.run_script("trap '' HUP\n" + interrupted("slow.json -o c.exr", "HUP", "c.exr.checkpoint"));
+  CHECK(nohup.out == "0\n");
+}
+
+TEST_CASE("cli checkpoint: SIGUSR1 is no end before the first ray either") {
+  const SlowFolder folder;
+  const Result result = folder.run_script(
+      "( sleep 0.5; cat slow.json ) | \"$fathom\" render - -q -s 1 -o a.png &\n"
+      "sleep 0.2; kill -USR1 $!; wait $!; echo $?");
+  CHECK(result.out == "0\n");
+  const Result watching = folder.run_script(
+      "\"$fathom\" render slow.json -q -s 1 -o b.png --watch &\npid=$!\nwhile ! [ -e b.png ]; do sleep 0.02; done\n"
+      "kill -USR1 $pid; sleep 0.1; kill -TERM $pid; wait $pid; echo $?");
+  CHECK(watching.out == "143\n");
 }
 
 TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stays") {
@@ -156,6 +270,7 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
   INFO(full.err);
   CHECK(full.out == "74\n");
   CHECK_THAT(full.err, Contains("warning: no checkpoint") && Contains("cannot write"));
+  CHECK_THAT(full.err, Contains("an earlier state of it is in a.exr.checkpoint"));
   CHECK(folder.read("a.exr.checkpoint") == before);
   CHECK_FALSE(folder.has("a.exr"));
   CHECK(folder.files() == 5);  // the scenes, whole.exr and the checkpoint
@@ -177,14 +292,33 @@ TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   CHECK(folder.read("a.exr") != folder.read("whole.exr"));
   REQUIRE(folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --resume -q").code == 0);
   CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  // Under the name that nobody chose, too, whatever the interval.
+  const Result unnamed = folder.run("render slow.json -s 400 -o b.exr --time-limit 0.2s");
+  CHECK(unnamed.code == 0);
+  CHECK_THAT(unnamed.err, Contains("what is done is in b.exr.checkpoint; --resume goes on"));
+  REQUIRE(folder.run("render slow.json -s 400 -o b.exr --resume -q").code == 0);
+  CHECK(folder.read("b.exr") == folder.read("whole.exr"));
+  CHECK_FALSE(folder.has("b.exr.checkpoint"));
   CHECK(folder.run("render slow.json -s 2 -o a.exr --time-limit 1h -q").code == 0);
   for (const char* wrong : {"0", "-3s", "10x", "h", "nan"}) {
     CHECK(folder.run(std::string("render slow.json -o a.exr --time-limit ") + wrong).code == 2);
   }
 }
 
+TEST_CASE("cli checkpoint: a name that cannot be is refused before the first sample") {
+  const SlowFolder folder;
+  CHECK(folder.run("render slow.json -o a.exr --checkpoint ''").code == 2);
+  const std::string longest(255 - 4, 'n');
+  CHECK(folder.run("render slow.json -s 1 -q --checkpoint a.film -o " + longest + ".exr").code == 0);
+  const Result both = folder.run("render slow.json -s 1 -q -o " + longest + ".exr");  // and its checkpoint's
+  CHECK(both.code == 74);
+  CHECK_THAT(both.err, Contains("too long"));
+}
+
 TEST_CASE("cli checkpoint: --watch has none") {
-  CHECK(SlowFolder().run("render slow.json -o a.exr --watch --resume").code == 2);
+  for (const char* asked : {"--resume", "--checkpoint a.film", "--checkpoint-interval 5s"}) {
+    CHECK(SlowFolder().run("render slow.json -o a.exr --watch " + std::string(asked)).code == 2);
+  }
 }
 
 TEST_CASE("cli checkpoint: scripts/kill-test in short", "[heavy]") {

@@ -72,6 +72,14 @@ TEST_CASE("cli: memory is counted before it is taken") {
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "1000 pixels of 112 bytes"));
   CHECK_FALSE(folder.has("no.png"));
+  // --noise takes four stages of 32 bytes and 48 of variance; --denoise a copy of the film beside its own work.
+  for (const auto& [arguments, each] : {std::pair{"--noise 1", 344}, {"--denoise", 392}}) {
+    const std::string render = "render -q ball.json -s 16 -o out.png --size 100x10 " + std::string(arguments);
+    CHECK(folder.run(render + " --limit memory=" + std::to_string(each * 1000)).code == 0);
+    const Result more = folder.run(render + " --limit memory=" + std::to_string(each * 1000 - 1));
+    CHECK(more.code == 2);
+    CHECK(contains(more.err, "1000 pixels of " + std::to_string(each) + " bytes"));
+  }
   folder.write("large.json", R"({"version": 1, "film": {"width": 1000, "height": 1000},
       "objects": [{"type": "sphere", "radius": 1}]})");
   const Result scene = folder.run("render -q large.json -o no.png --limit memory=1e6");

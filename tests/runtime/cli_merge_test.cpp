@@ -84,7 +84,8 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   CHECK_THAT(twice.err, Contains("`a.film` and `b.film` both have samples 4:5 of the pixels 8,4,20,9"));
   CHECK(folder.run("merge a.film a.film -o m.exr").code == 65);
   REQUIRE(folder.run("render ball.json -s 9 -q -o c.film --sample-range 5:8").code == 0);
-  CHECK_THAT(folder.run("merge a.film c.film -o m.exr").err, Contains("spp is 8 there and 9 here"));
+  CHECK_THAT(folder.run("merge a.film c.film -o m.exr").err,
+             Contains("spp is 8 in `a.film` and 9 in `c.film`") && Contains("leave one out"));
   REQUIRE(folder.run("render two.json -s 8 -q -o d.film --size 32x16 --sample-range 5:8").code == 0);
   const Result other = folder.run("merge a.film d.film -o m.exr");
   CHECK(other.code == 65);
@@ -95,6 +96,36 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   CHECK(folder.run("merge e.film -o m.exr").code == 0);  // but a picture can be made of it
   CHECK(folder.read("m.exr") == folder.read("e.exr"));
   CHECK_FALSE(folder.has("out.png"));
+}
+
+// Films that took next to nothing to make; what lies between them would have been 2^28 pixels.
+TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
+  const Folder folder;
+  const std::string render = "render ball.json -s 1 -q --size 400x300 ";
+  REQUIRE(folder.run(render + "-o a.film --crop 0,0,1,1").code == 0);
+  REQUIRE(folder.run(render + "-o b.film --crop 399,299,400,300").code == 0);
+  const Result refused = folder.run("merge a.film b.film -o m.png --limit memory=1e6");
+  CHECK(refused.code == 65);
+  CHECK_THAT(refused.err, Contains("400x300 pixels") && Contains("--limit memory="));
+  CHECK_FALSE(folder.has("m.png"));
+  CHECK(folder.run("merge a.film b.film -o m.png --limit memory=1e8").code == 0);
+  CHECK(folder.run("merge a.film -o m.png --limit memory=9000").code == 0);
+  REQUIRE(folder.run(render + "-o whole.film").code == 0);
+  CHECK(folder.run("merge whole.film -o m.png --limit memory=1e6").code == 65);
+}
+
+// Once, merging cut sums off in silence.
+TEST_CASE("cli merge: what is full only together is said to be lost") {
+  const Folder folder;
+  folder.write("bright.json", R"({"version": 1, "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+      "film": {"width": 4, "height": 4}, "background": [4e8, 4e8, 4e8], "objects": [{"type": "sphere", "radius": 0.1}]})");
+  const Result first = folder.run("render bright.json -s 8 -q -o a.film --sample-range 0:4");
+  CHECK_THAT(first.err, !Contains("lost"));
+  REQUIRE(folder.run("render bright.json -s 8 -q -o b.film --sample-range 4:8").code == 0);
+  const Result merged = folder.run("merge a.film b.film -o m.exr");
+  CHECK(merged.code == 0);
+  CHECK_THAT(merged.err, Contains("warning: samples of `b.film` lost"));
+  CHECK_THAT(folder.run("render bright.json -s 8 -q -o m.exr").err, Contains("samples lost"));
 }
 
 TEST_CASE("cli merge: usage, files that are none, and outputs in the way") {

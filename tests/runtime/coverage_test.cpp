@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <random>
 #include <vector>
 
@@ -53,6 +54,33 @@ Coverage random_coverage(RandomBlocks& random, int blocks) {
     covered.tidy();
   }
   return covered;
+}
+
+TEST_CASE("coverage: the tidy form is known when it is seen") {
+  int tidy = 0, untidy = 0;
+  for (unsigned seed = 0; seed < 4000; ++seed) {
+    RandomBlocks random(seed);
+    Coverage covered;
+    // A tidy one with one block too few, too many or changed, or none of these.
+    std::vector<SampleBlock> blocks = random_coverage(random, random.whole(4)).blocks();
+    const int change = random.whole(5);
+    if (change == 1 && !blocks.empty()) blocks.pop_back();
+    if (change == 2)
+      blocks.insert(blocks.begin() + random.whole(static_cast<int>(blocks.size()) + 1), random.block());
+    if (change >= 3 && !blocks.empty()) {
+      SampleBlock& block = blocks[static_cast<std::size_t>(random.whole(static_cast<int>(blocks.size())))];
+      if (change == 3) block = random.block();
+      if (change == 4) ++block.samples.last;
+    }
+    for (const SampleBlock& block : blocks) covered.add(block);
+    Coverage form = covered;
+    form.tidy();
+    CHECK(form.is_tidy());
+    CHECK(covered.is_tidy() == (covered == form));
+    ++(covered.is_tidy() ? tidy : untidy);
+  }
+  CHECK(tidy > 500);
+  CHECK(untidy > 500);
 }
 
 TEST_CASE("coverage: missing is what is not there, once") {
@@ -111,6 +139,22 @@ TEST_CASE("coverage: overlaps are found, and only those") {
   }
   CHECK(some > 50);
   CHECK(some < 290);
+}
+
+// A row of the picture alone may have as many blocks as a file has room for: minutes, when each was held against
+// each.
+TEST_CASE("coverage: whether many blocks are apart is soon known") {
+  Coverage even, odd;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    even.add({{0, 0, 9, 1}, {4 * i, 4 * i + 1}});
+    odd.add({{0, 0, 9, 1}, {4 * i + 2, 4 * i + 3}});
+  }
+  REQUIRE(even.is_tidy());
+  const auto start = std::chrono::steady_clock::now();
+  CHECK_FALSE(even.overlap(odd));
+  CHECK(even.overlap(even));
+  CHECK(even.missing({{0, 0, 9, 1}, {0, 800000}}).size() == 200000);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
 }
 
 }  // namespace

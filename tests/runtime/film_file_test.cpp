@@ -2,6 +2,7 @@
 #include "runtime/film_file.h"
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -143,6 +144,56 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
   CHECK(accepted < static_cast<int>(6 * head.size()));
 }
 
+// What a scene calls its things is as long as it likes.
+TEST_CASE("film files: what can be written can be read, however long") {
+  const tests::TemporaryFolder folder;
+  FilmFile wrote = small_file({});
+  const std::string path = folder.file("a.film");
+  for (const std::size_t length : {(std::size_t{1} << 16) + 1, (std::size_t{64} << 20) + 1}) {
+    const std::string text(length, 'x');
+    wrote.header.identity = {{text, text}};
+    wrote.header.attributes = {{text, text}, {"names", std::vector<std::string>{text, "b"}}};
+    REQUIRE_FALSE(write_film(wrote.header, wrote.render, path));
+    const auto read = read_film(path);
+    REQUIRE(std::holds_alternative<FilmFile>(read));
+    CHECK((std::get<FilmFile>(read).header.identity == wrote.header.identity));
+    CHECK((std::get<FilmFile>(read).header.attributes == wrote.header.attributes));
+  }
+  const auto small = read_film(path, {1 << 20});
+  CHECK(std::get<UnreadFilm>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
+}
+
+TEST_CASE("film files: sums that take more memory than is allowed are not read") {
+  const tests::TemporaryFolder folder;
+  const std::string path = folder.file("a.film");
+  const FilmFile wrote = small_file({});
+  PartialRender large{Film(200, 100, FilmLayers{}), std::vector<Coverage>(1), {}};
+  FilmHeader header = wrote.header;
+  header.width = 200;
+  header.height = 100;
+  REQUIRE_FALSE(write_film(header, large, path));
+  CHECK(std::holds_alternative<FilmFile>(read_film(path, {2e6})));
+  CHECK(std::holds_alternative<UnreadFilm>(read_film(path, {1e6})));
+  CHECK(std::holds_alternative<FilmFile>(read_film_header(path, {1e6})));
+}
+
+// Once, they were tidied before they were looked at: minutes for some thousand.
+TEST_CASE("film files: blocks that overlap are refused as fast as they are read") {
+  const tests::TemporaryFolder folder;
+  FilmHeader header = small_file({}).header;
+  header.width = header.height = 300;
+  PartialRender render{Film(300, 300, FilmLayers{}), std::vector<Coverage>(1), {}};
+  for (int i = 0; i < 20000; ++i) {
+    const int x = i % 149, y = i / 134;
+    render.covered[0].add({{x, y, 300 - x, 300 - y}, {0, 8}});
+  }
+  REQUIRE_FALSE(write_film(header, render, folder.file("a.film")));
+  const auto start = std::chrono::steady_clock::now();
+  const auto read = read_film(folder.file("a.film"));
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+  CHECK(std::get<UnreadFilm>(read).problem.find("head makes no sense") != std::string::npos);
+}
+
 TEST_CASE("film files: what is no film, or not there, is said to be so") {
   const tests::TemporaryFolder folder;
   write_bytes(folder.file("a.film"), "{\"version\": 1}                 ");
@@ -150,6 +201,9 @@ TEST_CASE("film files: what is no film, or not there, is said to be so") {
   REQUIRE(std::holds_alternative<UnreadFilm>(other));
   CHECK_FALSE(std::get<UnreadFilm>(other).missing);
   CHECK(std::get<UnreadFilm>(other).problem.find("does not begin as one") != std::string::npos);
+  CHECK(std::get<UnreadFilm>(other).foreign);
+  write_bytes(folder.file("a.film"), "FATHOMFM");
+  CHECK_FALSE(std::get<UnreadFilm>(read_film(folder.file("a.film"))).foreign);
   const auto missing = read_film(folder.file("b.film"));
   CHECK(std::get<UnreadFilm>(missing).missing);
   CHECK(std::get<UnreadFilm>(read_film(folder.path().string())).missing);

@@ -64,6 +64,7 @@ TEST_CASE("noise: judgements double the samples from the least to the most") {
   CHECK(next_end(0, 16, 16) == 8);
   CHECK(next_end(8, 16, 17) == 0);
   CHECK(next_end(0, 1, 4) == 2);
+  CHECK(next_end(0, 5, 17) == 3);  // one of each half at a time
 }
 
 TEST_CASE("noise: it is the root of the mean of variance over brightness, of a picture of two halves") {
@@ -189,6 +190,20 @@ TEST_CASE("noise: quiet tiles get the least, noisy ones the most, and threads an
   const RenderResult all = render(scene, options);
   CHECK(all.stats.end == RenderEnd::Done);
   CHECK(all.film.samples(3, 30) == 96);
+}
+
+TEST_CASE("noise: samples come by twos, no fewer than the least, and progress ends at all of them", "[render]") {
+  RenderOptions options = noisy_options();
+  options.spp = 17;
+  options.min_spp = 5;
+  double last = 0;
+  options.on_progress = [&](const Progress& progress) { last = progress.fraction; };
+  for (const auto& [noise, samples] : {std::pair{1e10, 6u}, {1e-9, 16u}}) {
+    options.noise = noise;
+    const RenderResult result = render(lamp_and_sky(), options);
+    CHECK(result.film.samples(3, 30) == samples);
+    CHECK(last == 1);
+  }
 }
 
 TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[render][threads]") {

@@ -285,6 +285,7 @@ TEST_CASE("render: ranges of samples add up to the whole, and what was stopped g
       CHECK(resumed.film.hash() == whole.film.hash());
       CHECK(resumed.covered == whole.covered);
       CHECK(resumed.stats.resumed_samples == stopped.film.samples());
+      CHECK(going_on.resume_from->film.area().pixels() == 0);  // not kept twice
       CHECK(resumed.stats.primary_rays == 40u * 24u * 24u - stopped.film.samples());
     }
   }

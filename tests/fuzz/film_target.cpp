@@ -1,0 +1,136 @@
+// Bytes as film files: u32 size of the head, the head, and sums, of which those that are missing are 0. They are put
+// together here with the digests that belong to them, for no run would find those. A film is refused with a reason,
+// or written again as the bytes it was read from.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "runtime/film_file.h"
+#include "runtime/film_header_bytes.h"
+#include "runtime/tiles.h"
+#include "tests/fuzz/target.h"
+#include "vm/bytes.h"
+#include "vm/digest.h"
+
+namespace fathom::fuzz {
+namespace {
+
+constexpr runtime::ReadLimits kLimits{64e6};
+constexpr std::size_t kMostSums = 1 << 20;  // bytes; a head that asks for more gets what is there
+
+// A file of this process alone.
+std::string file_name(const char* name) {
+  return (std::filesystem::temp_directory_path() / fmt::format("fathom-fuzz-{}-{}.film", getpid(), name)).string();
+}
+
+void put_checked(vm::ByteWriter& out, Bytes bytes) {
+  const vm::Digest digest = vm::digest(bytes);
+  out.raw(bytes);
+  out.u64(digest.low);
+  out.u64(digest.high);
+}
+
+void put_sums(vm::ByteWriter& out, const runtime::FilmShape& shape, vm::ByteReader& sums) {
+  const runtime::Tiles tiles(shape.area, runtime::kFilmTile);
+  const std::size_t pixel = runtime::Film::bytes_per_pixel(shape.layers, shape.stages);
+  for (std::int64_t i = 0; i < tiles.count(); ++i) {
+    const std::size_t size = tiles.at(i).pixels() * pixel;
+    const Bytes there = sums.raw(std::min(size, sums.left()));
+    Input tile(there.begin(), there.end());
+    tile.resize(size);
+    put_checked(out, tile);
+  }
+}
+
+Input sealed_film(Bytes head, vm::ByteReader sums) {
+  vm::ByteWriter out;
+  out.raw(to_input("FATHOMFM"));
+  out.u32(1);
+  out.u64(head.size());
+  put_checked(out, head);
+  vm::ByteReader reader(head);
+  runtime::FilmFile file;
+  if (!runtime::read_shape(reader, file) && runtime::sums_size(file.shape) <= kMostSums) {
+    put_sums(out, file.shape, sums);
+  } else {
+    out.raw(sums.raw(sums.left()));
+  }
+  return out.take();
+}
+
+void run_file(const Input& bytes) {
+  const std::string path = file_name("read"), again = file_name("written");
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const auto read = runtime::read_film(path, kLimits);
+  const auto* file = std::get_if<runtime::FilmFile>(&read);
+  if (file == nullptr) {
+    promise(!std::get<runtime::UnreadFilm>(read).problem.empty(), "a refusal has a reason");
+  } else {
+    for (const runtime::Coverage& covered : file->render.covered) {
+      runtime::Coverage form = covered;
+      if (covered.blocks().size() < 100) form.tidy();
+      promise(form == covered, "what is covered is in its one form");
+    }
+    promise(!runtime::write_film(file->header, file->render, again), "what is read can be written");
+    promise(read_file(again) == bytes, "what is written is what was read");
+  }
+  std::filesystem::remove(path);
+  std::filesystem::remove(again);
+}
+
+}  // namespace
+
+void run_film(Bytes input) {
+  vm::ByteReader in(input);
+  const Bytes head = in.raw(std::min<std::size_t>(in.u32(), in.left()));
+  if (!in.failed()) run_file(sealed_film(head, in));
+}
+
+std::vector<Input> seeds_of_film() {
+  std::vector<Input> seeds;
+  runtime::FilmLayers every = runtime::kAllLayers;
+  every.halves = true;
+  for (const runtime::FilmLayers layers : {runtime::FilmLayers{}, every, runtime::FilmLayers{.first_hit = false}}) {
+    for (const std::size_t stages : {1, 2, 4}) {
+      runtime::PartialRender render{runtime::Film(runtime::PixelRect{2, 1, 20, 4}, layers), {}, {}};
+      if (stages == 2) render.film.begin_second_stage(0.25);
+      if (stages == 4) {
+        render.film.begin_halves();
+        render.noise = {4, {{{4, 0}}, {{0, 4}}}};
+      }
+      runtime::PathSample sample;
+      sample.hit = true;
+      sample.radiance = glm::vec3(0.5f, 1, 2);
+      for (int x = 2; x < 20; ++x) render.film.add(x, 2, sample);
+      render.covered.resize(stages);
+      for (runtime::Coverage& covered : render.covered) {
+        for (const std::uint32_t first : {0, 5}) covered.add({{2, 2, 20, 3}, {first, first + 2}});
+        covered.add({{4, 1, 9, 2}, {0, 1}});
+        covered.tidy();
+      }
+      const runtime::FilmHeader header{{{"spp", "8"}, {"seed", "0"}},
+                                       {{"list", std::vector<std::string>{"a", ""}},
+                                        {"matrix", runtime::Matrix4{1, 2, 3}},
+                                        {"number", 0.5f},
+                                        {"text", std::string("agx")},
+                                        {"whole", -3}},
+                                       24,
+                                       16,
+                                       {0, 8},
+                                       {1, 2, 3}};
+      vm::ByteWriter head, seed;
+      runtime::write_head(header, render, head);
+      seed.u32(static_cast<std::uint32_t>(head.size()));
+      seed.raw(head.bytes());
+      render.film.write_sums(render.film.area(), seed);
+      seeds.push_back(seed.take());
+    }
+  }
+  return seeds;
+}
+
+}  // namespace fathom::fuzz
