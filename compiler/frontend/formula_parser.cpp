@@ -212,7 +212,7 @@ FormulaId FormulaParser::resolve(const Token& name) {
     // "a = 1" where no definition can be is reported at its `=`.
     if (next_.is('=')) return stand_in(name);
     report("E0402", span(name), fmt::format("unknown name `{}`", name.text), "",
-           {did_you_mean(name.text, known_names(context_))});
+           {context_.diagnostics.full() ? "" : did_you_mean(name.text, known_names(context_))});
   } else if (entry->state == Scope::State::Later) {
     report("E0402", span(name), fmt::format("`{}` has no value yet", name.text), "",
            {"a parameter's formula can use the parameters before it"});
@@ -232,8 +232,8 @@ FormulaParser::Result FormulaParser::too_deep() {
 
 FormulaParser::Result FormulaParser::too_long() {
   const double most = context_.scope.limits().nodes;
-  report("E0312", span(next_), fmt::format("the formula has more than {} operations and numbers", most), "one too many",
-         {raise(&Limits::nodes, 2 * most)});
+  report("E0312", span(next_), fmt::format("the formula has more than {} operations and numbers", most),
+         "one too many", {raise(&Limits::nodes, 2 * most)});
   return std::nullopt;
 }
 
@@ -246,8 +246,9 @@ FormulaId FormulaParser::unknown_function(const Token& name) {
   const bool value = is_axis(name.text) || find_constant(name.text) || context_.scope.use(name.text) ||
                      context_.definitions.contains(name.text);
   report("E0403", span(name), fmt::format("unknown function `{}`", name.text), "",
-         {value ? fmt::format("for a product write {}*(...)", name.text)
-                : did_you_mean(name.text, names_of(context_.functions))});
+         {value                         ? fmt::format("for a product write {}*(...)", name.text)
+          : context_.diagnostics.full() ? ""
+                                        : did_you_mean(name.text, names_of(context_.functions))});
   return stand_in(name);
 }
 
