@@ -75,8 +75,8 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0612", "a property of a nested node that is missing or of the wrong type"},
     {"E0613", "a matrix that does not only turn and move"},
     {"E0614", "a box whose edges are rounded in ways that are not known here"},
-    // E07xx: listings of compiled scenes
-    {"E0701", "a listing that is none, or of no sound program"},
+    // E07xx: compiled scenes and their listings
+    {"E0701", "a compiled scene or a listing that is none, of no sound program, or beyond a limit"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},

@@ -119,7 +119,7 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
-constexpr const char* kNoPictureYet = "no picture is written: there are pixels without a sample";
+constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sample yet";
 
 // A render from its compiled scene to its files.
 class Job {
@@ -187,7 +187,7 @@ class Job {
       problem = write_pictures(pictures_of(request_), header_, render, std::nullopt, lines);
     };
     look([&](const runtime::PartialRender& render) {
-      if (!has_every_pixel(render.film)) {
+      if (!has_a_sample(render.film)) {
         problem = kNoPictureYet;
       } else if (request_.denoise) {
         copy = render;
@@ -214,7 +214,7 @@ class Job {
     const bool keep = checkpoint_ && (undone || checkpoint_->named());
     if (keep) checkpoint_->write(header_, result, streams_);
     if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
-    const bool pictures = ended != End::Cancelled || has_every_pixel(result.film);
+    const bool pictures = ended != End::Cancelled || has_a_sample(result.film);
     if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
     if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
     if (!pictures) note(streams_, kNoPictureYet);
@@ -249,15 +249,15 @@ class Job {
     warn(streams_, lost_text(count_of(stats.saturated, "sample")));
   }
 
-  // A picture of less would have black holes, and may take the place of a good one.
-  static bool has_every_pixel(const runtime::Film& film) {
+  // A picture without any would take the place of one that may be good.
+  static bool has_a_sample(const runtime::Film& film) {
     const runtime::PixelRect area = film.area();
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
-        if (film.samples(x, y) == 0) return false;
+        if (film.samples(x, y) > 0) return true;
       }
     }
-    return true;
+    return false;
   }
 
   // "a pixel has 3 samples at least, 5.20 on average, 8 at most"

@@ -80,10 +80,18 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-ExitCode bad_file(const std::string& path, const compiler::FileError& error, const Streams& streams) {
+ExitCode bad_file(const SceneArguments& arguments, const std::string& reason, const std::string& remedy,
+                  const Streams& streams) {
   Help help;
-  if (!error.remedy.empty()) help.push_back(error.remedy);
-  return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), error.reason), help);
+  if (!remedy.empty()) help.push_back(remedy);
+  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
+  if (format == compiler::ErrorFormat::Text) {
+    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(arguments.path), reason), help);
+  }
+  compiler::Diagnostics diagnostics;
+  diagnostics.error("E0701", {}, reason, "", help);
+  streams.err << diagnostics.print(compiler::Source(arguments.path, ""), format);
+  return kBadScene;
 }
 
 // Whatever it is, with its name for messages.
@@ -113,7 +121,7 @@ std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::Compiled
                                                               const SceneArguments& arguments,
                                                               const Streams& streams) {
   if (const auto excess = compiler::excess_of(stored, arguments.limits)) {
-    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(arguments.path), excess->what), {excess->remedy});
+    return bad_file(arguments, excess->what, excess->remedy, streams);
   }
   return compiler::unproved(std::move(stored));
 }
@@ -189,7 +197,9 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
   auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path));
-  if (const auto* error = std::get_if<compiler::FileError>(&stored)) return bad_file(arguments.path, *error, streams);
+  if (const auto* error = std::get_if<compiler::FileError>(&stored)) {
+    return bad_file(arguments, error->reason, error->remedy, streams);
+  }
   auto& scene = std::get<compiler::StoredScene>(stored);
   return SceneInput{scene.scene.source, std::move(scene)};
 }
@@ -200,7 +210,9 @@ std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, con
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
   auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
-  if (const auto* error = std::get_if<compiler::FileError>(&text)) return bad_file(arguments.path, *error, streams);
+  if (const auto* error = std::get_if<compiler::FileError>(&text)) {
+    return bad_file(arguments, error->reason, error->remedy, streams);
+  }
   auto& stored = std::get<compiler::StoredText>(text);
   arguments.definitions = both(stored.definitions, arguments.definitions);
   return SceneText{std::move(stored.source), true};

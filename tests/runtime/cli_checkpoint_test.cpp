@@ -43,9 +43,9 @@ TEST_CASE("cli checkpoint: signals end it with 75, the picture so far and a chec
     CHECK_THAT(stopped.err, Contains("--resume goes on"));
     CHECK(folder.has("a.exr"));
     REQUIRE(folder.has("a.exr.checkpoint"));
-    CHECK(folder.read("a.exr") != folder.read("whole.exr"));
+    CHECK((folder.read("a.exr") != folder.read("whole.exr")));
     REQUIRE(folder.run("render slow.json -o a.exr -q --resume --threads 1 -t 9").code == 0);
-    CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+    CHECK((folder.read("a.exr") == folder.read("whole.exr")));
     CHECK_FALSE(folder.has("a.exr.checkpoint"));
   }
 }
@@ -76,7 +76,7 @@ TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was
     const Result resumed = folder.run("render " + render + " --resume");
     CHECK(resumed.code == 0);
     CHECK_THAT(resumed.err, Contains("samples resumed"));
-    CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+    CHECK((folder.read("a.exr") == folder.read("whole.exr")));
   }
 }
 
@@ -213,15 +213,14 @@ TEST_CASE("cli checkpoint: what another run has written meanwhile is its own") {
   }
 }
 
-TEST_CASE("cli checkpoint: an interruption before every pixel has a sample leaves the picture that was there") {
+TEST_CASE("cli checkpoint: the picture so far is written before every pixel has a sample") {
   const SlowFolder folder;
-  folder.write("a.png", "good");
   const Result stopped =
       folder.run_script(interrupted("slow.json -o a.png --size 900x900 --threads 1", "INT", "a.png.checkpoint"));
   INFO(stopped.err);
   CHECK(stopped.out == "75\n");
-  CHECK_THAT(stopped.err, Contains("no picture is written"));
-  CHECK(folder.read("a.png") == "good");
+  CHECK_THAT(stopped.err, Contains("a pixel has 0 samples at least"));
+  CHECK(folder.has("a.png"));
   CHECK(folder.has("a.png.checkpoint"));
   const Result limited = folder.run("render slow.json -o b.png --time-limit 1e-9 --threads 3 -t 5");
   CHECK(limited.code == 0);
@@ -275,7 +274,7 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
   CHECK_FALSE(folder.has("a.exr"));
   CHECK(folder.files() == 5);  // the scenes, whole.exr and the checkpoint
   REQUIRE(folder.run("render slow.json -o a.exr --resume -q").code == 0);
-  CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  CHECK((folder.read("a.exr") == folder.read("whole.exr")));
   const Result nowhere = folder.run("render slow.json -o a.exr --checkpoint missing/a.film");
   CHECK(nowhere.code == 74);
   CHECK_THAT(nowhere.err, Contains("missing"));
@@ -291,7 +290,7 @@ TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   CHECK_THAT(folder.read("s.json"), Contains("\"ended_by\": \"time limit\""));
   CHECK(folder.read("a.exr") != folder.read("whole.exr"));
   REQUIRE(folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --resume -q").code == 0);
-  CHECK(folder.read("a.exr") == folder.read("whole.exr"));
+  CHECK((folder.read("a.exr") == folder.read("whole.exr")));
   // Under the name that nobody chose, too, whatever the interval.
   const Result unnamed = folder.run("render slow.json -s 400 -o b.exr --time-limit 0.2s");
   CHECK(unnamed.code == 0);

@@ -147,6 +147,10 @@ TEST_CASE("what a compiled scene asks for is limited as what a scene asks for", 
     CHECK_THAT(refused.err, Contains("`bare.fbc`: ") && Contains("`--limit "));
     CHECK_FALSE(folder.has("no.png"));
   }
+  const Result json = folder.run("eval bare.fbc --at 0,0,0 --error-format json --limit instructions=1");
+  CHECK_THAT(json.err, Contains("\"code\":\"E0701\"") && Contains("\"file\":\"bare.fbc\""));
+  CHECK_THAT(folder.run("eval bare.fbc --at 0,0,0 --error-format short --limit stack=1").err,
+             Contains("bare.fbc: error: the program needs a stack of"));
   folder.write("two.fasm", folder.run("dump two.json --stage file").out);
   const Result refused = folder.run("asm two.fasm -o no.fbc --limit instructions=1");
   CHECK(refused.code == 65);
