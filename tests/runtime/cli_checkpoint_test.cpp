@@ -1,6 +1,8 @@
 // Interrupted renders as their users meet them: signals, kill -9, full disks, checkpoints of other renders.
 #include <catch2/catch.hpp>
+#include <string>
 
+#include "tests/support/effort.h"
 #include "tests/support/program.h"
 
 namespace {
@@ -9,12 +11,14 @@ using namespace fathom::tests;
 using Catch::Contains;
 
 // Long enough to be interrupted, by default.
-const char* const kSlow = R"({
+const std::string kSpp = std::to_string(fathom::test::few(400));
+const std::string kSlow = R"({
   "version": 1,
   "params": {"r": 0.5},
   "camera": {"position": [0, 1, 4], "target": [0, 0.3, 0]},
   "film": {"width": 48, "height": 32},
-  "render": {"spp": 400},
+  "render": {"spp": )" + kSpp +
+                          R"(},
   "materials": {"lamp": {"type": "emissive", "emission": [8, 8, 8]}, "glass": {"type": "transparent"}},
   "objects": [{"type": "plane", "normal": [0, 1, 0]},
               {"type": "sphere", "radius": "r", "translate": [0, 0.5, 0], "material": "glass"},
@@ -124,7 +128,7 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
   // What changes no sample makes no difference.
   CHECK(folder.run("render slow.json -s 4 -o b.exr --checkpoint done.film --resume -t 5 --threads 3 --exposure 1")
             .code == 0);
-  folder.write("spaced.json", std::string(kSlow) + "\n\n");
+  folder.write("spaced.json", kSlow + "\n\n");
   CHECK(folder.run("render spaced.json -s 4 -o a.exr --checkpoint done.film --resume").code == 0);
 }
 
@@ -282,20 +286,20 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
 
 TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   const SlowFolder folder;
-  REQUIRE(folder.run("render slow.json -s 400 -o whole.exr -q").code == 0);
+  REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
   const Result stopped =
-      folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --time-limit 0.2s --stats-json s.json");
+      folder.run("render slow.json -o a.exr --checkpoint a.film --time-limit 0.2s --stats-json s.json");
   CHECK(stopped.code == 0);
   CHECK_THAT(stopped.err, Contains("the time limit ended the render: a pixel has "));
   CHECK_THAT(folder.read("s.json"), Contains("\"ended_by\": \"time limit\""));
   CHECK(folder.read("a.exr") != folder.read("whole.exr"));
-  REQUIRE(folder.run("render slow.json -s 400 -o a.exr --checkpoint a.film --resume -q").code == 0);
+  REQUIRE(folder.run("render slow.json -o a.exr --checkpoint a.film --resume -q").code == 0);
   CHECK((folder.read("a.exr") == folder.read("whole.exr")));
   // Under the name that nobody chose, too, whatever the interval.
-  const Result unnamed = folder.run("render slow.json -s 400 -o b.exr --time-limit 0.2s");
+  const Result unnamed = folder.run("render slow.json -o b.exr --time-limit 0.2s");
   CHECK(unnamed.code == 0);
   CHECK_THAT(unnamed.err, Contains("what is done is in b.exr.checkpoint; --resume goes on"));
-  REQUIRE(folder.run("render slow.json -s 400 -o b.exr --resume -q").code == 0);
+  REQUIRE(folder.run("render slow.json -o b.exr --resume -q").code == 0);
   CHECK(folder.read("b.exr") == folder.read("whole.exr"));
   CHECK_FALSE(folder.has("b.exr.checkpoint"));
   CHECK(folder.run("render slow.json -s 2 -o a.exr --time-limit 1h -q").code == 0);
