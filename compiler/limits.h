@@ -70,8 +70,8 @@ inline constexpr std::array<LimitRow, 15> kLimits = {{
      "what image formats can say"},
     {"pixels", &Limits::pixels, 1 << 28, "pixels", "a picture", "films and pictures of floats hold no more"},
     {"samples", &Limits::samples, 1 << 20, "samples a pixel", "a render", "samples are numbered in 20 bits"},
-    {"memory", &Limits::memory, kAnySize, "bytes", "a render's film and regions; each picture that is read",
-     "no machine has more"},
+    {"memory", &Limits::memory, kAnySize, "bytes",
+     "a render's film and regions; the sum of a merge; each picture and film that is read", "no machine has more"},
 }};
 
 constexpr const LimitRow* find_limit(std::string_view name) {
@@ -92,7 +92,8 @@ constexpr const LimitRow& limit_row(double Limits::*value) {
 // How to allow `needed`, a line of help: "--limit nodes=2000000 allows more", or why nothing does.
 std::string raise(double Limits::*value, double needed);
 
-// The most that the table can be set to: what the programs have that the compiler makes for itself.
+// The most that the table can be set to. Files are read and programs compiled within this; excess_of() tells what the
+// user's limits forbid of them.
 vm::Limits largest_machine();
 
 // What goes beyond the limits of a program that largest_machine() allows, and how to allow it; nullopt when nothing

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -69,7 +68,19 @@ int create_locked(const std::string& name) {
 bool is_beside(std::string_view name) {
   if (!name.starts_with(kBeside)) return false;
   name.remove_prefix(kBeside.size());
-  return name.find_first_not_of("0123456789-") == std::string_view::npos;
+  const std::size_t dash = name.find('-');
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  return dash != std::string_view::npos && is_number(name.substr(0, dash)) && is_number(name.substr(dash + 1));
+}
+
+// Whether the name still is the open file's: whoever locked it may have renamed it since, and begun another.
+bool is_name_of(const char* name, int file) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(file, &open) == 0 && ::lstat(name, &named) == 0 && open.st_dev == named.st_dev &&
+         open.st_ino == named.st_ino;
 }
 
 void remove_left_behind(const std::string& folder) {
@@ -78,9 +89,14 @@ void remove_left_behind(const std::string& folder) {
     if (!is_beside(at->path().filename().string())) continue;
     const int file = ::open(at->path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (file < 0) continue;
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());
+    const char* name = at->path().c_str();
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 && is_name_of(name, file)) ::unlink(name);
     ::close(file);
   }
+}
+
+FileStamp to_stamp(const struct stat& status) {
+  return {status.st_dev, status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
 }
 
 constexpr const char* kNowhere = "it is a link that leads nowhere";
@@ -193,6 +209,8 @@ std::optional<std::string> AtomicFile::commit() {
   if (problem_) return problem_;
   if (::fsync(file_) != 0 || !name_beside() || ::rename(beside_.c_str(), target_.c_str()) != 0) give_up(reason());
   if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
+  struct stat status {};
+  if (::fstat(file_, &status) == 0) stamp_ = to_stamp(status);
   ::close(std::exchange(file_, -1));  // not before: the name is known to be in use by the lock
   if (!problem_) sync_folder(folder_of(target_));
   return problem_;
@@ -222,7 +240,7 @@ std::optional<std::string> check_file_path(const std::string& path) {
 std::optional<FileStamp> stamp_of(const std::string& path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  return FileStamp{status.st_dev, status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+  return to_stamp(status);
 }
 
 std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path) {

@@ -21,6 +21,15 @@
 
 namespace fathom::runtime {
 
+// Which file lies under a name, and since when: one that was put there later differs.
+struct FileStamp {
+  std::uint64_t device = 0, file = 0;
+  std::int64_t seconds = 0, nanoseconds = 0;  // when it was written last
+
+  bool operator==(const FileStamp&) const = default;
+};
+std::optional<FileStamp> stamp_of(const std::string& path);  // nothing where there is no file
+
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -36,6 +45,8 @@ class AtomicFile {
 
   // The reason when the file could not be written.
   [[nodiscard]] std::optional<std::string> commit();
+  // Of what commit() put there, whatever lies there now.
+  const std::optional<FileStamp>& stamp() const { return stamp_; }
 
  private:
   bool give_up(std::string_view why);  // false
@@ -49,20 +60,12 @@ class AtomicFile {
   int file_ = -1;
   std::uint64_t position_ = 0;
   std::optional<std::string> problem_;
+  std::optional<FileStamp> stamp_;
 };
 
 // Whether a file can be written under this name, as far as can be known by trying: another beside it is created and
 // removed. The reason when not; to be asked before the work that makes it.
 std::optional<std::string> check_file_path(const std::string& path);
-
-// Which file lies under a name, and since when: one that was put there later differs.
-struct FileStamp {
-  std::uint64_t device = 0, file = 0;
-  std::int64_t seconds = 0, nanoseconds = 0;  // when it was written last
-
-  bool operator==(const FileStamp&) const = default;
-};
-std::optional<FileStamp> stamp_of(const std::string& path);  // nothing where there is no file
 
 // The bytes as a file; the reason when it cannot be done, and then the target is as it was.
 [[nodiscard]] std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path);

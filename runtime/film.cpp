@@ -244,6 +244,13 @@ PixelMeans Film::means(int x, int y) const {
   return means;
 }
 
+std::size_t Film::memory_per_pixel(FilmLayers layers, std::size_t stages) {
+  const std::size_t stage =
+      sizeof(Pixel) + (layers.variance ? sizeof(Squares) : 0) + (layers.halves ? sizeof(OddHalf) : 0);
+  return stages * stage + (layers.first_hit ? sizeof(FirstHit) : 0) + (layers.position ? sizeof(Position) : 0) +
+         (layers.ids ? sizeof(Ids) : 0) + (layers.cost ? sizeof(Cost) : 0);
+}
+
 std::uint32_t Film::samples(int x, int y) const {
   std::uint32_t sum = 0;
   for (const Stage& stage : seen_stages()) sum += stage.pixels[area_.index(x, y)].samples;

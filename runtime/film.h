@@ -132,8 +132,9 @@ class Film {
   // The sums of the pixels in a rectangle within area(), for a file; read_sums() is false when the bytes end before.
   void write_sums(PixelRect rect, vm::ByteWriter& out) const;
   bool read_sums(PixelRect rect, vm::ByteReader& in);
-  // How many bytes a pixel takes there.
-  static std::size_t bytes_per_pixel(FilmLayers layers, std::size_t stages);
+  // How many bytes a pixel takes there, and in memory.
+  static std::size_t file_bytes_per_pixel(FilmLayers layers, std::size_t stages);
+  static std::size_t memory_per_pixel(FilmLayers layers, std::size_t stages);
 
   // From now on means().radiance is this, [y][x][rgb] over area(); no sum changes.
   void set_denoised(std::vector<float> radiance);

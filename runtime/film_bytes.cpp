@@ -82,7 +82,7 @@ bool Film::read_sums(PixelRect rect, vm::ByteReader& in) {
   return !in.failed();
 }
 
-std::size_t Film::bytes_per_pixel(FilmLayers layers, std::size_t stages) {
+std::size_t Film::file_bytes_per_pixel(FilmLayers layers, std::size_t stages) {
   constexpr std::size_t kSums = 3 * sizeof(std::int64_t), kCount = sizeof(std::uint32_t);
   const std::size_t stage =
       kSums + 2 * kCount + (layers.variance ? 3 * sizeof(WideSum) : 0) + (layers.halves ? kSums + kCount : 0);

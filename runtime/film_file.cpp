@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -18,9 +17,10 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr std::string_view kMagic = "FATHOMFM";
-constexpr std::uint32_t kFormat = 1;
 constexpr std::size_t kPreamble = 4 + 8;  // after the magic: format, size of the head
+// A head's bytes and what they become in memory take at most so many times its size: attributes with the shortest
+// names and values are nodes of 144 bytes made of 12.
+constexpr double kHeadGrowth = 16;
 
 void write_digest(std::span<const std::uint8_t> bytes, AtomicFile& file) {
   const vm::Digest digest = vm::digest(bytes);
@@ -90,20 +90,23 @@ bool is_allowed(double needed, const ReadLimits& limits, Input& in) {
 }
 
 std::optional<FilmFile> read_head_of(Input& in, const ReadLimits& limits) {
-  const std::span<const std::uint8_t> magic = in.take(std::min<std::uint64_t>(in.left(), kMagic.size()));
-  if (!std::equal(magic.begin(), magic.end(), kMagic.begin(), kMagic.end())) {
+  const std::span<const std::uint8_t> magic = in.take(std::min<std::uint64_t>(in.left(), kFilmMagic.size()));
+  if (!std::equal(magic.begin(), magic.end(), kFilmMagic.begin(), kFilmMagic.end())) {
     in.refuse("it does not begin as one", true);
     return std::nullopt;
   }
   vm::ByteReader preamble(in.take(kPreamble));
   if (in.unread()) return std::nullopt;
-  if (const std::uint32_t format = preamble.u32(); format != kFormat) {
-    in.refuse(fmt::format("it is of format {}, and this program reads {}", format, kFormat));
+  if (const std::uint32_t format = preamble.u32(); format != kFilmFormat) {
+    in.refuse(fmt::format("it is of format {}, and this program reads {}", format, kFilmFormat));
     return std::nullopt;
   }
   const std::uint64_t size = preamble.u64();
-  // Its bytes and what they become.
-  if (!is_allowed(2 * static_cast<double>(size), limits, in)) return std::nullopt;
+  if (size > in.left()) {
+    in.refuse("it ends too early");
+    return std::nullopt;
+  }
+  if (!is_allowed(kHeadGrowth * static_cast<double>(size), limits, in)) return std::nullopt;
   vm::ByteReader bytes(in.take_checked(size));
   if (in.unread()) return std::nullopt;
   FilmFile file;
@@ -119,7 +122,7 @@ bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   film = Film(shape.area, shape.layers);
   if (shape.stages == 2) film.begin_second_stage(shape.first_share);
   if (shape.stages == kNoiseStages) film.begin_halves();
-  const std::uint64_t pixel = Film::bytes_per_pixel(shape.layers, shape.stages);
+  const std::uint64_t pixel = Film::file_bytes_per_pixel(shape.layers, shape.stages);
   const Tiles tiles(shape.area, kFilmTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     const PixelRect tile = tiles.at(i);
@@ -167,8 +170,8 @@ std::vector<std::string> differences(const Identity& first, const Identity& seco
 void write_film(const FilmHeader& header, const PartialRender& render, AtomicFile& file) {
   vm::ByteWriter head, preamble;
   write_head(header, render, head);
-  preamble.raw({reinterpret_cast<const std::uint8_t*>(kMagic.data()), kMagic.size()});
-  preamble.u32(kFormat);
+  preamble.raw({reinterpret_cast<const std::uint8_t*>(kFilmMagic.data()), kFilmMagic.size()});
+  preamble.u32(kFilmFormat);
   preamble.u64(head.size());
   file.write(preamble.bytes());
   file.write(head.bytes());

@@ -10,6 +10,8 @@ namespace fathom::runtime {
 namespace {
 
 constexpr const char* kNoSense = "its head makes no sense";
+// Of an identity: some ten times as many as there are, for comparing takes their square.
+constexpr std::size_t kMostRows = 256;
 
 // The bits of a film's layers.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
@@ -149,7 +151,7 @@ bool makes_sense(const FilmFile& head) {
 
 std::uint64_t sums_size(const FilmShape& shape) {
   const auto tiles = static_cast<std::uint64_t>(Tiles(shape.area, kFilmTile).count());
-  return shape.area.pixels() * Film::bytes_per_pixel(shape.layers, shape.stages) + tiles * kDigestSize;
+  return shape.area.pixels() * Film::file_bytes_per_pixel(shape.layers, shape.stages) + tiles * kDigestSize;
 }
 
 void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteWriter& out) {
@@ -191,6 +193,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
 std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   FilmHeader& header = head.header;
   header.identity.resize(in.count(8));
+  if (header.identity.size() > kMostRows) return kNoSense;
   for (auto& [name, value] : header.identity) {
     name = text_of(in);
     value = text_of(in);

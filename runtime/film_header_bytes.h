@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "runtime/film_file.h"
 #include "vm/bytes.h"
 
 namespace fathom::runtime {
 
+inline constexpr std::string_view kFilmMagic = "FATHOMFM";  // then, before the head: format and the head's size
+inline constexpr std::uint32_t kFilmFormat = 1;
 inline constexpr int kFilmTile = 64;            // pixels; each tile of the sums has a digest
 inline constexpr std::size_t kDigestSize = 16;  // bytes
 

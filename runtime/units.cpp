@@ -7,15 +7,14 @@
 
 namespace fathom::runtime {
 
-// Rounds lie where they would lie for all samples, so that parts of a render have whole ones.
 std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first) {
   std::vector<SampleRange> rounds;
-  std::uint32_t begin = 0, end = first;
+  std::uint32_t begin = samples.first, size = first;
   while (begin < samples.last) {
-    const SampleRange round{std::max(begin, samples.first), std::min(end, samples.last)};
-    if (round.first < round.last) rounds.push_back(round);
+    const std::uint32_t end = begin + std::min(size, samples.last - begin);
+    rounds.push_back({begin, end});
     begin = end;
-    end += std::min(end, kMostInRound);
+    size = std::min(begin - samples.first, kMostInRound);
   }
   return rounds;
 }

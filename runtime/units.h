@@ -16,8 +16,8 @@
 
 namespace fathom::runtime {
 
-// A range of samples cut into rounds: the first `first` samples of a pixel, then as many as there were before, up to
-// a limit that keeps units short.
+// A range of samples cut into rounds: the first `first` of them, then as many as there were before, up to a limit
+// that keeps units short.
 inline constexpr std::uint32_t kFirstRound = 16, kMostInRound = 256;
 std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first = kFirstRound);
 

@@ -51,7 +51,8 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, co
   }
   auto read = runtime::read_film(path_, limits_);
   if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
-    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem, {remedy()});
+    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem,
+                {unread->foreign ? kElsewhere : remedy()});
   }
   auto& file = std::get<runtime::FilmFile>(read);
   std::vector<std::string> problems = differences(file, header, settings);
@@ -135,10 +136,14 @@ bool Checkpoint::write(const runtime::FilmHeader& header, const runtime::Partial
 // Whoever writes to the same name at the same time is seen but for the moment between the last look and the renaming.
 bool Checkpoint::save(const std::function<void(runtime::AtomicFile&)>& fill, const Streams& streams) {
   runtime::AtomicFile file(path_);
-  if (!replaced_by_another()) fill(file);
-  problem_ = replaced_by_another() ? problem_of_another() : file.commit();
+  bool another = replaced_by_another();
+  if (!another) {
+    fill(file);
+    another = replaced_by_another();
+  }
+  problem_ = another ? problem_of_another() : file.commit();
   if (!problem_) {
-    known_ = runtime::stamp_of(path_);
+    known_ = file.stamp();
     ours_ = true;
     ++written_;
   } else if (!warned_) {
@@ -167,7 +172,9 @@ void Checkpoint::remove(const Streams& streams) {
   if (ours_ && replaced_by_another()) {
     warn(streams, problem_of_another());
   } else if (ours_) {
-    std::filesystem::remove(path_, ignored);
+    const auto target = std::filesystem::canonical(path_, ignored);
+    if (!ignored) std::filesystem::remove(target, ignored);
+    std::filesystem::remove(path_, ignored);  // where that was a link
   }
   ours_ = false;
 }

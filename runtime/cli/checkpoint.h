@@ -1,8 +1,9 @@
 // When a render's checkpoint is written, replaced and removed.
 //
 // One that was asked for by name is kept when the render is done, as a finished one. Else it lies beside the first
-// output, is there only from the first interval's end on, and goes when the pictures are written. What cannot be
-// written is reported once and tried again at the next interval; the file that was there stays.
+// output, is there from the first interval's end on, or when a signal or the time limit ends the render, and goes
+// when the render is done. What cannot be written is reported once and tried again at the next interval; the file
+// that was there stays.
 //
 // What would be lost with a file is never replaced: neither this very render's earlier state, nor what another run
 // writes there meanwhile, nor what is no film.

@@ -63,10 +63,11 @@ std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::C
 
 void add_long_render_options(Arguments& arguments, LongRender& request) {
   arguments.group("Long renders (docs/RENDERING.md)");
-  arguments.option("--checkpoint", "FILE",
-                   "Where what is done is kept, now and then and when a signal ends the render (the first output's "
-                   "name with .checkpoint, removed when the pictures are written; FILE stays)",
-                   into(read_file_name, request.checkpoint));
+  arguments.option(
+      "--checkpoint", "FILE",
+      "Where what is done is kept, now and then and when a signal or the time limit ends the render (the "
+      "first output's name with .checkpoint, removed when all is done; FILE stays)",
+      into(read_file_name, request.checkpoint));
   arguments.option("--checkpoint-interval", "TIME", "How often: 30s, 5m, 1h (60s)",
                    into(read_duration, request.interval));
   arguments.flag("--resume", "Go on from the checkpoint: the same bits as without the interruption", request.resume);

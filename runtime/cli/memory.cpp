@@ -3,11 +3,21 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-
+#include "runtime/film.h"
 #include "runtime/options.h"
 
 namespace fathom::cli {
+namespace {
+
+// Of the film, of denoising it and of the picture written.
+double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
+  const auto film =
+      static_cast<double>(runtime::Film::memory_per_pixel(settings.layers, runtime::stages_of(settings)));
+  // SIGUSR1 denoises a copy, beside which the render goes on.
+  return film + kPictureBytes + (denoise ? film + kDenoiserBytes : 0);
+}
+
+}  // namespace
 
 std::string in_words(double bytes) {
   constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
@@ -21,20 +31,6 @@ double allowed_memory(const compiler::Limits& limits) {
 }
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits) { return {allowed_memory(limits)}; }
-
-double film_bytes_per_pixel(const runtime::FilmLayers& layers, std::size_t stages) {
-  constexpr double kRadiance = 32, kFirstHit = 56, kCost = 16, kPosition = 24, kIds = 12, kVariance = 48,
-                   kHalves = 32;
-  const double of_stage = kRadiance + (layers.variance ? kVariance : 0) + (layers.halves ? kHalves : 0);
-  return static_cast<double>(stages) * of_stage + (layers.first_hit ? kFirstHit : 0) + (layers.cost ? kCost : 0) +
-         (layers.position ? kPosition : 0) + (layers.ids ? kIds : 0);
-}
-
-double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
-  const double film = film_bytes_per_pixel(settings.layers, runtime::stages_of(settings));
-  // SIGUSR1 denoises a copy, beside which the render goes on.
-  return film + kPicture + (denoise ? film + kDenoising : 0);
-}
 
 std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,
                                      const Streams& streams) {

@@ -18,17 +18,11 @@ double allowed_memory(const compiler::Limits& limits);
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 
-// Of the picture that is written, three floats and what is encoded of them; of the denoiser's work. Bytes a pixel.
-inline constexpr double kPicture = 24, kDenoising = 128;
+// Bytes a pixel: of the picture that is written, three floats and what is encoded of them; of the denoiser's work.
+inline constexpr double kPictureBytes = 24, kDenoiserBytes = 128;
 
 // Bytes as "12 MiB".
 std::string in_words(double bytes);
-
-// What a film of so many stages takes for each pixel, bytes (runtime/film.h).
-double film_bytes_per_pixel(const runtime::FilmLayers& layers, std::size_t stages);
-
-// What a render takes for each pixel, bytes: of the film, of denoising it and of the picture written.
-double bytes_per_pixel(const runtime::Settings& settings, bool denoise);
 
 // An ExitCode, after a message, when the render would take more than is allowed: kUsage when its size is the command
 // line's, else kBadScene.

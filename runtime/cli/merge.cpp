@@ -48,7 +48,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
   arguments.flag("--denoise", "Take the noise out of the pictures; FILE-noisy beside each is without",
                  request.denoise);
-  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
   add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   request.pictures.deep = request.bits != 0;
@@ -146,8 +146,8 @@ runtime::FilmFile frame_of(const std::vector<Part>& parts) {
 // The sum lies in memory whole, and one part beside it.
 std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vector<Part>& parts,
                                      const runtime::FilmShape& sum, const Streams& streams) {
-  const double film = film_bytes_per_pixel(sum.layers, sum.stages);
-  const double each = film + kPicture + (request.denoise ? kDenoising : 0);
+  const auto film = static_cast<double>(runtime::Film::memory_per_pixel(sum.layers, sum.stages));
+  const double each = film + kPictureBytes + (request.denoise ? kDenoiserBytes : 0);
   double needed = each * static_cast<double>(sum.area.pixels()), part = 0;
   for (const Part& other : parts) part = std::max(part, film * static_cast<double>(other.file.shape.area.pixels()));
   if (parts.size() > 1) needed += part;
@@ -202,15 +202,6 @@ void put_tone(const MergeRequest& request, runtime::Attributes& attributes) {
   }
 }
 
-std::optional<ExitCode> denoise(runtime::FilmFile& sum, const Streams& streams) {
-  const runtime::FilmLayers kept = sum.shape.layers;
-  if (!kept.first_hit || !kept.halves) {
-    return fail(streams, kBadScene, "--denoise: the films lack what it takes", {"render them with --denoise, too"});
-  }
-  runtime::denoise(sum.render.film, 1);
-  return std::nullopt;
-}
-
 }  // namespace
 
 int run_merge(std::span<const std::string> args, const Streams& streams) {
@@ -221,6 +212,10 @@ int run_merge(std::span<const std::string> args, const Streams& streams) {
   const auto& parts = std::get<std::vector<Part>>(read);
   if (const auto code = check_parts(parts, streams)) return *code;
   runtime::FilmFile sum = frame_of(parts);
+  const runtime::FilmLayers kept = sum.shape.layers;
+  if (request.denoise && (!kept.first_hit || !kept.halves)) {
+    return fail(streams, kBadScene, "--denoise: the films lack what it takes", {"render them with --denoise, too"});
+  }
   if (const auto code = check_memory(request, parts, sum.shape, streams)) return *code;
   if (const auto code = add_up(parts, request.limits, sum, streams)) return *code;
   const runtime::SampleBlock all{sum.shape.area, sum.header.samples};
@@ -230,9 +225,7 @@ int run_merge(std::span<const std::string> args, const Streams& streams) {
                       (missing.size() > 1 ? ", among others" : ""));
   }
   put_tone(request, sum.header.attributes);
-  if (request.denoise) {
-    if (const auto code = denoise(sum, streams)) return *code;
-  }
+  if (request.denoise) runtime::denoise(sum.render.film, 1);
   std::vector<std::string> lines;
   const auto problem = write_pictures(request.pictures, sum.header, sum.render, std::nullopt, lines);
   for (const std::string& line : lines) {

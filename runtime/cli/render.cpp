@@ -136,7 +136,7 @@ class Job {
   ExitCode run() {
     if (const auto code = begin()) return *code;
     std::optional<Interruption> interruption;
-    if (!watching_) interruption.emplace();  // --watch ends as any program does
+    if (!watching_) interruption.emplace();  // under --watch a signal that ends programs ends this one
     runtime::RenderResult result = render(interruption);
     line_.wipe();
     if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
@@ -187,7 +187,7 @@ class Job {
       problem = write_pictures(pictures_of(request_), header_, render, std::nullopt, lines);
     };
     look([&](const runtime::PartialRender& render) {
-      if (!has_a_sample(render.film)) {
+      if (render.film.samples() == 0) {
         problem = kNoPictureYet;
       } else if (request_.denoise) {
         copy = render;
@@ -214,7 +214,8 @@ class Job {
     const bool keep = checkpoint_ && (undone || checkpoint_->named());
     if (keep) checkpoint_->write(header_, result, streams_);
     if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
-    const bool pictures = ended != End::Cancelled || has_a_sample(result.film);
+    // A picture without any would take the place of one that may be good.
+    const bool pictures = ended != End::Cancelled || result.film.samples() > 0;
     if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
     if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
     if (!pictures) note(streams_, kNoPictureYet);
@@ -247,17 +248,6 @@ class Job {
   void warn_of_lost(const runtime::Stats& stats) {
     if (stats.saturated == 0) return;
     warn(streams_, lost_text(count_of(stats.saturated, "sample")));
-  }
-
-  // A picture without any would take the place of one that may be good.
-  static bool has_a_sample(const runtime::Film& film) {
-    const runtime::PixelRect area = film.area();
-    for (int y = area.y0; y < area.y1; ++y) {
-      for (int x = area.x0; x < area.x1; ++x) {
-        if (film.samples(x, y) > 0) return true;
-      }
-    }
-    return false;
   }
 
   // "a pixel has 3 samples at least, 5.20 on average, 8 at most"

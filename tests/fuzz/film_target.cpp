@@ -1,12 +1,7 @@
 // Bytes as film files: u32 size of the head, the head, and sums, of which those that are missing are 0. They are put
 // together here with the digests that belong to them, for no run would find those. A film is refused with a reason,
 // or written again as the bytes it was read from.
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "runtime/film_file.h"
 #include "runtime/film_header_bytes.h"
@@ -21,11 +16,6 @@ namespace {
 constexpr runtime::ReadLimits kLimits{64e6};
 constexpr std::size_t kMostSums = 1 << 20;  // bytes; a head that asks for more gets what is there
 
-// A file of this process alone.
-std::string file_name(const char* name) {
-  return (std::filesystem::temp_directory_path() / fmt::format("fathom-fuzz-{}-{}.film", getpid(), name)).string();
-}
-
 void put_checked(vm::ByteWriter& out, Bytes bytes) {
   const vm::Digest digest = vm::digest(bytes);
   out.raw(bytes);
@@ -35,7 +25,7 @@ void put_checked(vm::ByteWriter& out, Bytes bytes) {
 
 void put_sums(vm::ByteWriter& out, const runtime::FilmShape& shape, vm::ByteReader& sums) {
   const runtime::Tiles tiles(shape.area, runtime::kFilmTile);
-  const std::size_t pixel = runtime::Film::bytes_per_pixel(shape.layers, shape.stages);
+  const std::size_t pixel = runtime::Film::file_bytes_per_pixel(shape.layers, shape.stages);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     const std::size_t size = tiles.at(i).pixels() * pixel;
     const Bytes there = sums.raw(std::min(size, sums.left()));
@@ -47,8 +37,8 @@ void put_sums(vm::ByteWriter& out, const runtime::FilmShape& shape, vm::ByteRead
 
 Input sealed_film(Bytes head, vm::ByteReader sums) {
   vm::ByteWriter out;
-  out.raw(to_input("FATHOMFM"));
-  out.u32(1);
+  out.raw(to_input(runtime::kFilmMagic));
+  out.u32(runtime::kFilmFormat);
   out.u64(head.size());
   put_checked(out, head);
   vm::ByteReader reader(head);
@@ -62,24 +52,21 @@ Input sealed_film(Bytes head, vm::ByteReader sums) {
 }
 
 void run_file(const Input& bytes) {
-  const std::string path = file_name("read"), again = file_name("written");
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  const auto read = runtime::read_film(path, kLimits);
-  const auto* file = std::get_if<runtime::FilmFile>(&read);
-  if (file == nullptr) {
-    promise(!std::get<runtime::UnreadFilm>(read).problem.empty(), "a refusal has a reason");
-  } else {
-    for (const runtime::Coverage& covered : file->render.covered) {
-      runtime::Coverage form = covered;
-      if (covered.blocks().size() < 100) form.tidy();
-      promise(form == covered, "what is covered is in its one form");
-    }
-    promise(!runtime::write_film(file->header, file->render, again), "what is read can be written");
-    promise(read_file(again) == bytes, "what is written is what was read");
+  const ScratchFile given("given.film"), written("written.film");
+  write_file(given.path, bytes);
+  const auto read = runtime::read_film(given.path, kLimits);
+  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
+    return promise(!unread->problem.empty(), "a refusal has a reason");
   }
-  std::filesystem::remove(path);
-  std::filesystem::remove(again);
+  const auto& film = std::get<runtime::FilmFile>(read);
+  for (const runtime::Coverage& covered : film.render.covered) {
+    if (covered.blocks().size() >= 100) continue;  // tidy() takes the square of their number
+    runtime::Coverage form = covered;
+    form.tidy();
+    promise(form == covered, "what is covered is in its one form");
+  }
+  promise(!runtime::write_film(film.header, film.render, written.path), "what is read can be written");
+  promise(read_file(written.path) == bytes, "what is written is what was read");
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 // Pictures from elsewhere: the first byte says which ending the file's name has, the others are the file. A picture
 // that is read has as many numbers as its size says; as a background of light they are finite and not negative.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "runtime/environment_file.h"
 #include "runtime/film_channels.h"
@@ -19,14 +16,7 @@ namespace {
 constexpr runtime::ReadLimits kLimits{256e6};
 constexpr std::size_t kEndings = runtime::kImageFormats.size();
 
-// A file of this process alone.
-std::string file_with(Bytes content, std::string_view ending) {
-  const auto folder = std::filesystem::temp_directory_path();
-  const std::string path = (folder / fmt::format("fathom-fuzz-{}.{}", getpid(), ending)).string();
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(content.data()), static_cast<std::streamsize>(content.size()));
-  return path;
-}
+std::string name_with(std::string_view ending) { return fmt::format("picture.{}", ending); }
 
 void check_environment(const std::string& path) {
   const auto read = runtime::read_environment(path, kLimits);
@@ -44,8 +34,9 @@ void check_environment(const std::string& path) {
 void run_picture(Bytes input) {
   if (input.empty()) return;
   const std::string_view ending = runtime::kImageFormats[input[0] % kEndings].ending;
-  const std::string path = file_with(input.subspan(1), ending);
-  const auto read = runtime::read_image(path, kLimits);
+  const ScratchFile file(name_with(ending));
+  write_file(file.path, input.subspan(1));
+  const auto read = runtime::read_image(file.path, kLimits);
   if (const auto* image = std::get_if<runtime::FloatImage>(&read)) {
     promise(image->values.size() == image->channels.size(), "every channel has values");
     for (const auto& channel : image->values) {
@@ -54,8 +45,7 @@ void run_picture(Bytes input) {
   } else {
     promise(!std::get<runtime::UnreadImage>(read).problem.empty(), "there is a reason");
   }
-  if (ending == "hdr" || ending == "exr") check_environment(path);
-  std::filesystem::remove(path);
+  if (ending == "hdr" || ending == "exr") check_environment(file.path);
 }
 
 std::vector<Input> seeds_of_picture() {
@@ -71,13 +61,12 @@ std::vector<Input> seeds_of_picture() {
     for (const int bits : {8, 16}) {
       const runtime::ImageFormatInfo& format = runtime::kImageFormats[i];
       if (bits == 16 && !format.deep) continue;
-      const std::string path = file_with({}, format.ending);
+      const ScratchFile file(name_with(format.ending));
       const bool exr = format.format == runtime::ImageFormat::Exr;
-      const auto problem = exr ? runtime::write_exr(runtime::rows_of(film, 5, 3, glm::dvec3(0), {}), path)
-                               : runtime::write_layer(layer, {{}, bits}, path);
-      if (problem) continue;
-      Input seed = read_file(path);
-      std::filesystem::remove(path);
+      const auto problem = exr ? runtime::write_exr(runtime::rows_of(film, 5, 3, glm::dvec3(0), {}), file.path)
+                               : runtime::write_layer(layer, {{}, bits}, file.path);
+      promise(!problem, "a seed is written");
+      Input seed = read_file(file.path);
       seed.insert(seed.begin(), static_cast<std::uint8_t>(i));
       seeds.push_back(std::move(seed));
     }

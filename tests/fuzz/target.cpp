@@ -1,9 +1,13 @@
 #include "tests/fuzz/target.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 namespace fathom::fuzz {
 
@@ -51,6 +55,19 @@ Input read_file(const fs::path& path) {
   std::stringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
   return to_input(content.str());
+}
+
+void write_file(const fs::path& path, Bytes content) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(content.data()), static_cast<std::streamsize>(content.size()));
+}
+
+ScratchFile::ScratchFile(std::string_view name)
+    : path((fs::temp_directory_path() / fmt::format("fathom-fuzz-{}-{}", getpid(), name)).string()) {}
+
+ScratchFile::~ScratchFile() {
+  std::error_code ignored;
+  fs::remove(path, ignored);
 }
 
 std::vector<fs::path> files_below(const std::string& folder, std::string_view ending) {

@@ -42,6 +42,19 @@ std::span<const Target> targets();
 const Target* find_target(std::string_view name);  // nullptr when there is none
 
 Input read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, Bytes content);
+
+// A file of this process alone, for one user of the name at a time; removed with the object, if somebody writes it.
+class ScratchFile {
+ public:
+  explicit ScratchFile(std::string_view name);
+  ~ScratchFile();
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+
+  const std::string path;
+};
+
 // The files below a folder of the repository with that ending, or any, sorted; none where there is no such folder.
 std::vector<std::filesystem::path> files_below(const std::string& folder, std::string_view ending);
 // Their content, of those of at most `longest` bytes.

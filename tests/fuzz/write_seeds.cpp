@@ -1,7 +1,6 @@
 // fuzz_seeds FOLDER: the inputs that fuzz runs begin with, in a folder for each target. `scripts/fuzz` calls it.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "tests/fuzz/target.h"
@@ -17,8 +16,7 @@ int main(int argc, char** argv) {
     fs::create_directories(folder);
     int number = 0;
     for (const fathom::fuzz::Input& seed : target.seeds()) {
-      std::ofstream(folder / std::to_string(number++), std::ios::binary)
-          .write(reinterpret_cast<const char*>(seed.data()), static_cast<std::streamsize>(seed.size()));
+      fathom::fuzz::write_file(folder / std::to_string(number++), seed);
     }
     std::printf("%s: %d seeds\n", std::string(target.name).c_str(), number);
   }

@@ -47,6 +47,7 @@ TEST_CASE("atomic files: of a link the target is written") {
   CHECK(fs::is_symlink(folder.path() / "link"));
   CHECK(fs::file_size(folder.path() / "far/target") == 3);
   fs::create_symlink("nowhere", folder.path() / "loose");
+  REQUIRE(check_file_path(folder.file("loose")));
   CHECK(check_file_path(folder.file("loose"))->find("leads nowhere") != std::string::npos);
   CHECK(write_file(kBytes, folder.file("loose"))->find("leads nowhere") != std::string::npos);
 }
@@ -67,14 +68,15 @@ TEST_CASE("atomic files: a name as long as names can be is written, a longer one
 
 TEST_CASE("atomic files: what a killed program left is removed, what another is writing is not") {
   const tests::TemporaryFolder folder;
-  for (const char* name : {".fathom-1-0", ".fathom-99999999-7", ".fathom-mine"})
-    std::ofstream(folder.file(name)) << "x";
+  const char* const kMine[] = {".fathom-mine", ".fathom-", ".fathom-2024", ".fathom-2024-01-05"};
+  for (const char* name : kMine) std::ofstream(folder.file(name)) << "x";
+  for (const char* name : {".fathom-1-0", ".fathom-99999999-7"}) std::ofstream(folder.file(name)) << "x";
   const int busy = ::open(folder.file(".fathom-1-0").c_str(), O_RDWR | O_CLOEXEC);
   REQUIRE(::flock(busy, LOCK_EX) == 0);
   CHECK_FALSE(check_file_path(folder.file("a")));
   CHECK(fs::exists(folder.path() / ".fathom-1-0"));
   CHECK_FALSE(fs::exists(folder.path() / ".fathom-99999999-7"));
-  CHECK(fs::exists(folder.path() / ".fathom-mine"));
+  for (const char* name : kMine) CHECK(fs::exists(folder.path() / name));
   ::close(busy);
   CHECK_FALSE(check_file_path(folder.file("a")));
   CHECK_FALSE(fs::exists(folder.path() / ".fathom-1-0"));
@@ -89,6 +91,11 @@ TEST_CASE("atomic files: a stamp tells whether it is still the same file") {
   CHECK(stamp_of(folder.file("a")) == first);
   CHECK_FALSE(write_file(kBytes, folder.file("a")));
   CHECK(stamp_of(folder.file("a")) != first);
+  AtomicFile file(folder.file("a"));
+  file.write(kBytes);
+  CHECK_FALSE(file.commit());
+  CHECK(file.stamp());
+  CHECK(file.stamp() == stamp_of(folder.file("a")));
 }
 
 }  // namespace

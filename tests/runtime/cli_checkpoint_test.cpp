@@ -25,11 +25,20 @@ const std::string kSlow = R"({
               {"type": "sphere", "radius": 0.4, "translate": [1, 2, 1], "material": "lamp"}]
 })";
 
+// Waits until there is the file, or $pid has ended.
+std::string until(const std::string& file) {
+  return "while ! [ -e " + file + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\n";
+}
+
 // Runs, sends `signal` once there is a checkpoint, and prints the status.
 std::string interrupted(const std::string& arguments, const std::string& signal, const std::string& checkpoint) {
-  return "\"$fathom\" render " + arguments + " -q --checkpoint-interval 0.01s &\npid=$!\n" + "while ! [ -e " +
-         checkpoint + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\nkill -" + signal +
-         " $pid\nwait $pid; echo $?\n";
+  return "\"$fathom\" render " + arguments + " -q --checkpoint-interval 0.01s &\npid=$!\n" + until(checkpoint) +
+         "kill -" + signal + " $pid\nwait $pid; echo $?\n";
+}
+
+// Waits until something is said in the file, a minute at most.
+std::string until_said(const std::string& file) {
+  return "n=0; while ! [ -s " + file + " ] && [ $n -lt 3000 ]; do sleep 0.02; n=$((n+1)); done\n";
 }
 
 class SlowFolder : public Folder {
@@ -192,7 +201,11 @@ TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is 
   for (const char* mine : {"mine", "mine, and as long as the head of a film", ""}) {
     folder.write("notes.txt", mine);
     folder.write("a.exr.checkpoint", mine);
-    CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint notes.txt").code == 65);
+    for (const char* way : {"", " --resume"}) {
+      const Result refused = folder.run("render slow.json -s 4 -o a.exr --checkpoint notes.txt" + std::string(way));
+      CHECK(refused.code == 65);
+      CHECK_THAT(refused.err, !Contains("remove") && Contains("--checkpoint FILE chooses another name"));
+    }
     CHECK(folder.run("render slow.json -s 4 -o a.exr").code == 65);
     CHECK(folder.read("notes.txt") == mine);
     CHECK(folder.read("a.exr.checkpoint") == mine);
@@ -200,15 +213,14 @@ TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is 
   CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint slow.json").code == 2);
 }
 
-// Once, the first to end removed what the other had written.
 TEST_CASE("cli checkpoint: what another run has written meanwhile is its own") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o b.exr --checkpoint other.film -q").code == 0);
   const std::string other = folder.read("other.film");
   for (const bool stopped : {false, true}) {
     const Result result = folder.run_script(
-        "rm -f a.exr.checkpoint\n\"$fathom\" render slow.json -o a.exr -q --checkpoint-interval 0.01s &\npid=$!\n"
-        "while ! [ -e a.exr.checkpoint ]; do sleep 0.02; done\ncp other.film copy; mv copy a.exr.checkpoint\n" +
+        "rm -f a.exr.checkpoint\n\"$fathom\" render slow.json -o a.exr -q --checkpoint-interval 0.01s &\npid=$!\n" +
+        until("a.exr.checkpoint") + "cp other.film copy; mv copy a.exr.checkpoint\n" +
         std::string(stopped ? "kill -INT $pid\n" : "") + "wait $pid; echo $?");
     INFO(result.err);
     CHECK(result.out == (stopped ? "74\n" : "0\n"));
@@ -229,19 +241,19 @@ TEST_CASE("cli checkpoint: the picture so far is written before every pixel has 
   const Result limited = folder.run("render slow.json -o b.png --time-limit 1e-9 --threads 3 -t 5");
   CHECK(limited.code == 0);
   CHECK_THAT(limited.err, Contains("a pixel has 1 sample at least, 1.00 on average"));
+  const Result part = folder.run("render slow.json -o c.film -s 1024 --sample-range 512:1024 --time-limit 1e-9");
+  CHECK_THAT(part.err, Contains("a pixel has 1 sample at least, 1.00 on average"));
 }
 
 TEST_CASE("cli checkpoint: nobody who listens need stay") {
   const SlowFolder folder;
   // Messages go into a pipe that nobody reads any more.
   const std::string render = "\"$fathom\" render slow.json -o a.exr --checkpoint-interval 0.01s -v &\npid=$!\n";
-  folder.run_script("( sleep 0.1\n" + render +
-                    "wait $pid; echo $? >done ) 2>&1 | true; while ! [ -s done ]; do sleep 0.02; done");
+  folder.run_script("( sleep 0.1\n" + render + "wait $pid; echo $? >done ) 2>&1 | true\n" + until_said("done"));
   CHECK(folder.read("done") == "0\n");
   CHECK(folder.has("a.exr"));
-  folder.run_script("( sleep 0.1\n" + render +
-                    "while ! [ -e a.exr.checkpoint ]; do sleep 0.02; done\nkill -INT $pid\n" +
-                    "wait $pid; echo $? >stopped ) 2>&1 | true; while ! [ -s stopped ]; do sleep 0.02; done");
+  folder.run_script("( sleep 0.1\n" + render + until("a.exr.checkpoint") +
+                    "kill -INT $pid\nwait $pid; echo $? >stopped ) 2>&1 | true\n" + until_said("stopped"));
   CHECK(folder.read("stopped") == "75\n");
   // Under nohup the terminal's end is none of its business.
   const Result nohup =
@@ -252,12 +264,12 @@ TEST_CASE("cli checkpoint: nobody who listens need stay") {
 TEST_CASE("cli checkpoint: SIGUSR1 is no end before the first ray either") {
   const SlowFolder folder;
   const Result result = folder.run_script(
-      "( sleep 0.5; cat slow.json ) | \"$fathom\" render - -q -s 1 -o a.png &\n"
-      "sleep 0.2; kill -USR1 $!; wait $!; echo $?");
+      "( sleep 1.5; cat slow.json ) | \"$fathom\" render - -q -s 1 -o a.png &\n"
+      "sleep 0.8; kill -USR1 $!; wait $!; echo $?");
   CHECK(result.out == "0\n");
-  const Result watching = folder.run_script(
-      "\"$fathom\" render slow.json -q -s 1 -o b.png --watch &\npid=$!\nwhile ! [ -e b.png ]; do sleep 0.02; done\n"
-      "kill -USR1 $pid; sleep 0.1; kill -TERM $pid; wait $pid; echo $?");
+  const Result watching =
+      folder.run_script("\"$fathom\" render slow.json -q -s 1 -o b.png --watch &\npid=$!\n" + until("b.png") +
+                        "kill -USR1 $pid; sleep 0.1; kill -TERM $pid; wait $pid; echo $?");
   CHECK(watching.out == "143\n");
 }
 
@@ -288,19 +300,19 @@ TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
   const Result stopped =
-      folder.run("render slow.json -o a.exr --checkpoint a.film --time-limit 0.2s --stats-json s.json");
+      folder.run("render slow.json -o a.exr --checkpoint a.film --threads 1 --time-limit 0.2s --stats-json s.json");
   CHECK(stopped.code == 0);
   CHECK_THAT(stopped.err, Contains("the time limit ended the render: a pixel has "));
   CHECK_THAT(folder.read("s.json"), Contains("\"ended_by\": \"time limit\""));
-  CHECK(folder.read("a.exr") != folder.read("whole.exr"));
+  CHECK((folder.read("a.exr") != folder.read("whole.exr")));
   REQUIRE(folder.run("render slow.json -o a.exr --checkpoint a.film --resume -q").code == 0);
   CHECK((folder.read("a.exr") == folder.read("whole.exr")));
   // Under the name that nobody chose, too, whatever the interval.
-  const Result unnamed = folder.run("render slow.json -o b.exr --time-limit 0.2s");
+  const Result unnamed = folder.run("render slow.json -o b.exr --threads 1 --time-limit 0.2s");
   CHECK(unnamed.code == 0);
   CHECK_THAT(unnamed.err, Contains("what is done is in b.exr.checkpoint; --resume goes on"));
   REQUIRE(folder.run("render slow.json -o b.exr --resume -q").code == 0);
-  CHECK(folder.read("b.exr") == folder.read("whole.exr"));
+  CHECK((folder.read("b.exr") == folder.read("whole.exr")));
   CHECK_FALSE(folder.has("b.exr.checkpoint"));
   CHECK(folder.run("render slow.json -s 2 -o a.exr --time-limit 1h -q").code == 0);
   for (const char* wrong : {"0", "-3s", "10x", "h", "nan"}) {

@@ -98,7 +98,7 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   CHECK_FALSE(folder.has("out.png"));
 }
 
-// Films that took next to nothing to make; what lies between them would have been 2^28 pixels.
+// Films that take next to nothing to make may lie far apart.
 TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
   const Folder folder;
   const std::string render = "render ball.json -s 1 -q --size 400x300 ";
@@ -109,12 +109,11 @@ TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
   CHECK_THAT(refused.err, Contains("400x300 pixels") && Contains("--limit memory="));
   CHECK_FALSE(folder.has("m.png"));
   CHECK(folder.run("merge a.film b.film -o m.png --limit memory=1e8").code == 0);
-  CHECK(folder.run("merge a.film -o m.png --limit memory=9000").code == 0);
+  CHECK(folder.run("merge a.film -o m.png --limit memory=3e4").code == 0);
   REQUIRE(folder.run(render + "-o whole.film").code == 0);
   CHECK(folder.run("merge whole.film -o m.png --limit memory=1e6").code == 65);
 }
 
-// Once, merging cut sums off in silence.
 TEST_CASE("cli merge: what is full only together is said to be lost") {
   const Folder folder;
   folder.write("bright.json", R"({"version": 1, "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},

@@ -18,8 +18,9 @@ TEST_CASE("units: rounds follow one another, short at first, and never long") {
   }
   CHECK(rounds_of({0, 16}).size() == 1);
   CHECK(rounds_of({0, 64}) == std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}});
-  // Those of a part are parts of those of the whole.
-  CHECK(rounds_of({20, 40}) == std::vector<SampleRange>{{20, 32}, {32, 40}});
+  // A part of a render begins with as few, wherever it begins.
+  CHECK(rounds_of({20, 60}) == std::vector<SampleRange>{{20, 36}, {36, 52}, {52, 60}});
+  CHECK(rounds_of({512, 1024}, 1).front() == SampleRange{512, 513});
 }
 
 TEST_CASE("units: a queue gives what is left, each sample once") {
