@@ -98,6 +98,11 @@ std::vector<std::uint8_t> encode_hdr(const LayerValues& layer) {
   return bytes;
 }
 
+std::optional<std::string> check_ending(const std::string& path) {
+  if (image_format_of(path)) return std::nullopt;
+  return fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings());
+}
+
 std::optional<std::string> write_encoded(const std::vector<std::uint8_t>& bytes, const std::string& path) {
   if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", path);
   return write_file(bytes, path);
@@ -125,15 +130,13 @@ std::string image_endings(bool shown_only) {
 bool is_float_map(const std::string& path) { return ending_of(path) == "pfm"; }
 
 std::optional<std::string> check_image_path(const std::string& path) {
-  if (!image_format_of(path)) {
-    return fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings());
-  }
+  if (std::optional<std::string> problem = check_ending(path)) return problem;
   return check_file_path(path);
 }
 
 std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
                                        const std::string& path) {
-  if (std::optional<std::string> problem = check_image_path(path)) return problem;
+  if (std::optional<std::string> problem = check_ending(path)) return problem;
   const ImageFormat format = image_format_of(path)->format;
   switch (format) {
     case ImageFormat::Png: {
@@ -183,7 +186,7 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
 }
 
 std::optional<std::string> write_image(const Picture& picture, const std::string& path) {
-  if (std::optional<std::string> problem = check_image_path(path)) return problem;
+  if (std::optional<std::string> problem = check_ending(path)) return problem;
   return write_encoded(encode_image(picture, image_format_of(path)->format), path);
 }
 

@@ -85,6 +85,7 @@ class Reader {
 
   std::variant<PngPicture, std::string> read(std::span<const std::uint8_t> bytes) {
     if (about_ == nullptr) return "libpng cannot begin";
+    // Not const for libpng, which only reads them.
     if (!process(const_cast<std::uint8_t*>(bytes.data()), bytes.size())) return std::move(problem_);
     if (!ended_) return "it ends too early";
     return std::move(picture_);
@@ -98,7 +99,6 @@ class Reader {
     png_longjmp(png, 1);
   }
 
-  // libpng only reads them.
   bool process(std::uint8_t* bytes, std::size_t size) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_process_data(png_, about_, bytes, size);
@@ -120,9 +120,15 @@ class Reader {
 
   // Nothing is thrown here: above are frames of C.
   bool reserve() noexcept try {
-    const double samples = static_cast<double>(picture_.width) * picture_.height * picture_.components;
-    // Beside the file: its samples and the floats that will be made of them.
-    const double needed = file_size_ + samples * (sizeof(std::uint16_t) + sizeof(float));
+    const double pixels = static_cast<double>(picture_.width) * picture_.height,
+                 samples = pixels * picture_.components;
+    if (pixels > static_cast<double>(kMostPixels)) {
+      problem_ = "it is too large";
+      return false;
+    }
+    // Beside the file: its samples, and the floats of R, G, B and perhaps A that will be made of them.
+    const double floats = pixels * (picture_.components % 2 == 0 ? 4 : 3);
+    const double needed = file_size_ + samples * sizeof(std::uint16_t) + floats * sizeof(float);
     if (needed > memory_) {
       problem_ = too_much_memory(needed, memory_);
       return false;
@@ -140,7 +146,13 @@ class Reader {
     png_progressive_combine_row(png, reinterpret_cast<png_bytep>(&picture.samples[y * row]), bytes);
   }
 
-  static void end(png_structp png, png_infop) { self(png).ended_ = true; }
+  // The last chunk has been read. The data of the picture may have ended, or made no sense, before its last row: of
+  // that libpng only warns.
+  static void end(png_structp png, png_infop about) {
+    self(png).ended_ = png_get_interlace_type(png, about) == PNG_INTERLACE_NONE
+                           ? png_get_current_row_number(png) >= png_get_image_height(png, about)
+                           : png_get_current_pass_number(png) >= PNG_INTERLACE_ADAM7_PASSES;
+  }
 
   const double file_size_, memory_;
   png_structp png_;
@@ -154,11 +166,6 @@ class Reader {
 
 std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory) {
   return Reader(static_cast<double>(bytes.size()), memory).read(bytes);
-}
-
-bool is_png(std::span<const std::uint8_t> bytes) {
-  constexpr std::size_t kSignature = 8;
-  return bytes.size() >= kSignature && png_sig_cmp(bytes.data(), 0, kSignature) == 0;
 }
 
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row) {

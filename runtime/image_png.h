@@ -1,5 +1,5 @@
 // PNG by libpng, row by row. Source: W3C, "Portable Network Graphics (PNG) Specification", second edition, 2003.
-// Tested by: tests/runtime/image_io_test.cpp
+// Tested by: tests/runtime/image_io_test.cpp, image_read_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,5 @@ struct PngPicture {
 // What the file shows, or why it cannot be read; a picture that needs more than `memory` bytes is refused before they
 // are taken. A profile of colours is not looked at.
 std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
-
-// Whether the file begins as every PNG does.
-bool is_png(std::span<const std::uint8_t> bytes);
 
 }  // namespace fathom::runtime

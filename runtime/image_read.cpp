@@ -111,6 +111,33 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
   return std::nullopt;
 }
 
+// Whether a file's first bytes are those of a format.
+bool begins_as(ImageFormat format, const Bytes& bytes) {
+  constexpr struct {
+    ImageFormat format;
+    std::string_view bytes;
+  } kSignatures[] = {
+      {ImageFormat::Png, "\x89PNG\r\n\x1a\n"},
+      {ImageFormat::Jpeg, "\xff\xd8\xff"},
+      {ImageFormat::Bmp, "BM"},
+      {ImageFormat::Exr, "\x76\x2f\x31\x01"},
+      {ImageFormat::Pfm, "PF"},
+      {ImageFormat::Pfm, "Pf"},
+      {ImageFormat::Hdr, "#?"},
+  };
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return std::any_of(std::begin(kSignatures), std::end(kSignatures),
+                     [&](const auto& row) { return row.format == format && text.starts_with(row.bytes); });
+}
+
+// The same, or for a format that is shown of any of these.
+bool has_signature(ImageFormat format, const Bytes& bytes) {
+  constexpr std::array kShown = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
+  const auto begins = [&](ImageFormat other) { return begins_as(other, bytes); };
+  const bool shown = std::find(kShown.begin(), kShown.end(), format) != kShown.end();
+  return shown ? std::any_of(kShown.begin(), kShown.end(), begins) : begins(format);
+}
+
 // Whole samples [y][x][component] as sRGB signals.
 template <typename Sample>
 FloatImage from_signals(const Sample* samples, int width, int height, int components) {
@@ -133,7 +160,7 @@ Decoded decode_deep(const Bytes& bytes, double memory) {
 
 Decoded decode_shown(const Bytes& bytes, double memory) {
   // Whatever its name says: stb sets aside what a chunk says that it has before it reads any of it.
-  if (is_png(bytes)) return decode_deep(bytes, memory);
+  if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
   if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
@@ -200,7 +227,9 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   const std::size_t count =
       static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
   if (text.size() - at < count * 4) return "it ends too early";
-  const double needed = 8.0 * static_cast<double>(count) + static_cast<double>(bytes.size());
+  // Beside the file its numbers, and R, G and B of every pixel.
+  const double pixels = static_cast<double>(*width) * *height;
+  const double needed = static_cast<double>(bytes.size()) + sizeof(float) * (static_cast<double>(count) + 3 * pixels);
   if (needed > memory) return too_much_memory(needed, memory);
   std::vector<float> values(count);
   const std::size_t row = values.size() / static_cast<std::size_t>(*height);
@@ -216,27 +245,8 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   return spread(values.data(), *width, *height, components, same, same);
 }
 
-// Whether a file's first bytes are those of its format, or for a format that is shown of any of these.
-bool has_signature(ImageFormat format, const Bytes& bytes) {
-  constexpr struct {
-    ImageFormat format;
-    std::string_view bytes;
-  } kSignatures[] = {
-      {ImageFormat::Png, "\x89PNG\r\n\x1a\n"}, {ImageFormat::Jpeg, "\xff\xd8\xff"}, {ImageFormat::Bmp, "BM"},
-      {ImageFormat::Exr, "\x76\x2f\x31\x01"},   {ImageFormat::Pfm, "PF"},           {ImageFormat::Pfm, "Pf"},
-      {ImageFormat::Hdr, "#?"},
-  };
-  const auto shown = [](ImageFormat f) {
-    return f == ImageFormat::Png || f == ImageFormat::Jpeg || f == ImageFormat::Bmp;
-  };
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return std::any_of(std::begin(kSignatures), std::end(kSignatures), [&](const auto& row) {
-    return (row.format == format || (shown(row.format) && shown(format))) && text.starts_with(row.bytes);
-  });
-}
-
-// False, and errno tells why. What does not begin as its format does is read no further than its first piece, and what
-// is longer than `most` bytes is cut off there: a device may have no end.
+// False, and errno tells why. What does not begin as its format does is read no further than its first piece, and
+// what is longer than `most` bytes is cut off there: a device may have no end.
 bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes& bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return false;

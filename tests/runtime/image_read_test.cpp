@@ -79,13 +79,17 @@ TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
   }
 }
 
-// A file whose bytes are written as two hexadecimal digits each.
-FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
+// Two hexadecimal digits each.
+std::string bytes_of(std::string_view digits) {
   std::string bytes;
   for (std::size_t i = 0; i < digits.size(); i += 2) {
     bytes += static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
   }
-  std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes;
+  return bytes;
+}
+
+FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
+  std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes_of(digits);
   const auto read = read_image(folder.file(std::string(name)));
   if (const auto* unread = std::get_if<UnreadImage>(&read)) FAIL(unread->problem);
   return std::get<FloatImage>(read);
@@ -122,6 +126,55 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
             .values == Values{{1}, {1}, {1}});
 }
 
+// libpng takes the first three for whole pictures: what it has no data for stays black.
+TEST_CASE("image_read: a png whose data ends before its picture is refused", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  const auto problem_of = [&](std::string_view digits) {
+    std::ofstream(folder.file("a.png"), std::ios::binary) << bytes_of(digits);
+    const auto read = read_image(folder.file("a.png"));
+    REQUIRE(std::holds_alternative<UnreadImage>(read));
+    return std::get<UnreadImage>(read).problem;
+  };
+  const std::string_view
+      half =
+          "89504e470d0a1a0a0000000d49484452000000030000000408000000006e46dadb0000000e4944415478da63606462660062"
+          "000034000d6e4bc9860000000049454e44ae426082",
+      none =
+          "89504e470d0a1a0a0000000d49484452000000030000000408000000006e46dadb000000084944415478da0300000000016f"
+          "ddc9910000000049454e44ae426082",
+      nonsense_after_half =
+          "89504e470d0a1a0a0000000d49484452000000030000000408000000006e46dadb000000134944415478da62606462660062"
+          "00000000ffffffffffffbed4fe120000000049454e44ae426082",
+      one_row_of_interlaced =
+          "89504e470d0a1a0a0000000d49484452000000030000000408000000011941ea4d0000000a4944415478da63600400000300"
+          "02e67da7670000000049454e44ae426082",
+      of_30000_by_30000 =
+          "89504e470d0a1a0a0000000d4948445200007530000075300800000000434ca7660000000949444154789c63000000010001"
+          "5eff7df90000000049454e44ae426082";
+  for (const std::string_view digits : {half, none, nonsense_after_half, one_row_of_interlaced}) {
+    INFO(digits);
+    CHECK(problem_of(digits).find("too early") != std::string::npos);
+  }
+  CHECK(problem_of(of_30000_by_30000).find("too large") != std::string::npos);
+}
+
+// R, G and B are made of grey.
+TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[runtime]") {
+  const tests::TemporaryFolder folder;
+  const std::string png = bytes_of(
+      "89504e470d0a1a0a0000000d4948445200000003000000010100000000339b29190000000a4944415478da6358000000a200a1"
+      "7105cb410000000049454e44ae426082");
+  std::ofstream(folder.file("a.png"), std::ios::binary) << png;
+  const std::string pfm = "Pf\n3 1\n-1.0\n" + std::string(12, '\0');
+  std::ofstream(folder.file("a.pfm"), std::ios::binary) << pfm;
+  for (const auto& [name, needed] :
+       {std::pair{"a.png", png.size() + 3 * (2 + 12)}, {"a.pfm", pfm.size() + 3 * (4 + 12)}}) {
+    INFO(name);
+    CHECK(std::holds_alternative<FloatImage>(read_image(folder.file(name), {static_cast<double>(needed)})));
+    CHECK(std::holds_alternative<UnreadImage>(read_image(folder.file(name), {static_cast<double>(needed) - 1})));
+  }
+}
+
 TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
   const tests::TemporaryFolder folder;
   std::ofstream(folder.file("a.pfm"), std::ios::binary)
@@ -147,7 +200,7 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
     problem(name, "");
     problem(name, "not a picture at all");
   }
-  // Once, run lengths of an hdr picture were read for ever after its end, and rows of others were invented.
+  // stb would read run lengths of an hdr picture for ever after its end, and invent rows of others.
   for (const char* name : {"e.hdr", "e.bmp", "e.png", "e.jpg", "e.pfm"}) {
     REQUIRE(write_layer(layer_of(ramp(), Layer::Beauty), {}, folder.file(name)) == std::nullopt);
     std::ifstream file(folder.file(name), std::ios::binary);
