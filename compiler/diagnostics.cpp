@@ -16,8 +16,9 @@ constexpr std::size_t kWidest = 140;      // columns of a quoted line; longer on
 constexpr std::size_t kLead = 50;         // columns kept before the carets of a cut line
 constexpr std::size_t kTabWidth = 4;
 
-constexpr std::size_t kMostBytes = 2000;  // of a message: names and numbers can be as long as the file
-constexpr std::size_t kWindow = 4096;     // bytes on either side of the carets that may be shown
+// Of a message, a label or a line of help: names and numbers can be as long as the file.
+constexpr std::size_t kMostBytes = 2000;
+constexpr std::size_t kWindow = 4096;  // bytes on either side of the carets that may be shown
 
 // Text that is not too long, cut between characters, and may be sent to a terminal.
 std::string shown(std::string_view from) {
@@ -163,8 +164,8 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
 
 void Diagnostics::add(Diagnostic d) {
   d.message = shown(d.message);
-  d.label = vm::printable(d.label);
-  for (std::string& help : d.help) help = vm::printable(help);
+  d.label = shown(d.label);
+  for (std::string& help : d.help) help = shown(help);
   all_.push_back(std::move(d));
 }
 

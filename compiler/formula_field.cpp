@@ -14,7 +14,6 @@
 #include "compiler/fuse.h"
 #include "compiler/limits.h"
 #include "compiler/lower.h"
-#include "vm/check.h"
 #include "vm/evaluate.h"
 #include "vm/specialise.h"
 #include "vm/verify.h"
@@ -205,7 +204,6 @@ DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowled
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity};
   return Bisection(*program, box, coordinates_of(graph, formula)).run();
 }

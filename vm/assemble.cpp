@@ -159,8 +159,10 @@ class Assembler {
     const std::size_t own = static_cast<std::size_t>(row.immediates), given = last - first;
     const std::size_t expected = row.form == Form::Outline ? own * draft.operand : own;
     if (given != expected) {
-      return fail(tokens_[0], fmt::format("`{}` takes {} numbers{}, not {}", row.mnemonic, expected,
-                                          own == 0 ? "" : fmt::format(" ({})", names(row)), given));
+      return fail(tokens_[0],
+                  fmt::format("`{}` takes {} numbers{}{}, not {}", row.mnemonic, expected,
+                              own == 0 ? "" : fmt::format(" ({})", names(row)),
+                              row.form == Form::Outline ? " after the first, which says how often" : "", given));
     }
     for (std::size_t i = 0; i < given && !error_; ++i) {
       const Token token = tokens_[first + i];

@@ -7,16 +7,21 @@
 namespace fathom::vm {
 namespace {
 
+// The controls U+0080 to U+009F in UTF-8.
+constexpr std::string_view kFirstC1 = "\xC2\x80", kLastC1 = "\xC2\x9F";
 constexpr std::string_view kLetters = "nrt\\\"", kMeanings = "\n\r\t\\\"";
 
 std::string escape(std::string_view text, bool quotes) {
   std::string out;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos && (quotes || c != '"')) {
       out += '\\';
       out += kLetters[known];
     } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else if (text.substr(i, 2) >= kFirstC1 && text.substr(i, 2) <= kLastC1) {
+      out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(text[++i])));
     } else {
       out += c;
     }
@@ -52,9 +57,10 @@ bool unescape(std::string_view text, std::string& out) {
       const std::string_view digits = text.substr(std::min(i + 1, text.size()), 4);
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
       if (text[i] != 'u' || digits.size() != 4 || error != std::errc() || end != digits.data() + 4 ||
-          (code >= 0x20 && code != 0x7f)) {
+          (code >= 0x20 && code < 0x7f) || code > 0x9f) {
         return false;
       }
+      if (code > 0x7f) out += kFirstC1[0];
       out += static_cast<char>(code);
       i += 4;
     }

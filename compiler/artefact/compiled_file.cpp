@@ -121,7 +121,8 @@ std::variant<Header, FileError> read_header(vm::ByteReader& in, std::span<const 
   const FileError broken{"its header is damaged or cut off", "compile the scene again"};
   const auto magic = in.raw(kFileMagic.size());
   if (!std::equal(magic.begin(), magic.end(), kFileMagic.begin(), kFileMagic.end())) {
-    return FileError{"it is no compiled scene: the first bytes are others", "`fathom compile` writes one"};
+    return FileError{"it is no compiled scene, or one that was changed as if it were text, or cut off",
+                     "copy it again as binary, or compile the scene again"};
   }
   const std::uint32_t version = in.u32(), sections = in.u32();
   if (in.failed()) return broken;
@@ -157,9 +158,11 @@ bool read_text(std::span<const std::uint8_t> bytes, CompiledFile& file) {
 
 }  // namespace
 
+// By the first bytes, which no text begins with; the rest of the magic shows what happened to the file since.
 bool is_compiled_file(std::string_view bytes) {
-  return bytes.size() >= kFileMagic.size() &&
-         std::equal(kFileMagic.begin(), kFileMagic.end(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  constexpr std::size_t kName = 4;
+  return bytes.size() >= kName && std::equal(kFileMagic.begin(), kFileMagic.begin() + kName,
+                                             reinterpret_cast<const std::uint8_t*>(bytes.data()));
 }
 
 std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileContents& contents) {

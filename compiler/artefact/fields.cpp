@@ -233,7 +233,8 @@ void textures(Archive& a, CompiledScene& scene) {
   }
   a.end();
   if (!a.reading() || a.failed()) return;
-  // No more than a scene's text can ask for that is as long as the file.
+  // Of a scene's text no more than there are, for there nothing is shared; a few thousand do no harm where something
+  // is.
   const double allowed = std::max(4096.0, static_cast<double>(scene.textures.size()));
   const TextureWork most = work_of(scene.textures);
   if (most.depth > kMaxPatternDepth + 1) a.fail(fmt::format("patterns are more than {} deep", kMaxPatternDepth));

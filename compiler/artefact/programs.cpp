@@ -82,7 +82,9 @@ std::size_t surfaces_named(const vm::VerifiedProgram& program) {
 
 std::optional<Excess> excess_of(const CompiledScene& stored, const Limits& limits) {
   for (const NamedProgram& row : programs_of(stored)) {
-    if (auto excess = excess_of(*row.program, limits)) return excess;
+    if (const auto excess = excess_of(*row.program, limits)) {
+      return Excess{fmt::format("program `{}`: {}", row.name, excess->what), excess->remedy};
+    }
   }
   const double width = stored.film.width, height = stored.film.height;
   if (const double side = std::max(width, height); side > limits.image_side) {

@@ -54,8 +54,8 @@ std::optional<TagFault> check_tags(const CompiledScene& scene);
 // As many surfaces as the program's tags name, at least one.
 std::size_t surfaces_named(const vm::VerifiedProgram& program);
 
-// What of a stored scene goes beyond the limits: a program, or the picture's size. A scene that is compiled here has
-// been held to them.
+// What of a stored scene goes beyond the limits: a program, the picture's size, or its samples. A scene that is
+// compiled here has been held to them.
 std::optional<Excess> excess_of(const CompiledScene& stored, const Limits& limits);
 
 }  // namespace fathom::compiler

@@ -47,7 +47,7 @@ constexpr ForeignMark kForeign[] = {
     {"\u00B3", "for a cube write a^3"},
     {"\u03C0", "write pi"},
     {"\u221A", "for a root write sqrt(v)"},
-    {"\u00B0", "angles are in radians; for degrees multiply by pi/180"},
+    {"\u00B0", "angles of a scene are in degrees: write 45; sin, cos and tan take radians: 45*pi/180"},
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

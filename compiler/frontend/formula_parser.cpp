@@ -306,8 +306,10 @@ void FormulaParser::report_rest() {
            {context_.has_point ? "definitions come before the last line: [\"a = 2*r\", \"a + 1\"]"
                                : "names for numbers are given under `params`"});
   } else {
+    const bool unit = shown == "deg" || shown == "rad";
     report("E0401", span(next_), fmt::format("an operator is missing before `{}`", shown), "",
-           {"for a product write a*b"});
+           {unit ? "units are not written: angles of a scene are in degrees, those of sin, cos and tan in radians"
+                 : "for a product write a*b"});
   }
 }
 

@@ -17,8 +17,12 @@ const RecordSpec* row_by_type(const std::vector<RecordSpec>& family, std::string
   std::vector<std::string_view> known(row.choices);
   if (type == nullptr) {
     if (!row.required) return &family[0];
-    diagnostics.error("E0103", place, fmt::format("the {} has no `{}`", what, key), "",
-                      {fmt::format("known: {}", fmt::join(known, ", "))});
+    std::vector<std::string> help = {fmt::format("known: {}", fmt::join(known, ", "))};
+    for (const RecordSpec& member : family) {
+      if (!record.find("preset") || !member.find("preset")) continue;
+      help.push_back(fmt::format("presets are of `{0}`: add \"{1}\": \"{0}\"", member.type, key));
+    }
+    diagnostics.error("E0103", place, fmt::format("the {} has no `{}`", what, key), "", std::move(help));
     return nullptr;
   }
   const auto* name = std::get_if<std::string>(&type->value->data);

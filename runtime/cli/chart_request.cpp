@@ -26,7 +26,7 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
       "against a search in double. Needs no display; the page it writes needs no network.",
       kExamples);
   add_scene_arguments(arguments, request.scene, false);
-  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
   arguments.option("-o,--output", "FOLDER", "Where index.html, *.csv, *.svg and *.png go (chart)", any_text(folder));
   arguments.group("Rays");
   arguments.option("--rays", "N", "Rays of each class: camera, bounce, grazing (10000)",

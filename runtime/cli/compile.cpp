@@ -83,14 +83,14 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
   auto text = read_text(path, limits, streams);
   if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
-  const compiler::Source listing(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
+  const compiler::Source listing(source_name(path), std::get<std::string>(std::move(text)));
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;
   const auto scene = compiler::read_listing(listing, diagnostics, contents);
   streams.err << diagnostics.print(listing, static_cast<compiler::ErrorFormat>(error_format), streams.color);
   if (!scene) return kBadScene;
   if (const auto excess = compiler::excess_of(*scene, limits)) {
-    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), excess->what), {excess->remedy});
+    return fail_whole(path, excess->what, excess->remedy, error_format, streams);
   }
   return write_compiled(*scene, contents, *output, streams);
 }

@@ -56,7 +56,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    identifier(compiler::problem_with_glsl_name, request.name));
   if (const auto code = arguments.parse(args, streams)) return code;
   if (const Verdict wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
-    return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem), {wrong->help});
+    return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem),
+                {wrong->help.empty() ? "there are cpp and glsl" : wrong->help});
   }
   if (request.language == kGlsl && request.name_space) {
     return fail(streams, kUsage, "GLSL has no namespaces", {"use --name"});

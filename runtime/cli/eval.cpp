@@ -79,8 +79,7 @@ std::optional<ExitCode> read_points(const std::string& path, const compiler::Lim
     if (first == std::string_view::npos || line[first] == '#') continue;
     const auto coordinates = to_numbers(line, 3, true);
     if (!coordinates) {
-      return fail(streams, kBadScene,
-                  fmt::format("{}:{}: `{}` is not a point", path == "-" ? "<stdin>" : path, number, line),
+      return fail(streams, kBadScene, fmt::format("{}:{}: `{}` is not a point", source_name(path), number, line),
                   {"a line is three numbers: x y z"});
     }
     points.push_back({(*coordinates)[0], (*coordinates)[1], (*coordinates)[2]});

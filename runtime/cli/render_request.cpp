@@ -332,7 +332,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   Arguments arguments("render", "Renders a scene to image files.", kExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
-  arguments.flag("-q,--quiet", "Print errors and warnings only", request.quiet);
+  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
   add_output_options(arguments, request);
   bool no_denoise = false;
   add_renderer_options(arguments, request);

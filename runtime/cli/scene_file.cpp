@@ -80,26 +80,12 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-ExitCode bad_file(const SceneArguments& arguments, const std::string& reason, const std::string& remedy,
-                  const Streams& streams) {
-  Help help;
-  if (!remedy.empty()) help.push_back(remedy);
-  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
-  if (format == compiler::ErrorFormat::Text) {
-    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(arguments.path), reason), help);
-  }
-  compiler::Diagnostics diagnostics;
-  diagnostics.error("E0701", {}, reason, "", help);
-  streams.err << diagnostics.print(compiler::Source(arguments.path, ""), format);
-  return kBadScene;
-}
-
 // Whatever it is, with its name for messages.
 std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
   const std::string& path = arguments.path;
   auto text = read_text(path, arguments.limits, streams);
   if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
-  return compiler::Source(path == "-" ? "<stdin>" : path, std::get<std::string>(std::move(text)));
+  return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
 }
 
 // Of which the folder counts: of standard input the one we are in.
@@ -121,7 +107,7 @@ std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::Compiled
                                                               const SceneArguments& arguments,
                                                               const Streams& streams) {
   if (const auto excess = compiler::excess_of(stored, arguments.limits)) {
-    return bad_file(arguments, excess->what, excess->remedy, streams);
+    return fail_whole(arguments.path, excess->what, excess->remedy, arguments.error_format, streams);
   }
   return compiler::unproved(std::move(stored));
 }
@@ -191,6 +177,22 @@ ExitCode fail(const Streams& streams, const std::string& path, const Unreadable&
 
 std::string quoted(const std::string& path) { return path == "-" ? "standard input" : "`" + path + "`"; }
 
+std::string source_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
+
+ExitCode fail_whole(const std::string& path, const std::string& reason, const std::string& remedy, int error_format,
+                    const Streams& streams) {
+  Help help;
+  if (!remedy.empty()) help.push_back(remedy);
+  const auto format = static_cast<compiler::ErrorFormat>(error_format);
+  if (format == compiler::ErrorFormat::Text) {
+    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), reason), help);
+  }
+  compiler::Diagnostics diagnostics;
+  diagnostics.error("E0701", {}, reason, "", help);
+  streams.err << diagnostics.print(compiler::Source(source_name(path), ""), format);
+  return kBadScene;
+}
+
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
   auto read = read_any(arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
@@ -198,7 +200,7 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
   if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
   auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path));
   if (const auto* error = std::get_if<compiler::FileError>(&stored)) {
-    return bad_file(arguments, error->reason, error->remedy, streams);
+    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams);
   }
   auto& scene = std::get<compiler::StoredScene>(stored);
   return SceneInput{scene.scene.source, std::move(scene)};
@@ -211,7 +213,7 @@ std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, con
   if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
   auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
   if (const auto* error = std::get_if<compiler::FileError>(&text)) {
-    return bad_file(arguments, error->reason, error->remedy, streams);
+    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams);
   }
   auto& stored = std::get<compiler::StoredText>(text);
   arguments.definitions = both(stored.definitions, arguments.definitions);
@@ -237,8 +239,14 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
                 << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
   }
   if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
-  const bool comparable = input.stored && arguments.definitions.empty() && !asks_for_graph(options);
+  const bool comparable = input.stored && arguments.definitions.empty() && !options.stop_after;
   if (comparable && compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
+    if (asks_for_graph(options)) {
+      note(streams, fmt::format("{}: this program makes other programs of the scene in it than those in the file, of "
+                                "which nothing is said here. `fathom compile` makes it anew",
+                                quoted(arguments.path)));
+      return std::move(*scene);
+    }
     note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
                               "and nothing is proved of them. `fathom compile` makes it anew",
                               quoted(arguments.path)));

@@ -37,8 +37,14 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const c
                                                 const Streams& streams);
 ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable);
 
-// The file's name for messages.
+// The file's name for messages: in a sentence, and before the number of a line.
 std::string quoted(const std::string& path);
+std::string source_name(const std::string& path);
+
+// kBadScene, after the error E0701 that is about a compiled scene or a listing as a whole. `error_format` is a
+// compiler::ErrorFormat.
+ExitCode fail_whole(const std::string& path, const std::string& reason, const std::string& remedy, int error_format,
+                    const Streams& streams);
 
 // A scene as a file has it.
 struct SceneInput {

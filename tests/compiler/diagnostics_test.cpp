@@ -147,6 +147,16 @@ TEST_CASE("carets stay on their line, and control characters do not reach the te
   CHECK(text.find(" 1 | ab\uFFFD[2J\n   |  ^^^^^\n") != std::string::npos);
 }
 
+TEST_CASE("of names as long as the file a message, its label and its help show the beginning", "[diagnostics]") {
+  const Source source("a.json", "{}");
+  const std::string name(100000, 'x');
+  Diagnostics diagnostics;
+  diagnostics.error("E0203", {0, 1}, name, name, {name, name});
+  for (const ErrorFormat format : {ErrorFormat::Text, ErrorFormat::Short, ErrorFormat::Json}) {
+    CHECK(diagnostics.print(source, format).size() < 10000);
+  }
+}
+
 TEST_CASE("twenty errors are printed and the rest counted, in every format", "[diagnostics]") {
   const Source source("toy.json", "x");
   Diagnostics diagnostics;
@@ -169,6 +179,9 @@ TEST_CASE("nearest", "[diagnostics]") {
   CHECK(nearest("tagret", words) == "target");
   CHECK(nearest("pu", words) == "up");
   CHECK(nearest("wobble", words) == "");
+  const std::string known = std::string(39, 'a') + "b";
+  CHECK(nearest(std::string(40, 'a'), {known}) == known);
+  CHECK(nearest(std::string(41, 'a'), {known}) == "");  // names as long as the file would take the square of that
   CHECK(nearest("x", words) == "");
   CHECK(nearest("", words) == "");
   CHECK(nearest("fov", {}) == "");

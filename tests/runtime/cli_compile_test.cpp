@@ -150,11 +150,12 @@ TEST_CASE("what a compiled scene asks for is limited as what a scene asks for", 
   const Result json = folder.run("eval bare.fbc --at 0,0,0 --error-format json --limit instructions=1");
   CHECK_THAT(json.err, Contains("\"code\":\"E0701\"") && Contains("\"file\":\"bare.fbc\""));
   CHECK_THAT(folder.run("eval bare.fbc --at 0,0,0 --error-format short --limit stack=1").err,
-             Contains("bare.fbc: error: the program needs a stack of"));
+             Contains("bare.fbc: error: program `surface`: the program needs a stack of"));
   folder.write("two.fasm", folder.run("dump two.json --stage file").out);
   const Result refused = folder.run("asm two.fasm -o no.fbc --limit instructions=1");
   CHECK(refused.code == 65);
-  CHECK_THAT(refused.err, Contains("`two.fasm`: the program has ") && Contains("`--limit instructions="));
+  CHECK_THAT(refused.err,
+             Contains("`two.fasm`: program `distance`: the program has ") && Contains("`--limit instructions="));
   CHECK_FALSE(folder.has("no.fbc"));
 }
 
@@ -171,6 +172,13 @@ TEST_CASE("a damaged file is refused with its name, and nothing is written", "[c
     CHECK(refused.code == 65);
     CHECK_THAT(refused.err, Contains("`bad.fbc`: the section `"));
   }
+  const std::string whole = folder.read("ball.fbc");
+  for (const std::string& broken : {whole.substr(0, 5), whole.substr(0, 4) + "\n" + whole.substr(6)}) {
+    folder.write("bad.fbc", broken);
+    const Result refused = folder.run("check bad.fbc");
+    CHECK(refused.code == 65);
+    CHECK_THAT(refused.err, Contains("one that was changed as if it were text, or cut off"));
+  }
   CHECK_FALSE(folder.has("out.png"));
 }
 
@@ -185,9 +193,26 @@ TEST_CASE("programs that the text in their file does not make are run, but not b
   CHECK(other.out.starts_with("2.75 "));
   CHECK_THAT(folder.run("dump other.fbc").out, Contains("not proved, but said by the file"));
   CHECK_THAT(other.err, Contains("makes other programs of the scene in it"));
+  CHECK_THAT(folder.run("check other.fbc").err, Contains("makes other programs of the scene in it"));
   // compile makes it anew of the text.
   REQUIRE(folder.run("compile other.fbc -o again.fbc").code == 0);
   CHECK(folder.read("again.fbc") == folder.read("ball.fbc"));
+}
+
+TEST_CASE("what is wrong with a whole file is said in the format that was asked for", "[cli]") {
+  const Folder folder;
+  folder.write("two.fasm", "sphere 1\nsphere 2\nmin\n");
+  REQUIRE(folder.run("asm two.fasm -o two.fbc").code == 0);
+  for (const auto& [arguments, name] : {std::pair{"asm two.fasm -o out.fbc", "two.fasm"},
+                                        {"eval two.fbc --at 0,0,0", "two.fbc"},
+                                        {"eval - --at 0,0,0 < two.fbc", "<stdin>"}}) {
+    const Result result =
+        folder.run_script("\"$fathom\" " + std::string(arguments) + " --error-format json --limit instructions=2");
+    INFO(arguments << result.err);
+    CHECK_THAT(result.err, Contains("\"code\":\"E0701\"") && Contains("\"file\":\"" + std::string(name)) &&
+                               Contains("program `distance`: ") && Contains("--limit instructions=3"));
+  }
+  CHECK_FALSE(folder.has("out.fbc"));
 }
 
 TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {

@@ -73,7 +73,8 @@ std::string expanded(const std::string& recipe) {
 
 // The case's own file, and small ones that others name.
 void make_files(const Folder& folder, const Case& hostile) {
-  for (const char* beside : {"chunk-of-a-gigabyte.png", "huge.hdr"}) fs::copy_file(kFolder / beside, folder.path() / beside);
+  for (const char* beside : {"chunk-of-a-gigabyte.png", "huge.hdr"})
+    fs::copy_file(kFolder / beside, folder.path() / beside);
   fs::create_symlink("/dev/zero", folder.path() / "zero.pfm");
   fs::remove(folder.path() / hostile.name);
   const fs::path recipe = kFolder / (hostile.name + ".recipe");

@@ -87,7 +87,8 @@ TEST_CASE("what is no program is refused where it goes wrong", "[assemble]") {
   refused("tee\n", "tee", "takes a number");
   refused("tee 16777216\n", "16777216", "at most 16777215");
   refused("tee -1\n", "-1", "not a whole number");
-  refused("polygon 3 0 0 1 0 1\n", "polygon", "takes 6 numbers (x y, again and again), not 5");
+  refused("polygon 3 0 0 1 0 1\n", "polygon",
+          "takes 6 numbers (x y, again and again) after the first, which says how often, not 5");
   refused("mandelbulb 8 1.5 2 1 0\n", "1.5", "not a whole number");
   refused("drop 1\n", "drop", "`drop` takes 0 numbers, not 1");
   refused("locals many\n", "locals", "with how many");
@@ -107,14 +108,16 @@ TEST_CASE("what is no program is refused where it goes wrong", "[assemble]") {
 }
 
 TEST_CASE("escaped texts lie on one line and read back", "[assemble]") {
-  for (const std::string& text :
-       {std::string("plain"), std::string("a\nb\tc\rd\\e\"f"), std::string("\0\x1f", 2), std::string("ä")}) {
+  for (const std::string& text : {std::string("plain"), std::string("a\nb\tc\rd\\e\"f"), std::string("\0\x1f", 2),
+                                  std::string("ä"), std::string("\xC2\x80\xC2\x9F\xC2\xA0\xC2")}) {
     std::string back;
     CHECK(vm::escape(text).find('\n') == std::string::npos);
+    CHECK(vm::escape(text).find("\xC2\x9F") ==
+          std::string::npos);  // for a terminal the begin of a command, as others
     CHECK(vm::unescape(vm::escape(text), back));
     CHECK(back == text);
   }
-  for (const char* text : {"\\", "\\q", "\\u00", "\\u0041", "\\u00g1"}) {
+  for (const char* text : {"\\", "\\q", "\\u00", "\\u0041", "\\u00a0", "\\u00g1"}) {
     std::string out;
     CHECK_FALSE(vm::unescape(text, out));
   }
