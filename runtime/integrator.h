@@ -1,9 +1,9 @@
 // The path integrator: camera paths followed from hit to hit until they end.
 //
-// One Integrator per thread keeps marchers full of rays, one for the scene's field and one for each medium's: every
-// ray that arrives is shaded and goes on as the path's next ray, or makes room for a new camera path. At each hit
-// light is looked for in two ways, whose shares add up to 1 (multiple importance sampling): a light is chosen and a
-// shadow ray sent to it (shade.cpp), and the path's next ray may hit one.
+// One Integrator per thread keeps marchers full of rays, one for the scene's field and one for each medium's that a
+// ray was in: every ray that arrives is shaded and goes on as the path's next ray, or makes room for a new camera
+// path. At each hit light is looked for in two ways, whose shares add up to 1 (multiple importance sampling): a light
+// is chosen and a shadow ray sent to it (shade.cpp), and the path's next ray may hit one.
 //
 //     Integrator integrator(world, {plan}, exchange);   // that gives keys of paths and takes what they bring
 //     integrator.run();

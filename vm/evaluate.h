@@ -96,8 +96,8 @@ struct Range {
   double lo, hi;
 };
 
-// An interval that contains f(p) for every p in the box [lo, hi], rounded outwards. Source: Moore, "Interval
-// Analysis", 1966.
+// An interval that contains f(p) for every p in the box [lo, hi] where every operation has a value, rounded outwards.
+// Source: Moore, "Interval Analysis", 1966.
 Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
 // What a program does along a stretch of a line: f(origin + t direction) and its derivative by t, for t in [begin,

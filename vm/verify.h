@@ -4,8 +4,8 @@
 // Proved: every opcode exists; no instruction is cut off; outlines have their row's least count of groups; both
 // stacks always hold what an instruction needs; the program ends with exactly one value and the caller's point;
 // locals are written before they are read and are below the declared count; float immediates are finite and the wide
-// ones round to them; integer immediates and sizes are within the limits below. There are no jumps, so every program
-// ends. Tested by: tests/vm/verify_test.cpp
+// ones round to them; integer immediates are within what vm/opcodes.def says, sizes within the limits below. No jumps:
+// every program ends. Tested by: tests/vm/verify_test.cpp
 #pragma once
 
 #include <cstddef>

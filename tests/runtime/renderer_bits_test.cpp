@@ -30,7 +30,7 @@ std::string value_of(const runtime::Identity& identity, std::string_view name) {
   return "";
 }
 
-// "RENDER: renderer 1, program 4711, film 0123"
+// Two lines: the render's arguments, and "RENDERER SCENE-PROGRAM FILM".
 struct Bits {
   std::string renderer, program, film;
   bool operator==(const Bits&) const = default;
