@@ -196,7 +196,11 @@ class Tiered {
     const N g_lo = select(lower, g_, select(crossed, last_g_, half * last_g_));
     const N g_hi = select(lower, half * a_.get(kGHi), g_);
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
-    const N next = min(max(lo + g_lo / (g_lo - g_hi) * width, lo + aside), hi - aside);
+    // The secant stays beside an end that is 0, where the root may be. Where it is 0 there, too, as where t is so
+    // small that many t are one place, it would stay for as many samples.
+    const Mask creeps = (!lower) & (!crossed) & (g_ == k(0)) & (a_.get(kGHi) == k(0));
+    const N share = select(creeps, half, g_lo / (g_lo - g_hi));
+    const N next = min(max(lo + share * width, lo + aside), hi - aside);
 
     // A small value behind the surface, or 0, may be where two solids meet; before it, it is no more than a touch.
     const Mask root = lower & (g_ <= k(kRootError) * error_);

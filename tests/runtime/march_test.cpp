@@ -71,6 +71,27 @@ TEST_CASE("march: a floor of any size is met", "[march]") {
   }
 }
 
+// So near that many t are one place, and the value there exactly 0: brackets crept through those, a millionth of t at
+// a time.
+TEST_CASE("march: a surface at a tiny t is found as soon as any other", "[march]") {
+  const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 0.5},
+      {"type": "plane", "normal": [0, 1, 0], "offset": -0.5}])");
+  Random random(3);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 20000; ++i) {
+    const double height = std::pow(10.0, random.uniform(-8, -4));
+    const glm::dvec3 d = random.direction();
+    rays.push_back({to_float({random.uniform(-2, 2), -0.5 + height, random.uniform(-2, 2)}), to_float(d)});
+    const glm::dvec3 n = random.direction();
+    rays.push_back({to_float((0.5 + height) * n), to_float(d)});
+  }
+  const MarchResult result = march(make_field(scene), rays);
+  std::uint32_t most = 0;
+  for (const Arrival& arrival : result.arrivals) most = std::max(most, arrival.evaluations);
+  CHECK(most < 1000);
+  CHECK(result.counters.evaluations < 20 * rays.size());
+}
+
 TEST_CASE("march: an arrival depends on its ray alone", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "torus", "major_radius": 1, "minor_radius": 0.25},
       {"type": "box", "half_size": [0.2, 0.4, 0.3], "translate": [0.4, 0.1, 0]},
