@@ -61,14 +61,22 @@ class BytesSource : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
-// What is wrong with the headers, if anything: the C++ classes below set aside what an attribute says that it has
-// before they read any of it, gigabytes for a file of a hundred bytes; the library's own core looks at the file
-// first.
+std::int64_t length_of(std::int64_t first, std::int64_t last) { return last - first + 1; }
+
+double pixels_of(const exr_attr_box2i_t& window) {
+  return static_cast<double>(length_of(window.min.x, window.max.x)) *
+         static_cast<double>(length_of(window.min.y, window.max.y));
+}
+
+// Why a file may not be opened by the C++ classes below, if for any reason: they set aside what an attribute says
+// that it has, and the buffers for lines as wide as the header says, before they read any of it, gigabytes for a file
+// of a hundred bytes. So the library's own core looks at the file first.
 class HeaderCheck {
  public:
   explicit HeaderCheck(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
-  std::optional<std::string> find_damage() {
+  // Of a picture that would take more than `memory` bytes, too.
+  std::optional<std::string> find_problem(double memory) {
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
     how.user_data = this;
     how.read_fn = read;
@@ -79,12 +87,47 @@ class HeaderCheck {
     how.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
     exr_context_t context = nullptr;
     const exr_result_t result = exr_start_read(&context, "picture", &how);
+    std::optional<std::string> problem;
+    if (result != EXR_ERR_SUCCESS) {
+      problem = message_.empty() ? exr_get_default_error_message(result) : message_;
+    } else {
+      problem = excess_of(context, memory);
+    }
     if (context != nullptr) exr_finish(&context);
-    if (result == EXR_ERR_SUCCESS) return std::nullopt;
-    return message_.empty() ? exr_get_default_error_message(result) : message_;
+    return problem;
   }
 
  private:
+  // What decoding takes beside the numbers: some copies of a chunk, packed and unpacked, and of tiles a row of them.
+  static constexpr double kChunks = 8;
+
+  static std::optional<std::string> excess_of(exr_const_context_t context, double memory) {
+    constexpr int kPart = 0;  // the one that is read
+    exr_attr_box2i_t data{}, display{};
+    const exr_attr_chlist_t* channels = nullptr;
+    std::uint64_t chunk = 0;
+    if (exr_get_data_window(context, kPart, &data) != EXR_ERR_SUCCESS ||
+        exr_get_display_window(context, kPart, &display) != EXR_ERR_SUCCESS ||
+        exr_get_channels(context, kPart, &channels) != EXR_ERR_SUCCESS ||
+        exr_get_chunk_unpacked_size(context, kPart, &chunk) != EXR_ERR_SUCCESS) {
+      return "its header makes no sense";
+    }
+    const double values = pixels_of(data) * channels->num_channels;
+    constexpr double kMost = kMostPixels;
+    if (pixels_of(data) > kMost || pixels_of(display) > kMost || values > static_cast<double>(kMostValues)) {
+      return "it is too large";
+    }
+    std::uint32_t tile_width = 0, tile_height = 0;  // both stay 0 where there are lines
+    exr_tile_level_mode_t level{};
+    exr_tile_round_mode_t round{};
+    exr_get_tile_descriptor(context, kPart, &tile_width, &tile_height, &level, &round);
+    const double row_of_tiles =
+        static_cast<double>(length_of(data.min.x, data.max.x)) * tile_height * channels->num_channels;
+    const double needed = sizeof(float) * (values + row_of_tiles) + kChunks * static_cast<double>(chunk);
+    if (needed > memory) return too_much_memory(needed, memory);
+    return std::nullopt;
+  }
+
   static std::int64_t read(exr_const_context_t, void* self, void* out, std::uint64_t size, std::uint64_t offset,
                            exr_stream_error_func_ptr_t) {
     const std::vector<std::uint8_t>& bytes = static_cast<HeaderCheck*>(self)->bytes_;
@@ -194,19 +237,9 @@ Attributes attributes_of(const Imf::Header& header) {
   return attributes;
 }
 
-std::int64_t pixels_of(const Imath::Box2i& window) {
-  return (std::int64_t{window.max.x} - window.min.x + 1) * (std::int64_t{window.max.y} - window.min.y + 1);
-}
-
-// Throws for an image that would take more than `memory` bytes.
-FloatImage read_header(const Imf::Header& header, double memory) {
+// The picture, its numbers still 0; its size is known to be allowed.
+FloatImage read_header(const Imf::Header& header) {
   const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
-  std::int64_t channels = 0;
-  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
-  const bool fits = pixels_of(data) <= kMostPixels && pixels_of(display) <= kMostPixels;
-  if (!fits || pixels_of(data) * channels > kMostValues) throw std::runtime_error("it is too large");
-  const double needed = 4.0 * static_cast<double>(pixels_of(data) * channels);
-  if (needed > memory) throw std::runtime_error(too_much_memory(needed, memory));
   FloatImage image;
   image.width = display.max.x - display.min.x + 1;
   image.height = display.max.y - display.min.y + 1;
@@ -238,11 +271,11 @@ std::optional<std::string> write_exr(const ImageRows& image, const std::string& 
 }
 
 std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory) {
-  if (auto damage = HeaderCheck(bytes).find_damage()) return *damage;
+  if (auto problem = HeaderCheck(bytes).find_problem(memory - static_cast<double>(bytes.size()))) return *problem;
   try {
     BytesSource source(bytes);
     Imf::InputFile file(source, kNoThreads);
-    FloatImage image = read_header(file.header(), memory - static_cast<double>(bytes.size()));
+    FloatImage image = read_header(file.header());
     const Imath::Box2i data = file.header().dataWindow();
     const PixelRect place{data.min.x, data.min.y, data.max.x + 1, data.max.y + 1};
     Imf::FrameBuffer buffer;
