@@ -222,7 +222,9 @@ void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
       const dvec3 point = point_of(cloud, i);
       const double value = vm::evaluate_distance(program, point, workspace), slack = 1e-12 * (1 + std::abs(value));
       const double error = std::abs(static_cast<double>(rounded[i]) - value);
-      const double moved = last ? std::abs(value - last_value) : 0, path = last ? glm::distance(point, *last) : 0;
+      // Infinities of one sign do not differ.
+      const double moved = last && value != last_value ? std::abs(value - last_value) : 0;
+      const double path = last ? glm::distance(point, *last) : 0;
       promise((error <= bound.float_error + slack &&
                (moved <= slack || moved <= bound.lipschitz * path * (1 + 1e-12) + slack)) ||
                   is_undefined_at(program, point) || (last && is_undefined_at(program, *last)),
