@@ -66,7 +66,7 @@ class Reader {
   Reader& operator=(const Reader&) = delete;
 
   std::variant<FloatImage, std::string> read() {
-    if (open() && is_allowed() && take_header() && (tiled_ ? read_tiles() : read_lines())) {
+    if (open() && is_allowed() && has_chunks() && take_header() && read_chunks()) {
       count_whole();
       return std::move(image_);
     }
@@ -124,6 +124,15 @@ class Reader {
     return needed <= memory_ || fail(too_much_memory(needed, memory_));
   }
 
+  // As far as their table tells, which must fit the file, before memory is set aside for what they hold.
+  bool has_chunks() {
+    chunk_width_ = static_cast<std::int32_t>(width_of(data_));
+    exr_chunk_info_t first{};
+    return good(tiled_ ? exr_get_tile_sizes(context_, kPart, 0, 0, &chunk_width_, &chunk_height_)
+                       : exr_get_scanlines_per_chunk(context_, kPart, &chunk_height_)) &&
+           find_chunk(0, 0, first);
+  }
+
   bool take_header() {
     image_.width = static_cast<int>(width_of(display_));
     image_.height = static_cast<int>(height_of(display_));
@@ -145,31 +154,19 @@ class Reader {
     return true;
   }
 
-  bool read_lines() {
-    std::int32_t lines = 0;
-    if (!good(exr_get_scanlines_per_chunk(context_, kPart, &lines))) return false;
-    for (std::int64_t y = data_.min.y; y <= data_.max.y; y += lines) {
-      exr_chunk_info_t chunk{};
-      if (!good(exr_read_scanline_chunk_info(context_, kPart, static_cast<int>(y), &chunk)) ||
-          !decode(chunk, 0, y - data_.min.y)) {
-        return false;
-      }
-    }
-    return true;
+  // The chunk whose first number is that at (x, y) of the data window; of a pyramid of levels those of the whole
+  // picture.
+  bool find_chunk(std::int64_t x, std::int64_t y, exr_chunk_info_t& chunk) {
+    return good(tiled_ ? exr_read_tile_chunk_info(context_, kPart, static_cast<int>(x / chunk_width_),
+                                                  static_cast<int>(y / chunk_height_), 0, 0, &chunk)
+                       : exr_read_scanline_chunk_info(context_, kPart, static_cast<int>(data_.min.y + y), &chunk));
   }
 
-  // Of the whole picture, the first of a pyramid of levels.
-  bool read_tiles() {
-    std::int32_t width = 0, height = 0;
-    if (!good(exr_get_tile_sizes(context_, kPart, 0, 0, &width, &height))) return false;
-    for (std::int64_t y = 0; y < height_of(data_); y += height) {
-      for (std::int64_t x = 0; x < width_of(data_); x += width) {
+  bool read_chunks() {
+    for (std::int64_t y = 0; y < height_of(data_); y += chunk_height_) {
+      for (std::int64_t x = 0; x < width_of(data_); x += chunk_width_) {
         exr_chunk_info_t chunk{};
-        if (!good(exr_read_tile_chunk_info(context_, kPart, static_cast<int>(x / width), static_cast<int>(y / height),
-                                           0, 0, &chunk)) ||
-            !decode(chunk, x, y)) {
-          return false;
-        }
+        if (!find_chunk(x, y, chunk) || !decode(chunk, x, y)) return false;
       }
     }
     return true;
@@ -222,6 +219,7 @@ class Reader {
   const double memory_;
   exr_context_t context_ = nullptr;
   bool tiled_ = false;
+  std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; those at the edges may be smaller
   exr_attr_box2i_t data_{}, display_{};
   const exr_attr_chlist_t* channels_ = nullptr;
   FloatImage image_;
