@@ -212,6 +212,9 @@ void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
 
 bool says_nothing(double bound) { return std::isinf(bound); }
 
+// Infinities of one sign do not differ.
+double apart(double a, double b) { return a == b ? 0 : std::abs(a - b); }
+
 // No two values differ by more than the constant says, and none in f32 from the one in double by more than the error.
 void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 7) {
@@ -223,11 +226,12 @@ void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const dvec3 point = point_of(cloud, i);
       const double value = vm::evaluate_distance(program, point, workspace), slack = 1e-12 * (1 + std::abs(value));
-      const double error = std::abs(static_cast<double>(rounded[i]) - value);
-      const double moved = last ? std::abs(value - last_value) : 0, path = last ? glm::distance(point, *last) : 0;
+      const double error = apart(static_cast<double>(rounded[i]), value);
+      const double moved = last ? apart(value, last_value) : 0, path = last ? glm::distance(point, *last) : 0;
       const bool near = says_nothing(bound.float_error) || error <= bound.float_error + slack;
       const bool slow = says_nothing(bound.lipschitz) || moved <= bound.lipschitz * path * (1 + 1e-12) + slack;
-      promise((near && slow) || is_undefined_at(program, point) || (last && is_undefined_at(program, *last)),
+      promise((near && slow) || std::isnan(value) || is_undefined_at(program, point) ||
+                  (last && (std::isnan(last_value) || is_undefined_at(program, *last))),
               fmt::format("{} in double, {} in float with an error up to {}; {} over {} at most {} times that, {}",
                           value, rounded[i], bound.float_error, moved, path, bound.lipschitz, place(cloud, i)));
       last = point, last_value = value;
