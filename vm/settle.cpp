@@ -95,10 +95,12 @@ class Settling {
     const Batch hi = turn_a ? -Batch::load(interest.lo + at) : Batch::load(interest.hi + at);
     // A blend of two that are both above T + 5/4 width is above T: it lowers their least by a quarter of its width.
     const Batch width = Batch::broadcast(link.width), reach = Batch::broadcast(link.width * 1.2501f);
-    const Batch limit = min(hi, min(a_hi, b_hi));
+    const Batch limit = min(hi, min(a_hi, b_hi)), all = Batch::broadcast(kInfinity);
+    // What may be NaN is not left alone: the other operand may be what the choice gives then.
+    const BatchMask number_a = (a_lo > -all) | (a_hi < all), number_b = (b_lo > -all) | (b_hi < all);
     // A rounded difference is above a float only where the true one is.
-    const BatchMask no_a = (a_lo - b_hi > width) | (a_lo - limit > reach);
-    const BatchMask no_b = (b_lo - a_hi > width) | (b_lo - limit > reach);
+    const BatchMask no_a = (a_lo - b_hi > width) | ((a_lo - limit > reach) & number_b);
+    const BatchMask no_b = (b_lo - a_hi > width) | ((b_lo - limit > reach) & number_a);
     const BatchMask a_first = a_lo <= b_lo;  // where neither matters one stays, to be above the limit
     keep_a &= bits_of((!no_a) | (no_b & a_first));
     keep_b &= bits_of((!no_b) | (no_a & !a_first));

@@ -265,6 +265,41 @@ TEST_CASE("specialise: operands that only float holds apart are kept for the exa
   }
 }
 
+// min(sqrt(x), y): where x is negative the choice is y, which is beyond the limit. Once the root was left alone, and
+// what was beyond the limit was NaN.
+TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[specialise]") {
+  using vm::Opcode;
+  const std::vector<std::vector<Step>> programs = {
+      {{Opcode::X}, {Opcode::Sqrt}, {Opcode::Y}, {Opcode::Min}},
+      {{Opcode::X}, {Opcode::Sqrt}, {Opcode::Y}, {Opcode::Negate}, {Opcode::Max}, {Opcode::Negate}},
+      {{Opcode::X}, {Opcode::Sqrt}, {Opcode::Y}, {Opcode::Subtract}, {Opcode::Negate}}};
+  vm::Workspace workspace;
+  for (const std::vector<Step>& steps : programs) {
+    const vm::VerifiedProgram program = formula(steps);
+    const vm::Part whole = vm::whole(program);
+    BoxSet boxes;
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      for (int axis = 0; axis < 3; ++axis) boxes.lo[axis][i] = 1, boxes.hi[axis][i] = 2;
+      boxes.lo[0][i] = -1;
+    }
+    vm::Specialiser specialiser;
+    REQUIRE(specialiser.look(whole, boxes.view(), workspace));
+    for (const float most : {0.f, 0.25f}) {
+      specialiser.decide(-kInfinity, most);
+      vm::Part part;
+      specialiser.part(0, part);
+      INFO(text_of(steps) << " up to " << most);
+      for (const float x : {-1.f, -1e-30f}) {
+        const glm::vec3 p(x, 1.5f, 1);
+        float value;
+        vm::evaluate_distance(part, {&p.x, &p.y, &p.z}, 1, &value, workspace);
+        CHECK(evaluate_float(program, p, workspace) == 1.5f);
+        CHECK(value > most);
+      }
+    }
+  }
+}
+
 TEST_CASE("specialise: choices settled by pairs are those settled where each is of interest everywhere",
           "[specialise]") {
   Random random(11);
