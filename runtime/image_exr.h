@@ -2,7 +2,8 @@
 // area, the display window the whole picture.
 //
 // Written row by row, so that none is held whole. Without OpenEXR's own threads: the same image gives the same bytes.
-// Source: F. Kainz, R. Bogart, "Technical Introduction to OpenEXR", 2009. Tested by: tests/runtime/image_exr_test.cpp
+// Source: F. Kainz, R. Bogart, "Technical Introduction to OpenEXR", 2009. Tested by:
+// tests/runtime/image_exr_test.cpp, image_exr_read_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // OpenEXR files read by the library's own core, chunk by chunk. Its C++ classes, which image_exr.cpp writes by, would
 // set aside what a header says before they look at the file, gigabytes for one of some hundred bytes, and where a
 // chunk's data ends early they would take what lay in memory for numbers. Tested by:
-// tests/runtime/image_exr_test.cpp, image_read_test.cpp
+// tests/runtime/image_exr_read_test.cpp, image_exr_test.cpp, image_read_test.cpp
 #include <openexr.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ class Reader {
 
   std::variant<FloatImage, std::string> read() {
     if (open() && is_allowed() && has_chunks() && take_header() && read_chunks()) {
-      count_whole();
+      whole_to_float();
       return std::move(image_);
     }
     return problem_.empty() ? kNoSense : problem_;
@@ -193,7 +193,7 @@ class Reader {
   }
 
   // Whole numbers came as they are, in the place of floats.
-  void count_whole() {
+  void whole_to_float() {
     for (std::size_t c = 0; c < image_.channels.size(); ++c) {
       if (!image_.channels[c].whole) continue;
       for (float& value : image_.values[c]) value = static_cast<float>(std::bit_cast<std::uint32_t>(value));

@@ -186,12 +186,12 @@ void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, R
   }
 }
 
-// Whether an operation has no value there (the root of a negative number), though a min or max may hide it. As the
-// machine in f32 runs it, which also has none where infinities of too large numbers meet.
-bool is_undefined_at(const vm::Code& program, dvec3 point) {
-  bool undefined = false;
+// Whether an operation has no value there (the root of a negative number), though a min or max may hide it: the whole
+// in double, whose value is `value`, or any in f32, which also has none where infinities of too large numbers meet.
+bool is_undefined_at(const vm::Code& program, dvec3 point, double value) {
+  bool undefined = std::isnan(value);
   vm::trace(program, point, [&](const vm::TraceStep& step) {
-    for (const float value : step.values) undefined |= std::isnan(value);
+    for (const float number : step.values) undefined |= std::isnan(number);
   });
   return undefined;
 }
@@ -204,7 +204,7 @@ void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const dvec3 point = point_of(cloud, i);
       const double value = vm::evaluate_distance(program, point, workspace);
-      promise((range.lo <= value && value <= range.hi) || std::isnan(value) || is_undefined_at(program, point),
+      promise((range.lo <= value && value <= range.hi) || is_undefined_at(program, point, value),
               fmt::format("{} is not in the range {} .. {} {}", value, range.lo, range.hi, place(cloud, i)));
     }
   }
@@ -230,8 +230,8 @@ void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
       const double moved = last ? apart(value, last_value) : 0, path = last ? glm::distance(point, *last) : 0;
       const bool near = says_nothing(bound.float_error) || error <= bound.float_error + slack;
       const bool slow = says_nothing(bound.lipschitz) || moved <= bound.lipschitz * path * (1 + 1e-12) + slack;
-      promise((near && slow) || std::isnan(value) || is_undefined_at(program, point) ||
-                  (last && (std::isnan(last_value) || is_undefined_at(program, *last))),
+      promise((near && slow) || is_undefined_at(program, point, value) ||
+                  (last && is_undefined_at(program, *last, last_value)),
               fmt::format("{} in double, {} in float with an error up to {}; {} over {} at most {} times that, {}",
                           value, rounded[i], bound.float_error, moved, path, bound.lipschitz, place(cloud, i)));
       last = point, last_value = value;
