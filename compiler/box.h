@@ -1,11 +1,15 @@
 // Axis-aligned boxes, scene units. Sides may be infinite; lo > hi on any axis is the empty box.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 
 namespace fathom::compiler {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Box {
   glm::dvec3 lo{std::numeric_limits<double>::infinity()};
@@ -33,6 +37,8 @@ inline bool Box::finite() const {
   }
   return true;
 }
+// The largest magnitude of a coordinate.
+inline double largest_part(glm::dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 inline Box unite(const Box& a, const Box& b) { return {glm::min(a.lo, b.lo), glm::max(a.hi, b.hi)}; }
 inline Box intersect(const Box& a, const Box& b) { return {glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)}; }
 

@@ -12,7 +12,7 @@ namespace fathom::compiler {
 namespace {
 
 constexpr std::size_t kMostPrinted = 20;  // of errors, and of warnings; what a person reads in one go
-constexpr std::size_t kWidest = 140;      // columns of a quoted line; longer ones are cut around the carets
+constexpr std::size_t kWidestQuote = 140;      // columns of a quoted line; longer ones are cut around the carets
 constexpr std::size_t kLead = 50;         // columns kept before the carets of a cut line
 constexpr std::size_t kTabWidth = 4;
 
@@ -72,7 +72,7 @@ struct Shown {
   }
 };
 
-// The quoted line and the carets under it, without gutter; both cut to kWidest columns around the carets.
+// The quoted line and the carets under it, without gutter; both cut to kWidestQuote columns around the carets.
 std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t line_start, Span span) {
   // Of a long line no more than what can be shown.
   const std::size_t at = span.begin - line_start, from = at > kWindow ? at - kWindow : 0;
@@ -81,12 +81,12 @@ std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t l
   const Shown shown(line);
   const std::size_t begin = shown.column(span.begin - line_start);
   const std::size_t end = std::max(begin + 1, shown.column(std::max(span.end, span.begin) - line_start));
-  if (shown.cells.size() <= kWidest) {
+  if (shown.cells.size() <= kWidestQuote) {
     const std::size_t last = std::max(begin + 1, std::min(end, shown.cells.size()));
     return {shown.text(0, shown.cells.size()), std::string(begin, ' ') + std::string(last - begin, '^')};
   }
-  const std::size_t first = std::min(begin > kLead ? begin - kLead : 0, shown.cells.size() - kWidest);
-  const std::size_t last = first + kWidest;
+  const std::size_t first = std::min(begin > kLead ? begin - kLead : 0, shown.cells.size() - kWidestQuote);
+  const std::size_t last = first + kWidestQuote;
   const std::string before = first > 0 ? "..." : "", after = last < shown.cells.size() ? "..." : "";
   const std::size_t carets = std::max(begin + 1, std::min(end, last)) - begin;
   return {before + shown.text(first, last) + after,

@@ -21,9 +21,8 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kCloseEnough = 1.02;
-constexpr double kEndless = 1e18;  // stands for an infinite side in the program
+constexpr double kInfiniteSide = 1e18;  // stands for an infinite side in the program
 
 struct Cell {
   Box box;
@@ -162,7 +161,7 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
                const Origin& origin) {
   std::vector<double> params;
   for (const glm::dvec3& corner : {box.lo, box.hi}) {
-    for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kEndless, kEndless));
+    for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kInfiniteSide, kInfiniteSide));
   }
   // A field that does not change at all has its box as its only surface.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;

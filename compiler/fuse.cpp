@@ -9,7 +9,6 @@ namespace {
 
 using vm::Form;
 using vm::Opcode;
-using vm::Source;
 
 struct Step {
   Opcode opcode;
@@ -41,19 +40,19 @@ std::vector<Step> steps_of(vm::Program& program) {
 }
 
 // What can stand for the value that the step pushes; Stack when nothing can.
-Source source_of(const Step& step) {
+vm::Source source_of(const Step& step) {
   switch (step.opcode) {
     case Opcode::X:
     case Opcode::Y:
     case Opcode::Z:
-      return step.operand == 0 ? static_cast<Source>(static_cast<int>(step.opcode) - static_cast<int>(Opcode::X) + 1)
-                               : Source::Stack;
+      return step.operand == 0 ? static_cast<vm::Source>(static_cast<int>(step.opcode) - static_cast<int>(Opcode::X) + 1)
+                               : vm::Source::Stack;
     case Opcode::Constant:
-      return step.operand == 0 ? Source::Constant : Source::Stack;
+      return step.operand == 0 ? vm::Source::Constant : vm::Source::Stack;
     case Opcode::Load:
-      return step.operand <= vm::kMaxLocalSource ? Source::Local : Source::Stack;
+      return step.operand <= vm::kMaxLocalSource ? vm::Source::Local : vm::Source::Stack;
     default:
-      return Source::Stack;
+      return vm::Source::Stack;
   }
 }
 
@@ -93,7 +92,7 @@ class Fusing {
 
   // Of shape, min: the shape, joined.
   bool join_shape() {
-    if (!is_shape(1, vm::kJoined) || source_of(out_.back()) != Source::Stack) return false;
+    if (!is_shape(1, vm::kJoined) || source_of(out_.back()) != vm::Source::Stack) return false;
     out_.back().operand |= vm::kJoined;
     return true;
   }
@@ -101,18 +100,18 @@ class Fusing {
   void take_operands(Step& step) {
     vm::Sources sources;
     if (step.form() == Form::Binary) sources.b = take_operand(step, sources);
-    if (step.form() == Form::Unary || sources.b != Source::Stack) sources.a = take_operand(step, sources);
+    if (step.form() == Form::Unary || sources.b != vm::Source::Stack) sources.a = take_operand(step, sources);
     step.operand = vm::operand_of(sources);
   }
 
   // The operand that the last step pushes, taken out of the program if something can stand for it.
-  Source take_operand(Step& step, vm::Sources& sources) {
-    if (out_.empty()) return Source::Stack;
+  vm::Source take_operand(Step& step, vm::Sources& sources) {
+    if (out_.empty()) return vm::Source::Stack;
     const Step& last = out_.back();
-    const Source source = source_of(last);
-    if (source == Source::Stack) return source;
-    if (source == Source::Local) {
-      if (sources.b == Source::Local && sources.local != last.operand) return Source::Stack;  // room for one
+    const vm::Source source = source_of(last);
+    if (source == vm::Source::Stack) return source;
+    if (source == vm::Source::Local) {
+      if (sources.b == vm::Source::Local && sources.local != last.operand) return vm::Source::Stack;  // room for one
       sources.local = last.operand;
     }
     step.immediates.insert(step.immediates.begin(), last.immediates.begin(), last.immediates.end());

@@ -12,16 +12,16 @@
 namespace fathom::compiler {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using GraphJson = nlohmann::ordered_json;
 
 // What the root reaches, numbered from 0, children first.
-struct Numbered {
+struct NumberedNode {
   std::vector<NodeId> ids;             // [number]
   std::vector<std::size_t> number_of;  // [id]
 };
 
-Numbered number_nodes(const Scene& scene) {
-  Numbered out{{}, std::vector<std::size_t>(scene.graph.size(), 0)};
+NumberedNode number_nodes(const Scene& scene) {
+  NumberedNode out{{}, std::vector<std::size_t>(scene.graph.size(), 0)};
   const std::vector<bool> reached = reachable(scene);
   for (NodeId id = 0; id <= scene.root; ++id) {
     if (!reached[id]) continue;
@@ -36,19 +36,19 @@ std::string_view word(Exactness exactness) {
   return kWords[static_cast<std::size_t>(exactness)];
 }
 
-Json finite_or_null(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+GraphJson finite_or_null(double number) { return std::isfinite(number) ? GraphJson(number) : GraphJson(nullptr); }
 
-Json to_json(glm::dvec3 v) { return Json::array({finite_or_null(v.x), finite_or_null(v.y), finite_or_null(v.z)}); }
+GraphJson to_json(glm::dvec3 v) { return GraphJson::array({finite_or_null(v.x), finite_or_null(v.y), finite_or_null(v.z)}); }
 
-Json to_json(const Box& box) {
+GraphJson to_json(const Box& box) {
   if (box.empty()) return nullptr;
   return {{"lo", to_json(box.lo)}, {"hi", to_json(box.hi)}};
 }
 
-Json params_json(const Graph& graph, NodeId id) {
-  Json params = Json::object();
+GraphJson params_json(const Graph& graph, NodeId id) {
+  GraphJson params = GraphJson::object();
   for (const NamedParam& param : named_params(graph.kind(id), graph.params(id))) {
-    Json& value = params[std::string(param.name)];
+    GraphJson& value = params[std::string(param.name)];
     if (param.values.size() == 1) {
       value = finite_or_null(param.values[0]);
     } else {
@@ -58,14 +58,14 @@ Json params_json(const Graph& graph, NodeId id) {
   return params;
 }
 
-Json source_json(const Origin& origin, const Source& source) {
+GraphJson source_json(const Origin& origin, const Source& source) {
   if (origin.span.end == 0) return nullptr;
   const Position at = source.locate(origin.span.begin);
   return {{"line", at.line}, {"column", at.column}};
 }
 
-Json node_json(const Graph& graph, NodeId id, const Numbered& nodes, const Knowledge& known, const Source& source) {
-  Json children = Json::array();
+GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const Knowledge& known, const Source& source) {
+  GraphJson children = GraphJson::array();
   for (const NodeId child : graph.children(id)) children.push_back(nodes.number_of[child]);
   return {{"id", nodes.number_of[id]},        {"type", spec(graph.kind(id)).name},
           {"params", params_json(graph, id)}, {"children", children},
@@ -76,7 +76,7 @@ Json node_json(const Graph& graph, NodeId id, const Numbered& nodes, const Knowl
 }
 
 // A file's name may be no UTF-8; JSON must be.
-std::string print(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string print(const GraphJson& json) { return json.dump(-1, ' ', false, GraphJson::error_handler_t::replace); }
 
 // The lines of a node's picture: what it is and is called, its parameters, where it is written.
 std::vector<std::string> label(const Graph& graph, NodeId id, const Source& source) {
@@ -117,7 +117,7 @@ std::string escape_mermaid(const std::string& text) {
 }  // namespace
 
 std::string graph_json(const Scene& scene, const Source& source) {
-  const Numbered nodes = number_nodes(scene);
+  const NumberedNode nodes = number_nodes(scene);
   const std::vector<Knowledge> known = analyse(scene.graph);
   std::string out =
       fmt::format("{{\"scene\":{},\"root\":{},\"nodes\":[", print(source.name()), nodes.number_of[scene.root]);
@@ -129,7 +129,7 @@ std::string graph_json(const Scene& scene, const Source& source) {
 }
 
 std::string graph_dot(const Scene& scene, const Source& source) {
-  const Numbered nodes = number_nodes(scene);
+  const NumberedNode nodes = number_nodes(scene);
   std::string out = "digraph scene {\n  node [shape=box];\n  graph [ordering=out];\n";
   for (const NodeId id : nodes.ids) {
     std::string text;
@@ -146,7 +146,7 @@ std::string graph_dot(const Scene& scene, const Source& source) {
 }
 
 std::string graph_mermaid(const Scene& scene, const Source& source) {
-  const Numbered nodes = number_nodes(scene);
+  const NumberedNode nodes = number_nodes(scene);
   std::string out = "flowchart TD\n";
   for (const NodeId id : nodes.ids) {
     std::string text;

@@ -29,14 +29,14 @@ bool is_way(Kind kind) {
 }
 
 // A map into a space turned, moved and scaled: q = R^T (p - t) / s.
-struct Placement {
+struct LampPlacement {
   dmat3 rotation;
   dvec3 translation;
   double scale;
 };
 
 // nullopt when the map stretches directions differently.
-std::optional<Placement> placement_of(const Affine& to_local) {
+std::optional<LampPlacement> placement_of(const Affine& to_local) {
   constexpr double kTolerance = 1e-9;
   const std::array<dvec3, 3>& rows = to_local.rows;
   const double length = glm::length(rows[0]);
@@ -44,12 +44,12 @@ std::optional<Placement> placement_of(const Affine& to_local) {
     if (!(std::abs(glm::length(rows[i]) - length) <= kTolerance * length)) return std::nullopt;
     if (!(std::abs(glm::dot(rows[i], rows[(i + 1) % 3])) <= kTolerance * length * length)) return std::nullopt;
   }
-  return Placement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
+  return LampPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
                    1 / length};
 }
 
 // Its plane becomes the xy plane of the lamp's space, its middle the origin.
-void set_quad(Lamp& lamp, std::span<const double> p, const Placement& place) {
+void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place) {
   std::array<dvec3, 4> v;
   dvec3 middle(0);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -66,7 +66,7 @@ void set_quad(Lamp& lamp, std::span<const double> p, const Placement& place) {
 }
 
 std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& to_local) {
-  const std::optional<Placement> place = placement_of(to_local);
+  const std::optional<LampPlacement> place = placement_of(to_local);
   if (!place) return std::nullopt;
   Lamp lamp;
   lamp.rotation = place->rotation;
@@ -94,7 +94,7 @@ std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& 
 }
 
 // Tells lamps in the same place apart from others; the same shape under another transform is rare enough to pass.
-using Place = std::tuple<int, std::array<double, 12>, std::vector<double>>;
+using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
 
 class Finder {
  public:
@@ -159,7 +159,7 @@ class Finder {
     const std::span<const double> params = graph_.params(task.node);
     std::optional<Lamp> lamp = lamp_of(graph_.kind(task.node), params, task.to_local);
     if (!lamp) return;
-    Place place{static_cast<int>(lamp->shape), task.to_local.params(), {params.begin(), params.end()}};
+    LampPlace place{static_cast<int>(lamp->shape), task.to_local.params(), {params.begin(), params.end()}};
     if (!taken_.insert(std::move(place)).second) return;
     lamp->surface = *task.surface;
     lamp->material = surfaces_[*task.surface].material;
@@ -171,7 +171,7 @@ class Finder {
   const std::span<const Material> materials_;
   std::vector<std::array<bool, 2>> holds_;  // [node][whether a glowing surface is around it]
   std::vector<Task> tasks_;
-  std::set<Place> taken_;
+  std::set<LampPlace> taken_;
   std::vector<Lamp> lamps_;
 };
 

@@ -22,7 +22,6 @@ constexpr std::size_t kMostPlaces = 256;
 
 const Affine kIdentity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
 
-double largest_part(glm::dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 // Where nodes stand: [node] the maps from its own space to the scene's. Below what folds, bends or repeats space a
 // node has no one place.

@@ -20,7 +20,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Steps this many times shorter are reported.
 constexpr double kSteep = 20;
 

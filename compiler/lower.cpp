@@ -33,7 +33,7 @@ struct UseHash {
 };
 
 // A value of the program to be, and what is known of it before code is made for it.
-struct Value {
+struct LoweredValue {
   Use use;
   std::uint32_t uses = 0;
   std::uint32_t height = 1;                               // value slots its evaluation needs, fused
@@ -165,26 +165,26 @@ class Lowering {
   // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be
   // as deep as it has nodes, so neither this nor emit() recurses.
   void plan(ValueId root) {
-    struct Visit {
+    struct PlanStep {
       ValueId value;
       std::shared_ptr<const Code> code;
       std::uint32_t next = 0;
     };
-    std::vector<Visit> path;
+    std::vector<PlanStep> path;
     const auto enter = [&](ValueId id) {
       ++values_[id].uses;
-      if (values_[id].operand_count != Value::kNew) return;
+      if (values_[id].operand_count != LoweredValue::kNew) return;
       path.push_back({id, codes_(values_[id].use.node)});
       list_operands(id, *path.back().code);
     };
     enter(root);
     while (!path.empty() && values_.size() <= max_instructions_) {
-      Visit& visit = path.back();
+      PlanStep& visit = path.back();
       const std::span<const ValueId> operands = operands_of(visit.value);
       if (visit.next < operands.size()) {
         enter(operands[visit.next++]);
       } else {
-        Value& value = values_[visit.value];
+        LoweredValue& value = values_[visit.value];
         value.height = is_free(value.use.node, *visit.code) ? 0 : height(*visit.code, operands);
         path.pop_back();
       }
@@ -260,10 +260,10 @@ class Lowering {
 
   // What is still to be done, in the order of a stack: evaluate the value; append `instructions` of its code; forget
   // the points that these made; take the least of two values; or remember the value in a local.
-  enum class Step { Visit, Append, Drop, Least, Share };
+  enum class Step { PlanStep, Append, Drop, Least, Share };
   struct Task {
     ValueId value;
-    Step step = Step::Visit;
+    Step step = Step::PlanStep;
     std::shared_ptr<const Code> code = nullptr;  // keeps the instructions
     const std::vector<Instruction>* instructions = nullptr;
   };
@@ -278,9 +278,9 @@ class Lowering {
   }
 
   void perform(const Task& task) {
-    Value& value = values_[task.value];
+    LoweredValue& value = values_[task.value];
     switch (task.step) {
-      case Step::Visit:
+      case Step::PlanStep:
         return visit(task.value);
       case Step::Append:
         for (const Instruction& instruction : *task.instructions) append(value.use.node, instruction);
@@ -297,7 +297,7 @@ class Lowering {
   }
 
   void visit(ValueId id) {
-    const Value& value = values_[id];
+    const LoweredValue& value = values_[id];
     const NodeId node = value.use.node;
     if (value.local) return append(node, {Opcode::Load, {}, *value.local});
     const std::shared_ptr<const Code> code = codes_(node);
@@ -352,7 +352,7 @@ class Lowering {
   const Source& source_;
   const std::size_t max_instructions_;
   Codes codes_;
-  std::vector<Value> values_;
+  std::vector<LoweredValue> values_;
   std::vector<ValueId> operands_;  // of all values
   std::unordered_map<Use, ValueId, UseHash> ids_;
   std::vector<ValueId> order_;  // as order_evaluation() left it

@@ -12,22 +12,22 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 
 // The materials below a node, as far as it matters.
 struct Painted {
-  std::uint32_t one = kNone;          // a material found there
-  std::uint32_t transparent = kNone;  // the first of those that transmit
+  std::uint32_t one = kNoMaterial;          // a material found there
+  std::uint32_t transparent = kNoMaterial;  // the first of those that transmit
   bool several = false;
   bool bare = false;  // some leaf has none, and will get that of the next Paint above
 
-  bool uneven() const { return several || (bare && one != kNone); }
+  bool uneven() const { return several || (bare && one != kNoMaterial); }
 };
 
 Painted join(const Painted& a, const Painted& b) {
   const bool bare = a.bare || b.bare;
-  if (a.one == kNone || b.one == kNone) {
-    Painted some = a.one == kNone ? b : a;
+  if (a.one == kNoMaterial || b.one == kNoMaterial) {
+    Painted some = a.one == kNoMaterial ? b : a;
     some.bare = bare;
     return some;
   }
@@ -38,7 +38,7 @@ Painted join(const Painted& a, const Painted& b) {
 Painted paint(Painted below, std::uint32_t material, std::span<const Material> materials) {
   if (!below.bare) return below;
   below.bare = false;
-  return join(below, {material, transmits(materials[material]) ? material : kNone});
+  return join(below, {material, transmits(materials[material]) ? material : kNoMaterial});
 }
 
 std::size_t surface_of(const Graph& graph, NodeId paint) { return static_cast<std::size_t>(graph.params(paint)[0]); }
@@ -113,7 +113,7 @@ class Bodies {
       const Origin origin = graph_.origin(outer);
       node = graph_.add(graph_.kind(outer), params, std::span(&node, 1), origin);
     }
-    const bool transparent = painted.transparent != kNone;
+    const bool transparent = painted.transparent != kNoMaterial;
     bodies_.push_back({node, transparent ? painted.transparent : painted.one, transparent});
   }
 
@@ -165,7 +165,7 @@ std::vector<MediumScene> media_of(const Scene& scene, std::span<const Surface> s
                                   std::span<const Material> materials) {
   const std::vector<Painted> below = painted_below(scene, surfaces, materials);
   std::vector<MediumScene> media;
-  if (below[scene.root].transparent == kNone) return media;
+  if (below[scene.root].transparent == kNoMaterial) return media;
   Graph graph = scene.graph;
   const std::vector<Body> bodies = Bodies(below, surfaces, materials, graph).of(scene.root);
   const std::vector<Knowledge> known = analyse(graph);

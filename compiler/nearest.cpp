@@ -18,7 +18,7 @@ std::string lower(std::string_view text) {
 }
 
 // Bounds on the time that a file full of mistakes takes.
-constexpr std::size_t kLongest = 40;  // letters of a word that is typed
+constexpr std::size_t kLongestWord = 40;  // letters of a word that is typed
 constexpr std::size_t kMostCandidates = 4000;
 
 // Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`: the optimal string alignment
@@ -48,7 +48,7 @@ std::size_t edits(std::string_view a, std::string_view b, std::size_t most) {
 }  // namespace
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
-  if (word.size() > kLongest) return {};
+  if (word.size() > kLongestWord) return {};
   // One typing error in three letters; a word of one or two letters has room for one.
   const std::size_t most = std::max<std::size_t>(1, word.size() / 3);
   std::string_view best;

@@ -42,7 +42,6 @@ Box finite_part(const Scene& scene, const std::vector<Knowledge>& known) {
   return parts[scene.root];
 }
 
-double largest_part(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 // The largest power of two up to `value` > 0.
 double power_of_two(double value) {

@@ -18,7 +18,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kEndless = 1e17;        // a box's side beyond this stands for one without end
+constexpr double kLargestSide = 1e17;        // a box's side beyond this stands for one without end
 constexpr std::uint64_t kFewest = 256;   // points of a row
 constexpr std::uint64_t kChunk = 4096;   // points a thread takes at once
 constexpr int kWalk = 3;                 // steps towards the surface
@@ -49,10 +49,10 @@ Box region(const Box& box, double reach) {
   if (box.empty()) return Box::centred(glm::dvec3(reach));
   Box out;
   for (int i = 0; i < 3; ++i) {
-    const bool ends = box.lo[i] > -kEndless && box.hi[i] < kEndless;
+    const bool ends = box.lo[i] > -kLargestSide && box.hi[i] < kLargestSide;
     const double grow = ends ? 0.2 * (box.hi[i] - box.lo[i]) : 0;
-    out.lo[i] = box.lo[i] > -kEndless ? box.lo[i] - grow : std::min(-reach, box.hi[i] - reach);
-    out.hi[i] = box.hi[i] < kEndless ? box.hi[i] + grow : std::max(reach, box.lo[i] + reach);
+    out.lo[i] = box.lo[i] > -kLargestSide ? box.lo[i] - grow : std::min(-reach, box.hi[i] - reach);
+    out.hi[i] = box.hi[i] < kLargestSide ? box.hi[i] + grow : std::max(reach, box.lo[i] + reach);
   }
   return out;
 }

@@ -2,7 +2,11 @@
 // Tested by: tests/compiler/elaborate_test.cpp
 #pragma once
 
+#include <numbers>
+
 namespace fathom::compiler {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  // radians
 
 struct SineCosine {
   double sine, cosine;

@@ -6,16 +6,17 @@
 #include <glm/exponential.hpp>
 
 #include "runtime/light_query.h"
+#include "runtime/noise.h"
 #include "runtime/sampler.h"
 #include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
 
-constexpr double kLeastShare = 0.25, kMostShare = 16;  // of the average
+constexpr double kLeastSampleShare = 0.25, kMostShare = 16;  // of the average
 constexpr double kLeastSamples = 2;
-// Brightness below which noise is no more visible, and noise below which a pixel counts as quiet, of the average.
-constexpr double kDark = 0.01, kQuiet = 1e-3;
+// Noise below which a pixel counts as quiet, as a share of the average.
+constexpr double kQuiet = 1e-3;
 
 // With the binomial weights 1 4 6 4 1 over 16 along `count` values `stride` apart; those at the ends stand for what
 // lies outside.
@@ -112,7 +113,7 @@ std::vector<int> second_samples(std::span<const PixelEstimate> estimates, int wi
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   CHECK(pixels > 0 && estimates.size() == pixels, "an estimate for each pixel");
   const double average = spp - first_samples(spp);
-  const double least = std::max(kLeastSamples, kLeastShare * average), most = kMostShare * average;
+  const double least = std::max(kLeastSamples, kLeastSampleShare * average), most = kMostShare * average;
   std::vector<double> shares = visible_noise(estimates, width, height);
   const double factor = fitting_factor(shares, least, most, average * static_cast<double>(pixels));
   for (double& share : shares) share = std::clamp(factor * share, least, most);

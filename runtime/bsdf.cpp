@@ -5,9 +5,7 @@
 namespace fathom::runtime {
 namespace {
 
-using Type = MaterialType;
-
-bool is_lambert(Type type) { return type == Type::Diffuse || type == Type::Emissive; }
+bool is_lambert(MaterialType type) { return type == MaterialType::Diffuse || type == MaterialType::Emissive; }
 
 bool black(glm::vec3 v) { return v == glm::vec3(0); }
 
@@ -15,28 +13,28 @@ bool black(glm::vec3 v) { return v == glm::vec3(0); }
 
 Bsdf::Bsdf(const MaterialPoint& m, glm::vec3 normal, glm::vec3 wo, float eta, bool inside)
     : type_(m.type), color_(m.base_color), normal_(normal), wo_(wo), eta_(eta) {
-  if (type_ != Type::Principled) return;
+  if (type_ != MaterialType::Principled) return;
   const Frame frame(normal);
   layers_.emplace(Layers{frame, Principled(m, frame.to_local(wo), eta, inside)});
 }
 
 bool Bsdf::is_delta() const { return layers_ ? layers_->principled.is_delta() : !is_lambert(type_); }
 
-bool Bsdf::has_lobes() const { return type_ == Type::Principled || type_ == Type::Transparent; }
+bool Bsdf::has_lobes() const { return type_ == MaterialType::Principled || type_ == MaterialType::Transparent; }
 
 BsdfSample Bsdf::sample(float lobe, glm::vec2 u) const {
   switch (type_) {
-    case Type::Diffuse:
-    case Type::Emissive: {
+    case MaterialType::Diffuse:
+    case MaterialType::Emissive: {
       const glm::vec3 local = square_to_cosine_hemisphere(u);
       const glm::vec3 wi = to_frame(normal_, local);
       return {.wi = wi, .weight = color_, .pdf = evaluate(wi).pdf};
     }
-    case Type::Specular:
+    case MaterialType::Specular:
       return {.wi = reflect_about(wo_, normal_), .weight = color_};
-    case Type::Transparent:
+    case MaterialType::Transparent:
       return sample_transparent(lobe);
-    case Type::Principled:
+    case MaterialType::Principled:
       return sample_layers(lobe, u);
   }
   return {};

@@ -9,11 +9,11 @@ namespace fathom::runtime {
 namespace {
 
 // A part of a row of pixels whose samples are alike: [x0, x1), and their ranges in order, none touching the next.
-struct Column {
+struct PixelColumn {
   int x0, x1;
   std::vector<SampleRange> ranges;
 
-  bool operator==(const Column&) const = default;
+  bool operator==(const PixelColumn&) const = default;
 };
 
 std::vector<SampleRange> joined(std::vector<SampleRange> ranges) {
@@ -51,8 +51,8 @@ void sweep(std::vector<SampleBlock> blocks, const Begin& begin, const End& end, 
   }
 }
 
-std::vector<Column> columns_of(const std::vector<SampleBlock>& row) {
-  std::vector<Column> columns;
+std::vector<PixelColumn> columns_of(const std::vector<SampleBlock>& row) {
+  std::vector<PixelColumn> columns;
   sweep(
       row, [](const SampleBlock& block) { return block.area.x0; },
       [](const SampleBlock& block) { return block.area.x1; },
@@ -167,14 +167,14 @@ void Coverage::add(const Coverage& other) {
 void Coverage::tidy() {
   struct Row {
     int y0, y1;
-    std::vector<Column> columns;
+    std::vector<PixelColumn> columns;
   };
   std::vector<Row> rows;
   sweep(
       std::exchange(blocks_, {}), [](const SampleBlock& block) { return block.area.y0; },
       [](const SampleBlock& block) { return block.area.y1; },
       [&](int y0, int y1, const std::vector<SampleBlock>& blocks) {
-        std::vector<Column> columns = columns_of(blocks);
+        std::vector<PixelColumn> columns = columns_of(blocks);
         if (!rows.empty() && rows.back().y1 == y0 && rows.back().columns == columns) {
           rows.back().y1 = y1;
         } else {
@@ -182,7 +182,7 @@ void Coverage::tidy() {
         }
       });
   for (const Row& row : rows) {
-    for (const Column& column : row.columns) {
+    for (const PixelColumn& column : row.columns) {
       for (const SampleRange range : column.ranges)
         blocks_.push_back({{column.x0, row.y0, column.x1, row.y1}, range});
     }

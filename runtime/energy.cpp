@@ -13,8 +13,8 @@ namespace {
 constexpr int kNodes = AlbedoRow::kNodes;
 // What the tables are made with: integrals that err by less than 1e-3, from the denser side, where total reflection
 // breaks the integrand, with more points.
-constexpr Lattice kOutside{377, 233}, kInside{2584, 1597};
-constexpr float kLeastAlpha = 1e-4f;
+constexpr Lattice kFromOutside{377, 233}, kFromInside{2584, 1597};
+constexpr float kTableLeastAlpha = 1e-4f;
 
 // Four neighbours of a place among nodes 0, 1 ... and what each of them counts: Lagrange's cubic.
 struct Stencil {
@@ -48,7 +48,7 @@ std::array<float, kNodes> average_weights() {
 }
 
 // Roughnesses lie as cosines do: alpha^(1/4) = 0, 1/23 ... 1.
-float node_alpha(int i) { return std::max(AlbedoRow::node_cos(i), kLeastAlpha); }
+float node_alpha(int i) { return std::max(AlbedoRow::node_cos(i), kTableLeastAlpha); }
 
 // A table of rows, one for each roughness, each made when it is first asked for.
 template <typename Row>
@@ -99,7 +99,7 @@ float slice_eta(int slice) { return (1 + slice_s(slice)) / (1 - slice_s(slice));
 const OutsideRow& outside_row(int slice, int roughness) {
   static std::array<RowTable<OutsideRow>, kSlices> tables;
   const auto make = [&](float cos, std::size_t k, OutsideRow& row) {
-    const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), slice_eta(slice), kOutside);
+    const BoundaryAlbedo albedo = integrate_dielectric(cos, node_alpha(roughness), slice_eta(slice), kFromOutside);
     row.reflected.node[k] = albedo.reflected;
     row.lost.node[k] = albedo.lost;
   };
@@ -109,7 +109,7 @@ const OutsideRow& outside_row(int slice, int roughness) {
 const AlbedoRow& inside_row(int slice, int roughness) {
   static std::array<RowTable<AlbedoRow>, kSlices> tables;
   const auto make = [&](float cos, std::size_t k, AlbedoRow& row) {
-    row.node[k] = integrate_dielectric(cos, node_alpha(roughness), 1 / slice_eta(slice), kInside).lost;
+    row.node[k] = integrate_dielectric(cos, node_alpha(roughness), 1 / slice_eta(slice), kFromInside).lost;
   };
   return tables[static_cast<std::size_t>(slice)].row(roughness, make);
 }
@@ -179,7 +179,7 @@ AlbedoRow conductor_loss(float alpha) {
   AlbedoRow row = AlbedoRow::constant(0);
   add_rows(alpha, 1, row, [](int node) -> const AlbedoRow& {
     return table.row(node, [&](float cos, std::size_t k, AlbedoRow& made) {
-      made.node[k] = integrate_conductor_loss(cos, node_alpha(node), kOutside);
+      made.node[k] = integrate_conductor_loss(cos, node_alpha(node), kFromOutside);
     });
   });
   return row;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "runtime/angle.h"
 #include "runtime/elementary.h"
 #include "runtime/warp.h"
 #include "vm/check.h"
@@ -13,8 +14,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr float kPiFloat = std::numbers::pi_v<float>;
 // How far rounding to floats moves a unit vector, at most: half of 2^-24 along each axis.
 constexpr double kRounding = 0x1p-24;
 // Degrees. Directions in float would make the disc larger than it is by kRounding all round: here by 0.03 % of its
@@ -151,13 +151,13 @@ float Environment::estimate(const Disc& disc, const LightQuery& query) const {
 }
 
 float Environment::estimate(const LightQuery& query) const {
-  float sum = kPi * mean();
+  float sum = kPiFloat * mean();
   for (const Disc& disc : discs_) sum += estimate(disc, query);
   return sum;
 }
 
 glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u) const {
-  float rest = choice * estimate(query) - kPi * mean();
+  float rest = choice * estimate(query) - kPiFloat * mean();
   const Disc* chosen = nullptr;
   for (const Disc& disc : discs_) {
     const float own = estimate(disc, query);
@@ -175,10 +175,10 @@ glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u
 float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {
   const float all = estimate(query);
   if (!(all > 0)) return 0;
-  float sum = mean() > 0 ? kPi * mean() * table_.pdf(turned(direction, -turn_sine_, turn_cosine_)) : 0;
+  float sum = mean() > 0 ? kPiFloat * mean() * table_.pdf(turned(direction, -turn_sine_, turn_cosine_)) : 0;
   for (const Disc& disc : discs_) {
     if (!disc.holds(direction)) continue;
-    sum += estimate(disc, query) / (2 * kPi * static_cast<float>(disc.height));
+    sum += estimate(disc, query) / (2 * kPiFloat * static_cast<float>(disc.height));
   }
   return sum / all;
 }

@@ -9,7 +9,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr const char* kNoSense = "its head makes no sense";
+constexpr const char* kBadHeader = "its head makes no sense";
 // Of an identity: some ten times as many as there are, for comparing takes their square.
 constexpr std::size_t kMostRows = 256;
 
@@ -193,7 +193,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
 std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   FilmHeader& header = head.header;
   header.identity.resize(in.count(8));
-  if (header.identity.size() > kMostRows) return kNoSense;
+  if (header.identity.size() > kMostRows) return kBadHeader;
   for (auto& [name, value] : header.identity) {
     name = text_of(in);
     value = text_of(in);
@@ -213,7 +213,7 @@ std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   head.shape.layers = read_layers(in);
   head.shape.first_share = in.f64();
   head.shape.stages = in.u8();
-  return in.failed() || !makes_sense(head) ? std::optional<std::string>(kNoSense) : std::nullopt;
+  return in.failed() || !makes_sense(head) ? std::optional<std::string>(kBadHeader) : std::nullopt;
 }
 
 std::optional<std::string> read_covered(vm::ByteReader& in, FilmFile& head) {
@@ -221,7 +221,7 @@ std::optional<std::string> read_covered(vm::ByteReader& in, FilmFile& head) {
     head.render.covered.push_back(read_coverage(head.shape.area, in));
   }
   head.render.noise = read_noise(head.shape, in);
-  return in.failed() || in.left() > 0 ? std::optional<std::string>(kNoSense) : std::nullopt;
+  return in.failed() || in.left() > 0 ? std::optional<std::string>(kBadHeader) : std::nullopt;
 }
 
 }  // namespace fathom::runtime

@@ -140,17 +140,17 @@ struct Sensitivity {
 };
 constexpr Sensitivity kSensitivities[3] = {
     {1, 0.0047f, 0, 1e-5f}, {1, 0.0053f, 0, 1e-5f}, {34.1f, 0.04f, 13.5f, 0.025f}};
-constexpr float kPi = 3.14159265358979324f;
+constexpr float kPiF = std::numbers::pi_v<float>;
 
 // In two dimensions the whole sum has to be 1.
 void blur_as_seen(Plane& plane, int width, int height, const Sensitivity& s, float pixels_per_degree) {
   constexpr float kWidest = 0.04f;  // b
-  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
+  const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPiF * kPiF)) * pixels_per_degree));
   const auto kernel_of = [&](float b) {
-    return gaussian(kPi * kPi / (b * pixels_per_degree * pixels_per_degree), radius);
+    return gaussian(kPiF * kPiF / (b * pixels_per_degree * pixels_per_degree), radius);
   };
   const Kernel first = kernel_of(s.b1), second = kernel_of(s.b2);
-  const float first_scale = s.a1 * std::sqrt(kPi / s.b1), second_scale = s.a2 * std::sqrt(kPi / s.b2);
+  const float first_scale = s.a1 * std::sqrt(kPiF / s.b1), second_scale = s.a2 * std::sqrt(kPiF / s.b2);
   const float first_sum = sum(first), second_sum = sum(second);
   const float total = first_scale * first_sum * first_sum + second_scale * second_sum * second_sum;
   const Plane a = convolve(plane, width, height, first, first);

@@ -81,7 +81,7 @@ Imf::Slice slice_of(Imf::PixelType type, void* row, const PixelRect& area, std::
 }
 
 // Values from outside UINT's range to its ends, NaN to 0.
-std::uint32_t to_whole(float value) {
+std::uint32_t to_whole_number(float value) {
   if (!(value > 0)) return 0;
   return value < 0x1p32f ? static_cast<std::uint32_t>(value) : ~0u;
 }
@@ -103,7 +103,7 @@ void write_rows(const ImageRows& image, Imf::OutputFile& file) {
     image.fill(y, rows);
     for (std::size_t c = 0; c < count; ++c) {
       std::transform(floats[c].begin(), floats[c].begin() + static_cast<std::ptrdiff_t>(wholes[c].size()),
-                     wholes[c].begin(), to_whole);
+                     wholes[c].begin(), to_whole_number);
     }
     file.writePixels(1);
   }

@@ -18,7 +18,7 @@ namespace {
 constexpr int kPart = 0;  // the one that is read
 // What decoding takes beside the numbers, in chunks: copies of one, packed and unpacked.
 constexpr double kChunks = 8;
-constexpr const char* kNoSense = "its header makes no sense";
+constexpr const char* kBadExr = "its header makes no sense";
 
 std::int64_t length_of(std::int64_t first, std::int64_t last) { return last - first + 1; }
 std::int64_t width_of(const exr_attr_box2i_t& window) { return length_of(window.min.x, window.max.x); }
@@ -56,21 +56,21 @@ std::optional<Attribute> value_of(const exr_attribute_t& attribute) {
   }
 }
 
-class Reader {
+class ExrReader {
  public:
-  Reader(const std::vector<std::uint8_t>& bytes, double memory) : bytes_(bytes), memory_(memory) {}
-  ~Reader() {
+  ExrReader(const std::vector<std::uint8_t>& bytes, double memory) : bytes_(bytes), memory_(memory) {}
+  ~ExrReader() {
     if (context_ != nullptr) exr_finish(&context_);
   }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ExrReader(const ExrReader&) = delete;
+  ExrReader& operator=(const ExrReader&) = delete;
 
   std::variant<FloatImage, std::string> read() {
     if (open() && is_allowed() && has_chunks() && take_header() && read_chunks()) {
       whole_to_float();
       return std::move(image_);
     }
-    return problem_.empty() ? kNoSense : problem_;
+    return problem_.empty() ? kBadExr : problem_;
   }
 
  private:
@@ -87,7 +87,7 @@ class Reader {
     how.user_data = this;
     how.read_fn = read_bytes;
     how.size_fn = [](exr_const_context_t, void* self) {
-      return static_cast<std::int64_t>(static_cast<Reader*>(self)->bytes_.size());
+      return static_cast<std::int64_t>(static_cast<ExrReader*>(self)->bytes_.size());
     };
     how.error_handler_fn = keep_message;
     how.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
@@ -112,7 +112,7 @@ class Reader {
       return false;
     }
     for (const exr_attr_box2i_t& window : {data_, display_}) {
-      if (width_of(window) < 1 || height_of(window) < 1) return fail(kNoSense);
+      if (width_of(window) < 1 || height_of(window) < 1) return fail(kBadExr);
       if (pixels_of(window) > static_cast<double>(kMostPixels)) return fail("it is too large");
     }
     const std::int64_t right = std::int64_t{data_.min.x} - display_.min.x,
@@ -174,7 +174,7 @@ class Reader {
 
   // A chunk's numbers to where they belong, its first at (x, y) of the data window.
   bool decode(const exr_chunk_info_t& chunk, std::int64_t x, std::int64_t y) {
-    if (x + chunk.width > width_of(data_) || y + chunk.height > height_of(data_)) return fail(kNoSense);
+    if (x + chunk.width > width_of(data_) || y + chunk.height > height_of(data_)) return fail(kBadExr);
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
     bool decoded = good(exr_decoding_initialize(context_, kPart, &chunk, &pipeline));
     const std::size_t at = static_cast<std::size_t>(y * width_of(data_) + x);
@@ -202,7 +202,7 @@ class Reader {
 
   static std::int64_t read_bytes(exr_const_context_t, void* self, void* out, std::uint64_t size, std::uint64_t offset,
                                  exr_stream_error_func_ptr_t) {
-    const std::vector<std::uint8_t>& bytes = static_cast<Reader*>(self)->bytes_;
+    const std::vector<std::uint8_t>& bytes = static_cast<ExrReader*>(self)->bytes_;
     const std::uint64_t count = offset < bytes.size() ? std::min<std::uint64_t>(size, bytes.size() - offset) : 0;
     if (count > 0) std::memcpy(out, bytes.data() + offset, count);
     return static_cast<std::int64_t>(count);
@@ -211,7 +211,7 @@ class Reader {
   static void keep_message(exr_const_context_t context, exr_result_t, const char* text) {
     void* self = nullptr;
     if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS && self != nullptr) {
-      static_cast<Reader*>(self)->fail(text);
+      static_cast<ExrReader*>(self)->fail(text);
     }
   }
 
@@ -229,7 +229,7 @@ class Reader {
 }  // namespace
 
 std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory) {
-  return Reader(bytes, memory - static_cast<double>(bytes.size())).read();
+  return ExrReader(bytes, memory - static_cast<double>(bytes.size())).read();
 }
 
 }  // namespace fathom::runtime

@@ -66,9 +66,9 @@ class Writer {
 
 // Reads a file as its bytes come, and no further than its picture goes: libpng's other way to read unpacks what
 // follows, too, a thousand bytes for each of the file's.
-class Reader {
+class PngReader {
  public:
-  Reader(double file_size, double memory)
+  PngReader(double file_size, double memory)
       : file_size_(file_size),
         memory_(memory),
         png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, this, keep_problem, be_quiet)),
@@ -77,11 +77,11 @@ class Reader {
     png_set_progressive_read_fn(png_, this, begin, put_row, end);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // but for those that change samples
   }
-  ~Reader() {
+  ~PngReader() {
     if (png_ != nullptr) png_destroy_read_struct(&png_, &about_, nullptr);
   }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   std::variant<PngPicture, std::string> read(std::span<const std::uint8_t> bytes) {
     if (about_ == nullptr) return "libpng cannot begin";
@@ -92,10 +92,10 @@ class Reader {
   }
 
  private:
-  static Reader& self(png_structp png) { return *static_cast<Reader*>(png_get_progressive_ptr(png)); }
+  static PngReader& self(png_structp png) { return *static_cast<PngReader*>(png_get_progressive_ptr(png)); }
 
   [[noreturn]] static void keep_problem(png_structp png, png_const_charp text) {
-    static_cast<Reader*>(png_get_error_ptr(png))->problem_ = text;
+    static_cast<PngReader*>(png_get_error_ptr(png))->problem_ = text;
     png_longjmp(png, 1);
   }
 
@@ -165,7 +165,7 @@ class Reader {
 }  // namespace
 
 std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory) {
-  return Reader(static_cast<double>(bytes.size()), memory).read(bytes);
+  return PngReader(static_cast<double>(bytes.size()), memory).read(bytes);
 }
 
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row) {

@@ -40,7 +40,7 @@ FloatImage empty_image(int width, int height, bool alpha) {
 
 // Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components; `light` and `share` make numbers of them.
 template <typename Sample, typename Light, typename Share>
-FloatImage spread(const Sample* samples, int width, int height, int components, const Light& light,
+FloatImage widened(const Sample* samples, int width, int height, int components, const Light& light,
                   const Share& share) {
   const bool alpha = components % 2 == 0, grey = components <= 2;
   FloatImage image = empty_image(width, height, alpha);
@@ -146,7 +146,7 @@ FloatImage from_signals(const Sample* samples, int width, int height, int compon
   for (std::size_t i = 0; i <= kMost; ++i) {
     light[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
   }
-  return spread(
+  return widened(
       samples, width, height, components, [&](Sample sample) { return light[sample]; },
       [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
 }
@@ -187,7 +187,7 @@ Decoded decode_hdr(const Bytes& bytes, double memory) {
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
   if (const char* problem = source.problem(pixels.get())) return problem;
   const auto same = [](float value) { return value; };
-  return spread(pixels.get(), width, height, 3, same, same);
+  return widened(pixels.get(), width, height, 3, same, same);
 }
 
 // The next word of a header, which ends with one white character; empty at the end.
@@ -242,7 +242,7 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
     values[y * row + i % row] = std::bit_cast<float>(bits);
   }
   const auto same = [](float value) { return value; };
-  return spread(values.data(), *width, *height, components, same, same);
+  return widened(values.data(), *width, *height, components, same, same);
 }
 
 // False, and errno tells why. What does not begin as its format does is read no further than its first piece, and

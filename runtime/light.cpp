@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "vm/real.h"
+#include "runtime/angle.h"
 
 namespace fathom::runtime {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // Of near lights and those beyond, each side at least so often when there are both: estimates may be far off.
 constexpr float kLeastShare = 0.25f;
 

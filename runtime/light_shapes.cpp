@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numbers>
 
+#include "runtime/angle.h"
 #include "runtime/lamp_parts.h"
 #include "runtime/round_lamps.h"
 #include "runtime/seen_rectangle.h"
@@ -17,7 +17,6 @@ namespace {
 using compiler::Lamp;
 using glm::dvec2;
 using glm::dvec3;
-constexpr double kPi = std::numbers::pi;
 
 // --- boxes
 

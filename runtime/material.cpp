@@ -11,8 +11,6 @@ namespace fathom::runtime {
 namespace {
 
 using compiler::MaterialNumbers;
-using Type = compiler::Material::Type;
-
 // Light that a medium may take away, per scene unit: beyond this nothing is left anyway.
 constexpr float kLargestAbsorption = 1e18f;
 
@@ -21,10 +19,10 @@ glm::vec3 absorption_for(glm::vec3 left, float depth) {
   return glm::min(-log(left) / depth, glm::vec3(kLargestAbsorption));
 }
 
-void put_transmission(const MaterialNumbers& n, Type type, MaterialPoint& point) {
+void put_transmission(const MaterialNumbers& n, MaterialType type, MaterialPoint& point) {
   point.transmission_color = glm::vec3(n.transmission_color);
   point.absorption = glm::vec3(n.absorption);
-  if (type == Type::Transparent) {
+  if (type == MaterialType::Transparent) {
     point.transmission = 1;
     point.roughness = 0;
     point.transmission_color = point.base_color;
@@ -39,7 +37,7 @@ void close(MaterialPoint& point) {
   if (point.fills()) point.opacity = 1;
 }
 
-MaterialPoint to_point(const MaterialNumbers& n, Type type, bool thin_walled) {
+MaterialPoint to_point(const MaterialNumbers& n, MaterialType type, bool thin_walled) {
   MaterialPoint point;
   point.type = type;
   point.base_color = glm::vec3(n.base_weight * n.color);
@@ -124,23 +122,23 @@ glm::dvec3 Materials::value(std::uint32_t texture, glm::dvec3 position, vm::Work
 
 MaterialPoint to_principled(const MaterialPoint& m) {
   MaterialPoint p = m;
-  p.type = Type::Principled;
+  p.type = MaterialType::Principled;
   switch (m.type) {
-    case Type::Diffuse:
-    case Type::Emissive:
+    case MaterialType::Diffuse:
+    case MaterialType::Emissive:
       p.specular_weight = 0;
       break;
-    case Type::Specular:
+    case MaterialType::Specular:
       p.metalness = 1;
       p.roughness = 0;
       p.specular_color = m.base_color / (m.base_color + (1.0f - m.base_color) * kEdge);
       break;
-    case Type::Transparent:
+    case MaterialType::Transparent:
       p.transmission = 1;
       p.roughness = 0;
       p.transmission_color = m.base_color;
       break;
-    case Type::Principled:
+    case MaterialType::Principled:
       break;
   }
   return p;
@@ -175,7 +173,7 @@ MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t) {
 
 glm::vec3 albedo_of(const MaterialPoint& m) {
   glm::vec3 color = m.base_color;
-  if (m.type == Type::Principled) color = color * (1 - m.transmission) + m.transmission_color * m.transmission;
+  if (m.type == MaterialType::Principled) color = color * (1 - m.transmission) + m.transmission_color * m.transmission;
   return glm::min(color + m.emission, glm::vec3(1));
 }
 

@@ -11,7 +11,6 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kDark = 0.01;  // as in runtime/adaptive.cpp
 
 }  // namespace
 

@@ -30,6 +30,7 @@ namespace fathom::runtime {
 
 class Film;
 
+inline constexpr double kDark = 0.01;  // brightness below which noise is not visible
 inline constexpr int kNoiseTile = 16;  // pixels; from the whole picture's corner, whatever tiles threads take
 inline constexpr std::size_t kNoiseStages = 4;  // of the film: what counts of either half, what does not
 inline constexpr int kLeastNoiseSpp = 4;        // below, a half has no variance

@@ -15,7 +15,7 @@ constexpr float kInnerLimit = 0.7f;
 // Choices in a program short enough for a leaf.
 constexpr std::uint32_t kLeafChoices = 3;
 // Cells are split no further after so many levels at which their parts did not get this much shorter.
-constexpr double kShorter = 0.9;
+constexpr double kShorterPart = 0.9;
 constexpr int kMostIdle = 2;
 // Cells down to this level are shared out among the threads.
 constexpr int kShared = 2;
@@ -55,7 +55,7 @@ void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int l
   builder_.bytes_ += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (children[i]) continue;
-    const bool shorter = parts[i].words.size() < kShorter * static_cast<double>(part.words.size());
+    const bool shorter = parts[i].words.size() < kShorterPart * static_cast<double>(part.words.size());
     const int idle = shorter || below <= builder_.options_.room ? 0 : idle_so_far + 1;
     if (idle > kMostIdle) {
       make_leaf(parts[i], true, 0, below, inner, first + i);

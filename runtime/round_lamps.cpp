@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
+#include "runtime/angle.h"
 #include "runtime/elementary.h"
 #include "runtime/lamp_parts.h"
 #include "vm/real.h"
@@ -15,7 +15,6 @@ namespace {
 using compiler::Lamp;
 using glm::dvec2;
 using glm::dvec3;
-constexpr double kPi = std::numbers::pi;
 
 // --- spheres, about a centre
 

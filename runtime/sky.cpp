@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 
+#include "runtime/angle.h"
 #include "runtime/elementary.h"
 #include "runtime/sphere_table.h"
 #include "vm/real.h"
@@ -13,10 +13,9 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kUnit = 10;           // kcd/m^2 of radiance 1
+constexpr double kSkyUnit = 10;           // kcd/m^2 of radiance 1
 constexpr double kSunOutside = 133.1;  // klx
-constexpr float kLeastCosine = 1e-4f;  // of the angle from the zenith: Perez' formula divides by it
+constexpr float kLeastZenithCosine = 1e-4f;  // of the angle from the zenith: Perez' formula divides by it
 
 // Source: IEC 61966-2-1:1999.
 glm::vec3 xyY_to_srgb(float x, float y, float Y) {
@@ -49,7 +48,7 @@ double transmittance(double wavelength, double turbidity, double mass) {
 glm::dvec3 sun_through_air(double turbidity, double theta) {
   const double degrees = theta * 180 / kPi;
   const double mass = 1 / (vm::real::cos(theta) + 0.15 * vm::real::pow(93.885 - degrees, -1.253));
-  return kSunOutside / kUnit *
+  return kSunOutside / kSkyUnit *
          glm::dvec3(transmittance(0.610, turbidity, mass), transmittance(0.550, turbidity, mass),
                     transmittance(0.465, turbidity, mass));
 }
@@ -76,7 +75,7 @@ float Sky::Perez::operator()(float cos_theta, float gamma, float cos_gamma) cons
   return zenith * (1 + a * exp(b / cos_theta)) * (1 + c * exp(d * gamma) + e * cos_gamma * cos_gamma);
 }
 
-Sky::Sky(const compiler::Background::Sky& sky) : sun_(sky.sun), scale_(static_cast<float>(sky.strength / kUnit)) {
+Sky::Sky(const compiler::Background::Sky& sky) : sun_(sky.sun), scale_(static_cast<float>(sky.strength / kSkyUnit)) {
   const double t = sky.turbidity, theta = vm::real::acos(std::clamp(sky.sun.y, 0.0, 1.0));
   const auto perez = [&](std::array<double, 5> k, double at_zenith) {
     Perez out{float(k[0]), float(k[1]), float(k[2]), float(k[3]), float(k[4]), 1};
@@ -103,7 +102,7 @@ Sky::Sky(const compiler::Background::Sky& sky) : sun_(sky.sun), scale_(static_ca
 }
 
 glm::vec3 Sky::above(glm::vec3 direction) const {
-  const float cos_theta = std::max(direction.y, kLeastCosine);
+  const float cos_theta = std::max(direction.y, kLeastZenithCosine);
   const float cos_gamma = std::clamp(glm::dot(direction, sun_), -1.0f, 1.0f);
   const auto gamma = static_cast<float>(vm::real::acos(static_cast<double>(cos_gamma)));
   const auto at = [&](std::size_t i) { return perez_[i](cos_theta, gamma, cos_gamma); };

@@ -43,10 +43,10 @@ void widen(double& lo, double& hi, double length) {
   hi += margin;
 }
 
-// Rows are handed out one by one; each worker has its own scratch memory.
-class Rows {
+// PixelRows are handed out one by one; each worker has its own scratch memory.
+class PixelRows {
  public:
-  Rows(const vm::VerifiedProgram& distance, const Slice& slice, std::vector<float>& field)
+  PixelRows(const vm::VerifiedProgram& distance, const Slice& slice, std::vector<float>& field)
       : distance_(distance), slice_(slice), field_(field) {}
 
   void work() {
@@ -170,7 +170,7 @@ std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Sli
                                   SliceValues wanted) {
   std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
   if (evaluate_by_quadtree(distance, slice, wanted, threads, field)) return field;
-  Rows rows(distance, slice, field);
+  PixelRows rows(distance, slice, field);
   std::vector<std::thread> others;
   for (int i = 1; i < std::min(threads, slice.height); ++i) others.emplace_back([&] { rows.work(); });
   rows.work();

@@ -34,7 +34,7 @@ std::uint32_t quads_of(std::uint32_t word) {
 
 Opcode opcode_of(std::uint32_t word) { return static_cast<Opcode>(word & 0xff); }
 bool is_shape(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Shape; }
-bool is_joined(std::uint32_t word) { return is_shape(word) && (operand_of(word) & kJoined) != 0; }
+bool is_joined_shape(std::uint32_t word) { return is_shape(word) && (operand_of(word) & kJoined) != 0; }
 
 // The part's instructions but for the tags, each shape that is only there for the least of it and what was before
 // joined to it.
@@ -45,7 +45,7 @@ std::vector<Step> untagged(const Part& part) {
     const std::uint32_t word = part.words[at];
     if (opcode_of(word) == Opcode::Tag) continue;
     const bool joins = word == opcode_word(Opcode::Min) && steps.size() > 1 && is_shape(steps.back().word) &&
-                       !is_joined(steps.back().word);
+                       !is_joined_shape(steps.back().word);
     if (joins) {
       steps.back().word |= kJoined << 8;
     } else {
@@ -58,7 +58,7 @@ std::vector<Step> untagged(const Part& part) {
 // A union does not mind its order: programs that begin with the same shapes in other orders are one skeleton.
 void sort_union(std::vector<Step>& steps) {
   if (steps.empty() || !is_shape(steps[0].word)) return;
-  auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined(s.word); });
+  auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined_shape(s.word); });
   constexpr std::uint32_t kJoinedBit = kJoined << 8;
   std::stable_sort(steps.begin(), end,
                    [](const Step& a, const Step& b) { return (a.word & ~kJoinedBit) < (b.word & ~kJoinedBit); });

@@ -14,7 +14,7 @@
 namespace fathom::compiler {
 namespace {
 
-using Names = std::span<const std::string_view>;
+using ChoiceNames = std::span<const std::string_view>;
 
 constexpr double kAny = 1e300;               // of numbers that must be finite alone
 constexpr double kTiny = 1e-300;             // of numbers above 0
@@ -49,27 +49,27 @@ struct Numbered {
   std::variant<MaterialNumber, MaterialColor> place;
   double least, most;
 };
-using M = MaterialNumbers;
+using MaterialOf = MaterialNumbers;
 const Numbered kNumbers[] = {
-    {"base_weight", &M::base_weight, 0, 1},
-    {"color", &M::color, 0, 1},
-    {"diffuse_roughness", &M::diffuse_roughness, 0, 1},
-    {"metalness", &M::metalness, 0, 1},
-    {"specular_weight", &M::specular_weight, 0, 1},
-    {"specular_color", &M::specular_color, 0, 1},
-    {"roughness", &M::roughness, 0, 1},
-    {"ior", &M::ior, kTiny, kAny},
-    {"transmission", &M::transmission, 0, 1},
-    {"transmission_color", &M::transmission_color, 0, 1},
-    {"transmission_depth", &M::transmission_depth, 0, kAny},
-    {"coat_weight", &M::coat_weight, 0, 1},
-    {"coat_color", &M::coat_color, 0, 1},
-    {"coat_roughness", &M::coat_roughness, 0, 1},
-    {"coat_ior", &M::coat_ior, kTiny, kAny},
-    {"emission", &M::emission, 0, kAny},
-    {"emission_luminance", &M::emission_luminance, 0, kAny},
-    {"absorption", &M::absorption, 0, kAny},
-    {"opacity", &M::opacity, 0, 1},
+    {"base_weight", &MaterialOf::base_weight, 0, 1},
+    {"color", &MaterialOf::color, 0, 1},
+    {"diffuse_roughness", &MaterialOf::diffuse_roughness, 0, 1},
+    {"metalness", &MaterialOf::metalness, 0, 1},
+    {"specular_weight", &MaterialOf::specular_weight, 0, 1},
+    {"specular_color", &MaterialOf::specular_color, 0, 1},
+    {"roughness", &MaterialOf::roughness, 0, 1},
+    {"ior", &MaterialOf::ior, kTiny, kAny},
+    {"transmission", &MaterialOf::transmission, 0, 1},
+    {"transmission_color", &MaterialOf::transmission_color, 0, 1},
+    {"transmission_depth", &MaterialOf::transmission_depth, 0, kAny},
+    {"coat_weight", &MaterialOf::coat_weight, 0, 1},
+    {"coat_color", &MaterialOf::coat_color, 0, 1},
+    {"coat_roughness", &MaterialOf::coat_roughness, 0, 1},
+    {"coat_ior", &MaterialOf::coat_ior, kTiny, kAny},
+    {"emission", &MaterialOf::emission, 0, kAny},
+    {"emission_luminance", &MaterialOf::emission_luminance, 0, kAny},
+    {"absorption", &MaterialOf::absorption, 0, kAny},
+    {"opacity", &MaterialOf::opacity, 0, 1},
 };
 
 void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
@@ -95,7 +95,7 @@ void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
 
 void fields(Archive& a, Material& m, std::size_t textures) {
   field(a, "name", m.name);
-  field(a, "type", m.type, Names(kMaterials));
+  field(a, "type", m.type, ChoiceNames(kMaterials));
   for (const Numbered& row : kNumbers) {
     if (const auto* number = std::get_if<MaterialNumber>(&row.place)) {
       field(a, row.name, m.*(*number), row.least, row.most);
@@ -138,7 +138,7 @@ void make(Variant& v, std::size_t index, std::index_sequence<kIndex...>) {
   (void)((index == kIndex && (v = std::variant_alternative_t<kIndex, Variant>{}, true)) || ...);
 }
 template <typename Variant>
-void kind(Archive& a, std::string_view name, Variant& v, Names names) {
+void kind(Archive& a, std::string_view name, Variant& v, ChoiceNames names) {
   std::size_t index = v.index();
   a.begin(name);
   a.choice(index, names);
@@ -147,7 +147,7 @@ void kind(Archive& a, std::string_view name, Variant& v, Names names) {
 }
 
 constexpr std::string_view kPatterns[] = {"checker", "stripes", "gradient", "noise", "bricks"};
-constexpr std::string_view kRows[] = {"x_row", "y_row", "z_row"};
+constexpr std::string_view kFrameRows[] = {"x_row", "y_row", "z_row"};
 constexpr std::string_view kChannels[] = {"red", "green", "blue"};
 constexpr std::string_view kCorners[] = {"corner0", "corner1", "corner2", "corner3"};
 constexpr std::string_view kTextures[] = {"color", "formula", "pattern"};
@@ -157,7 +157,7 @@ void fields(Archive& a, Pattern& p, std::size_t textures) {
   kind(a, "pattern", p.kind, kPatterns);
   std::visit([&](auto& own) { fields(a, own); }, p.kind);
   for (int row = 0; row < 3; ++row) {
-    field(a, kRows[row], p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
+    field(a, kFrameRows[row], p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
   }
   field(a, "translation", p.to_pattern.translation, -kAny, kAny);
   index(a, "a", p.a, textures);
@@ -176,7 +176,7 @@ void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) 
 }
 
 void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
-  field(a, "shape", l.shape, Names(kLamps));
+  field(a, "shape", l.shape, ChoiceNames(kLamps));
   field(a, "rotation", l.rotation, -1.001, 1.001);
   field(a, "translation", l.translation, -kAny, kAny);
   field(a, "radius", l.radius, 0, kAny);
@@ -255,7 +255,7 @@ void fields(Archive& a, Parameter& p) {
 }
 
 void fields(Archive& a, Camera& c) {
-  field(a, "projection", c.projection, Names(kProjections));
+  field(a, "projection", c.projection, ChoiceNames(kProjections));
   field(a, "position", c.position, -kAny, kAny);
   field(a, "target", c.target, -kAny, kAny);
   field(a, "up", c.up, -kAny, kAny);
@@ -279,9 +279,9 @@ void fields(Archive& a, Film& f) {
   field(a, "width", f.width, 1, kMaxSide);
   field(a, "height", f.height, 1, kMaxSide);
   field(a, "exposure", f.exposure, -100, 100);
-  field(a, "filter", f.filter, Names(kFilterNames));
+  field(a, "filter", f.filter, ChoiceNames(kFilterNames));
   field(a, "filter_width", f.filter_width, kMinFilterWidth, kMaxFilterWidth);
-  field(a, "tone", f.tone, Names(kToneCurves));
+  field(a, "tone", f.tone, ChoiceNames(kToneCurves));
 }
 
 void fields(Archive& a, RenderSettings& s) {
@@ -289,13 +289,13 @@ void fields(Archive& a, RenderSettings& s) {
   field(a, "bounces", s.bounces, 0, kMaxBounces);
   field(a, "tile", s.tile, 1, kMaxTile);
   field(a, "seed", s.seed, 0, ~std::uint64_t{0});
-  field(a, "sampler", s.sampler, Names(kSamplerNames));
+  field(a, "sampler", s.sampler, ChoiceNames(kSamplerNames));
   field(a, "adaptive", s.adaptive);
   field(a, "far", s.far, kTiny, kAny);
 }
 
 void fields(Archive& a, Background& b) {
-  field(a, "type", b.type, Names(kBackgrounds));
+  field(a, "type", b.type, ChoiceNames(kBackgrounds));
   field(a, "bottom", b.bottom, 0, kAny);
   field(a, "top", b.top, 0, kAny);
   unit_vector(a, "sun", b.sky.sun);
@@ -311,7 +311,7 @@ void fields(Archive& a, Background& b) {
 
 void fields(Archive& a, Light& l) {
   field(a, "name", l.name);
-  field(a, "type", l.type, Names(kLights));
+  field(a, "type", l.type, ChoiceNames(kLights));
   field(a, "position", l.position, -kAny, kAny);
   unit_vector(a, "direction", l.direction);
   field(a, "intensity", l.intensity, 0, kAny);

@@ -17,7 +17,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::string_view kHead = "fathom";
+constexpr std::string_view kListingHead = "fathom";
 
 // The lines of a text, each after a bar, so that anything can stand in them.
 std::string barred(std::string_view text) {
@@ -92,7 +92,7 @@ class ListingReader {
                   fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
   }
   void read_head(TextArchiveReader& in) {
-    in.expect(kHead);
+    in.expect(kListingHead);
     in.expect(std::to_string(kFileVersion));
     in.expect("machine");
     if (!in.failed() && in.next() != vm::opcode_digest().text())
@@ -267,7 +267,7 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
   TextArchiveWriter archive;
   record(archive, "tables", const_cast<CompiledScene&>(scene));  // a writer changes nothing
   std::string out =
-      fmt::format("{} {}\nmachine {}\n{}", kHead, kFileVersion, vm::opcode_digest().text(), archive.out());
+      fmt::format("{} {}\nmachine {}\n{}", kListingHead, kFileVersion, vm::opcode_digest().text(), archive.out());
   for (const NamedProgram& row : programs_of(scene)) {
     const std::string listing = vm::disassemble(contents.debug ? *row.program : without_debug(*row.program));
     out += fmt::format("program {} {{\n{}}}\n", row.name, listing);
@@ -283,7 +283,7 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
 std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents) {
   ListingReader reader(listing, diagnostics);
   TextArchiveReader in(listing.text());
-  return in.next() == kHead ? reader.read_all(contents) : reader.read_one(contents);
+  return in.next() == kListingHead ? reader.read_all(contents) : reader.read_one(contents);
 }
 
 }  // namespace fathom::compiler

@@ -7,7 +7,7 @@ namespace fathom::compiler {
 namespace {
 
 // {0}: the scene, {1}: name.
-constexpr std::string_view kHead = R"(// {0}
+constexpr std::string_view kGlslHead = R"(// {0}
 //
 //     float {1}_distance(vec3 p)
 //
@@ -23,7 +23,7 @@ std::string emit_glsl(const CompiledScene& scene, const std::string& name) {
   language.prefix = name + '_';
   FunctionLibrary functions(language);
   const std::string body = print_program(language, scene.distance, scene.origin, functions);
-  return fmt::format(fmt::runtime(kHead), describe(scene), name) + functions.text() +
+  return fmt::format(fmt::runtime(kGlslHead), describe(scene), name) + functions.text() +
          fmt::format("\nfloat {}_distance(vec3 p) {{\n{}}}\n", name, body);
 }
 

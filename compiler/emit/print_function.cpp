@@ -11,16 +11,15 @@ namespace fathom::compiler {
 namespace {
 
 using vm::Binding;
-using vm::Operation;
 using vm::RecordedFunction;
 using vm::Ref;
 
-constexpr std::size_t kLongest = 72;  // characters of an expression that is written within another
+constexpr std::size_t kLongestInline = 72;  // characters of an expression that is written within another
 
-std::string_view spelling_of(const Language& language, Operation operation) {
+std::string_view spelling_of(const Language& language, vm::Operation operation) {
   return vm::info(operation).*language.spelling;
 }
-bool is_call(const Language& language, Operation operation) {
+bool is_call(const Language& language, vm::Operation operation) {
   return spelling_of(language, operation).starts_with('@');
 }
 
@@ -41,7 +40,7 @@ Uses count_uses(const RecordedFunction& function) {
   }
   for (std::size_t i = function.statements.size(); i-- > 0;) {
     const vm::Statement& statement = function.statements[i];
-    const bool ends_loop = statement.operation == Operation::Any && function.loop;
+    const bool ends_loop = statement.operation == vm::Operation::Any && function.loop;
     if (uses.statements[i] == 0 && !ends_loop) continue;
     std::for_each_n(statement.operands.begin(), statement.count(), use);
   }
@@ -141,13 +140,13 @@ class BodyPrinter {
 
   void print_statement(std::size_t i) {
     const vm::Statement& statement = function_.statements[i];
-    const bool ends_loop = statement.operation == Operation::Any && region(i) == 1;
+    const bool ends_loop = statement.operation == vm::Operation::Any && region(i) == 1;
     if (uses_.statements[i] == 0 && !ends_loop) return;
     std::array<Expression, 3> operands;
     for (std::size_t o = 0; o < statement.count(); ++o) operands[o] = text_of(statement.operands[o]);
     Expression text = spell(language_, statement, operands);
     if (ends_loop) return line(fmt::format("if (!{}) break;", text.text));
-    const bool long_text = text.text.size() > kLongest && i != returned_;
+    const bool long_text = text.text.size() > kLongestInline && i != returned_;
     if (uses_.statements[i] > 1 || users_[i] != region(i) || long_text) {
       const bool mask = vm::info(statement.operation).result == vm::ResultType::Mask;
       const std::string name = fmt::format("t{}", ++names_);
@@ -217,11 +216,11 @@ std::optional<Expression> as_expression(const Language& language, const Recorded
   return spell(language, statement, operands);
 }
 
-std::vector<Operation> called_functions(const Language& language, const RecordedFunction& function) {
+std::vector<vm::Operation> called_functions(const Language& language, const RecordedFunction& function) {
   const Uses uses = count_uses(function);
-  std::vector<Operation> called;
+  std::vector<vm::Operation> called;
   for (std::size_t i = 0; i < function.statements.size(); ++i) {
-    const Operation operation = function.statements[i].operation;
+    const vm::Operation operation = function.statements[i].operation;
     if (uses.statements[i] == 0 || !is_call(language, operation)) continue;
     if (std::find(called.begin(), called.end(), operation) == called.end()) called.push_back(operation);
   }

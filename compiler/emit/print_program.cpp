@@ -11,7 +11,6 @@ namespace {
 using vm::Form;
 using vm::Opcode;
 using vm::OpcodeInfo;
-using vm::Source;
 
 // Text for the rest of a line: what could end a comment, or lengthen it as \ and the trigraph ??/ do, is replaced.
 std::string comment_text(std::string_view text) {
@@ -88,20 +87,20 @@ class ProgramPrinter {
     const vm::Sources sources = vm::sources_of(word);
     // The value of b is the top one, the constant of a the first.
     std::vector<Expression> operands;
-    const bool stack = row.form == Form::Binary && sources.b == Source::Stack;
+    const bool stack = row.form == Form::Binary && sources.b == vm::Source::Stack;
     const Expression top = stack ? pop() : Expression{};
     operands.push_back(operand(sources.a, sources.local));
     if (row.form == Form::Binary) operands.push_back(stack ? top : operand(sources.b, sources.local));
     push(functions_.apply(row.opcode, operands, immediates));
   }
 
-  Expression operand(Source source, std::uint32_t local) {
+  Expression operand(vm::Source source, std::uint32_t local) {
     switch (source) {
-      case Source::Stack:
+      case vm::Source::Stack:
         return pop();
-      case Source::Constant:
+      case vm::Source::Constant:
         return language_.number(language_.literal(program_.wide[leading_++]));
-      case Source::Local:
+      case vm::Source::Local:
         return locals_[local];
       default:
         return {points_.back().text + '.' + " xyz"[static_cast<std::size_t>(source)]};

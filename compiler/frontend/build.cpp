@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr std::uint32_t kNoNode = 0xFFFFFFFF;
 
 bool gives_material(const CheckedNode& node) {
   return node.material || std::any_of(node.children.begin(), node.children.end(), gives_material);
@@ -90,8 +90,8 @@ Scene SceneBuilder::finish() {
 
 SceneBuilder::Key SceneBuilder::key(std::uint32_t name, Context context) const {
   // Without paint within, a named node is the same in every object.
-  if (!has_paint_[name]) return {name, kNone, kNone};
-  return {name, context.object, context.material.value_or(kNone)};
+  if (!has_paint_[name]) return {name, kNoNode, kNoNode};
+  return {name, context.object, context.material.value_or(kNoNode)};
 }
 
 void SceneBuilder::build_named(std::uint32_t name, Context context) {

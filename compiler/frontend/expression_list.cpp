@@ -77,17 +77,17 @@ std::vector<std::string_view> operation_names() {
   return names;
 }
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
 
 // Appends the words of a line, the first `most`.
 void split_words(std::string_view line, std::size_t most, std::vector<std::string_view>& words) {
   for (std::size_t at = 0; at < line.size() && most > 0;) {
-    if (is_blank(line[at])) {
+    if (is_space(line[at])) {
       ++at;
       continue;
     }
     std::size_t end = at + 1;
-    while (end < line.size() && !is_blank(line[end])) ++end;
+    while (end < line.size() && !is_space(line[end])) ++end;
     words.push_back(line.substr(at, end - at));
     --most;
     at = end;
@@ -173,8 +173,8 @@ class ListReader {
   bool check_words() {
     double words = 0;
     for (std::size_t at = 0; at < text_.size(); ++at) {
-      const bool begins = at == 0 || is_blank(text_[at - 1]) || text_[at - 1] == '\n';
-      if (!begins || is_blank(text_[at]) || text_[at] == '\n' || ++words <= limits_.tokens) continue;
+      const bool begins = at == 0 || is_space(text_[at - 1]) || text_[at - 1] == '\n';
+      if (!begins || is_space(text_[at]) || text_[at] == '\n' || ++words <= limits_.tokens) continue;
       diagnostics_.error("E0008", span(std::string_view(text_).substr(at, 1)),
                          fmt::format("the list has more than {} words", limits_.tokens), "one too many",
                          {raise(&Limits::tokens, 2 * limits_.tokens)});

@@ -10,7 +10,7 @@ namespace fathom::compiler {
 namespace {
 
 // A product of 64 factors rounds 7 times when it is made of squares, no more than a power by logarithms would.
-constexpr double kLargestWhole = 64;
+constexpr double kLargestUnrolledPower = 64;
 
 constexpr std::string_view kAxes = "xyz";
 
@@ -43,7 +43,7 @@ FormulaId FormulaBuilder::power(FormulaId base, FormulaId exponent, Span span) {
   const auto n = known(exponent);
   if (!n) return make("power", {base, exponent});
   const double size = std::abs(*n);
-  const bool whole = size <= kLargestWhole && size == std::floor(size);
+  const bool whole = size <= kLargestUnrolledPower && size == std::floor(size);
   if (!whole && size != 0.5) return make("power", {base, exponent});
   const FormulaId result = whole ? whole_power(base, static_cast<unsigned>(size), span) : make("sqrt", {base});
   return *n < 0 ? make("divide", {make(1.0), result}) : result;

@@ -19,7 +19,7 @@ struct Row {
 
 // What is not exact or correctly rounded everywhere is the machine's own, so that the same file gives the same scene
 // on every machine.
-constexpr Row kRows[] = {
+constexpr Row kFunctions[] = {
     {"add", 2, [](double a, double b) { return a + b; }},
     {"minus", 2, [](double a, double b) { return a - b; }},
     {"multiply", 2, [](double a, double b) { return a * b; }},
@@ -63,12 +63,12 @@ constexpr std::array<FunctionSpec, n> specs(const Row (&rows)[n]) {
 }  // namespace
 
 std::span<const FunctionSpec> constant_functions() {
-  static constexpr auto functions = specs(kRows);
+  static constexpr auto functions = specs(kFunctions);
   return functions;
 }
 
 std::optional<double> call_function(std::string_view function, std::span<const double> arguments) {
-  for (const Row& row : kRows) {
+  for (const Row& row : kFunctions) {
     if (row.name != function || row.arity != arguments.size()) continue;
     return row.apply(arguments[0], row.arity == 2 ? arguments[1] : 0);
   }

@@ -12,7 +12,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 
 // The unit vector a spot or directional light shines along.
 glm::dvec3 read_direction(const RecordReader& reader, const Light& light, Diagnostics& diagnostics) {

@@ -18,11 +18,11 @@ namespace {
 using M = MaterialNumbers;
 
 // Where the value of a property goes.
-struct Place {
+struct Slot {
   std::string_view property;
   std::variant<MaterialNumber, MaterialColor> parameter;
 };
-const Place kPlaces[] = {
+const Slot kPlaces[] = {
     {"base_weight", &M::base_weight},
     {"base_color", &M::color},
     {"color", &M::color},
@@ -47,7 +47,7 @@ const Place kPlaces[] = {
     {"geometry_opacity", &M::opacity},
 };
 
-void put(MaterialNumbers& numbers, const Place& place, glm::dvec3 value) {
+void put(MaterialNumbers& numbers, const Slot& place, glm::dvec3 value) {
   if (const auto* number = std::get_if<MaterialNumber>(&place.parameter)) numbers.*(*number) = value.x;
   if (const auto* color = std::get_if<MaterialColor>(&place.parameter)) numbers.*(*color) = value;
 }
@@ -55,7 +55,7 @@ void put(MaterialNumbers& numbers, const Place& place, glm::dvec3 value) {
 // An index of refraction or the like that a texture gives must not come near 0.
 constexpr double kLeastPositive = 1e-3;
 
-TexturedParameter textured(const Place& place, std::uint32_t texture, const PropertySpec& row) {
+TexturedParameter textured(const Slot& place, std::uint32_t texture, const PropertySpec& row) {
   double least = row.range.least;
   if (row.rule == Rule::Positive) least = std::max(least, kLeastPositive);
   if (row.rule == Rule::NotNegative) least = std::max(least, 0.0);
@@ -98,7 +98,7 @@ class MaterialReader {
  private:
   void read_parameters(const RecordReader& reader, const RecordSpec& row, Material& material) {
     const MaterialPreset* preset = find_preset(reader);
-    for (const Place& place : kPlaces) {
+    for (const Slot& place : kPlaces) {
       const PropertySpec* property = row.find(place.property);
       if (property == nullptr || !property->alias_of.empty()) continue;
       const syntax::Value* given = reader.value(place.property);
@@ -115,7 +115,7 @@ class MaterialReader {
     if (reader.value("emission_color") && !reader.value("emission_luminance")) material.emission_luminance = 1;
   }
 
-  void read_texture(const syntax::Value& value, const PropertySpec& row, const Place& place, Material& material) {
+  void read_texture(const syntax::Value& value, const PropertySpec& row, const Slot& place, Material& material) {
     const std::optional<ReadTexture> texture = textures_.read(value, row);
     if (!texture) return;
     put(material, place, texture->typical);

@@ -39,7 +39,7 @@ constexpr double kLeeway = 1e-3;
 
 // Nodes within each other in what is made; deeper ones get names of their own. A fifth of what the reader of scene
 // files takes, as each is an object in a list.
-constexpr int kDeepest = 400;
+constexpr int kDeepestTree = 400;
 
 // What a node has become. A chain of the same operator down the left is one combinator.
 struct Made {
@@ -143,7 +143,7 @@ class Converter {
     record.add("type", made.k == 0 ? made.mode->sharp : made.mode->smooth);
     if (made.k != 0) record.add("k", made.k);
     record.add("of", syntax::Value{made.span, std::move(made.of)});
-    if (made.height < kDeepest) return {record.take(), made.height};
+    if (made.height < kDeepestTree) return {record.take(), made.height};
     const std::string name = fmt::format("part {}", ++parts_);
     nodes_.add(name, record.take());
     return {RecordMaker(made.span).add("use", name).take(), 0};

@@ -9,26 +9,26 @@
 namespace fathom::compiler {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // Whole numbers without a fraction, which editors show as they are.
-Json plain(double number) {
+OrderedJson plain(double number) {
   constexpr double kExact = 9007199254740992;  // 2^53
   if (std::floor(number) == number && std::abs(number) <= kExact) return static_cast<std::int64_t>(number);
   return number;
 }
 
-Json reference(std::string_view definition) { return {{"$ref", "#/$defs/" + std::string(definition)}}; }
+OrderedJson reference(std::string_view definition) { return {{"$ref", "#/$defs/" + std::string(definition)}}; }
 
 // A value that may be written in two ways.
-Json either(Json one, Json other) { return {{"anyOf", Json::array({std::move(one), std::move(other)})}}; }
+OrderedJson either(OrderedJson one, OrderedJson other) { return {{"anyOf", OrderedJson::array({std::move(one), std::move(other)})}}; }
 
-Json string_schema() { return {{"type", "string"}}; }
+OrderedJson string_schema() { return {{"type", "string"}}; }
 
 // A number in the range and under the rule of a property, or a formula of the scene's parameters, which only the
 // compiler can check.
-Json number_schema(const PropertySpec& property, const char* type = "number") {
-  Json schema = {{"type", type}};
+OrderedJson number_schema(const PropertySpec& property, const char* type = "number") {
+  OrderedJson schema = {{"type", type}};
   const Range& range = property.range;
   const bool above_zero = property.rule == Rule::Positive && range.least <= 0;
   const bool from_zero = property.rule == Rule::NotNegative && range.least < 0;
@@ -38,28 +38,28 @@ Json number_schema(const PropertySpec& property, const char* type = "number") {
   return either(std::move(schema), string_schema());
 }
 
-Json list_schema(Json items, int least, std::optional<int> most = std::nullopt) {
-  Json schema = {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
+OrderedJson list_schema(OrderedJson items, int least, std::optional<int> most = std::nullopt) {
+  OrderedJson schema = {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
   if (most) schema["maxItems"] = *most;
   return schema;
 }
 
-Json three_schema(const PropertySpec& property) {
-  Json schema = list_schema(number_schema(property), 3, 3);
+OrderedJson three_schema(const PropertySpec& property) {
+  OrderedJson schema = list_schema(number_schema(property), 3, 3);
   if (property.rule == Rule::NotZero) schema["not"] = {{"items", {{"const", 0}}}};
   return schema;
 }
 
-Json record_schema(const RecordSpec& record, bool type_required);
+OrderedJson record_schema(const RecordSpec& record, bool type_required);
 
 // Whether the property says which of a family its record is.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
 // A grey or a colour.
-Json color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
+OrderedJson color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
 
 // What the value of a property of `record` must be.
-Json value_schema(const PropertySpec& property, const RecordSpec& record) {
+OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record) {
   switch (property.type) {
     case ValueType::Number:
       return number_schema(property);
@@ -101,18 +101,18 @@ Json value_schema(const PropertySpec& property, const RecordSpec& record) {
     case ValueType::Anything:
       break;
   }
-  return Json::object();
+  return OrderedJson::object();
 }
 
-Json default_of(const PropertySpec& property) {
+OrderedJson default_of(const PropertySpec& property) {
   if (property.fallback.size() == 1) return plain(property.fallback[0]);
-  Json numbers = Json::array();
+  OrderedJson numbers = OrderedJson::array();
   for (const double number : property.fallback) numbers.push_back(plain(number));
   return numbers;
 }
 
-Json property_schema(const PropertySpec& property, const RecordSpec& record) {
-  Json schema = value_schema(property, record);
+OrderedJson property_schema(const PropertySpec& property, const RecordSpec& record) {
+  OrderedJson schema = value_schema(property, record);
   if (property.varies) schema["anyOf"].push_back(reference("pattern"));
   schema["description"] = property.doc;
   if (!property.fallback.empty()) schema["default"] = default_of(property);
@@ -122,9 +122,9 @@ Json property_schema(const PropertySpec& property, const RecordSpec& record) {
 }
 
 // `type_required`: the record is not the one meant when `type` is absent.
-Json record_schema(const RecordSpec& record, bool type_required) {
-  Json schema = {{"type", "object"}, {"properties", Json::object()}, {"required", Json::array()}};
-  Json excluded = Json::array();
+OrderedJson record_schema(const RecordSpec& record, bool type_required) {
+  OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}, {"required", OrderedJson::array()}};
+  OrderedJson excluded = OrderedJson::array();
   for (const PropertySpec& property : record.properties) {
     schema["properties"][std::string(property.name)] = property_schema(property, record);
     if (property.required || (type_required && property.name == "type")) schema["required"].push_back(property.name);
@@ -141,8 +141,8 @@ Json record_schema(const RecordSpec& record, bool type_required) {
 }
 
 // One of the records of a family, told apart by `type`.
-Json family_schema(const std::vector<RecordSpec>& family) {
-  Json rows = Json::array();
+OrderedJson family_schema(const std::vector<RecordSpec>& family) {
+  OrderedJson rows = OrderedJson::array();
   for (const RecordSpec& record : family) {
     rows.push_back(record_schema(record, &record != &family[0]));
     rows.back()["title"] = record.type;
@@ -151,24 +151,24 @@ Json family_schema(const std::vector<RecordSpec>& family) {
 }
 
 // What the properties `scale` and `rotate` of every node refer to.
-Json scale_schema() {
+OrderedJson scale_schema() {
   const PropertySpec& scale = *use_record().find("scale");
   return either(number_schema(scale), three_schema(scale));
 }
-Json rotate_schema() {
+OrderedJson rotate_schema() {
   return either(three_schema(*use_record().find("rotate")), record_schema(rotation_record(), false));
 }
 
 // A length, or the two ends it is measured between.
-Json between_schema(const Between& between) {
-  const Json ends = {{"anyOf", {{{"required", {"a"}}}, {{"required", {"b"}}}}}};
-  const Json length = {{"required", {between.length}}};
-  return {{"oneOf", Json::array({{{"required", {between.length}}, {"not", ends}},
+OrderedJson between_schema(const Between& between) {
+  const OrderedJson ends = {{"anyOf", {{{"required", {"a"}}}, {{"required", {"b"}}}}}};
+  const OrderedJson length = {{"required", {between.length}}};
+  return {{"oneOf", OrderedJson::array({{{"required", {between.length}}, {"not", ends}},
                                  {{"required", {"a", "b"}}, {"not", length}}})}};
 }
 
-Json node_schema() {
-  Json rows = Json::array();
+OrderedJson node_schema() {
+  OrderedJson rows = OrderedJson::array();
   for (const NodeSpec& node : node_table()) {
     if (node.category == Category::Internal || node.category == Category::Function) continue;
     rows.push_back(record_schema(node_record(node.kind), true));
@@ -185,7 +185,7 @@ Json node_schema() {
 }  // namespace
 
 std::string scene_schema() {
-  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+  OrderedJson schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                  {"title", "Fathom scene"},
                  {"description", "A scene of signed distance fields. Comments (// and /* */) are allowed."}};
   schema.update(record_schema(scene_record(), false));

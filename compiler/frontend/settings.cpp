@@ -7,11 +7,11 @@
 
 #include "compiler/frontend/record_family.h"
 #include "compiler/frontend/record_reader.h"
+#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Reports a camera that has no direction of view, or no way to tell what is up in the picture.
 void check_view(const Camera& camera, const RecordReader& reader, Span place, Diagnostics& diagnostics) {

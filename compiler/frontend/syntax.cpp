@@ -8,7 +8,7 @@ namespace fathom::compiler::syntax {
 namespace {
 
 // As in JSON.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -36,7 +36,7 @@ std::string print_short(const Value& value) {
     std::string operator()(std::monostate) const { return "null"; }
     std::string operator()(bool b) const { return b ? "true" : "false"; }
     std::string operator()(double number) const { return fmt::format("{}", number); }
-    std::string operator()(const std::string& text) const { return quoted(text); }
+    std::string operator()(const std::string& text) const { return in_quotes(text); }
     std::string operator()(const List& list) const {
       std::string out;
       for (const Value& item : list) out += (out.empty() ? "" : ", ") + print_short(item);
@@ -51,7 +51,7 @@ std::string print_name(std::string_view name) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '$';
   };
-  return !name.empty() && std::all_of(name.begin(), name.end(), plain) ? std::string(name) : quoted(name);
+  return !name.empty() && std::all_of(name.begin(), name.end(), plain) ? std::string(name) : in_quotes(name);
 }
 
 void print_lines(const Value& value, std::size_t indent, std::string& out);

@@ -15,7 +15,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr int kDeepest = kMaxPatternDepth;
+constexpr int kDeepestPattern = kMaxPatternDepth;
 
 // A pattern's row with ends that the parameter can be.
 RecordSpec row_for(const RecordSpec& pattern, const PropertySpec& parameter) {
@@ -58,9 +58,9 @@ bool is_sound(const Pattern& pattern, Span place, Diagnostics& diagnostics) {
 
 std::optional<ReadTexture> TextureReader::read(const syntax::Value& value, const PropertySpec& parameter, int depth) {
   if (!std::holds_alternative<syntax::Record>(value.data)) return read_formulas(value, parameter);
-  if (depth <= kDeepest) return read_pattern(value, parameter, depth);
+  if (depth <= kDeepestPattern) return read_pattern(value, parameter, depth);
   diagnostics_.error("E0109", opening(value.span), "patterns nested too deep",
-                     fmt::format("this is within {} others", kDeepest), {"mix fewer patterns, or write a formula"});
+                     fmt::format("this is within {} others", kDeepestPattern), {"mix fewer patterns, or write a formula"});
   return std::nullopt;
 }
 

@@ -12,7 +12,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kWidest = 120;  // columns of a line, where there is a choice
+constexpr std::size_t kWidestLine = 120;  // columns of a line, where there is a choice
 
 // Control characters are refused when they are read.
 std::string quoted(const std::string& text) {
@@ -73,7 +73,7 @@ std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t r
 }
 
 void write(const syntax::Value& value, std::size_t indent, std::size_t used, std::string& out) {
-  const std::size_t room = kWidest - std::min(kWidest, indent + used);
+  const std::size_t room = kWidestLine - std::min(kWidestLine, indent + used);
   // The file itself is easier to read in lines.
   const auto line = indent == 0 ? std::nullopt : on_one_line(value, room);
   if (line || is_scalar(value)) {

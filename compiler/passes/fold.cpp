@@ -9,8 +9,8 @@ namespace fathom::compiler {
 namespace {
 
 bool is_identity(std::span<const double> transform) {
-  constexpr std::array<double, 13> kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1};
-  return std::equal(kIdentity.begin(), kIdentity.end(), transform.begin());
+  constexpr std::array<double, 13> kIdentityParams = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1};
+  return std::equal(kIdentityParams.begin(), kIdentityParams.end(), transform.begin());
 }
 
 // An offset of `child` by `radius`.

@@ -12,7 +12,6 @@ namespace fathom::compiler {
 namespace {
 
 using vm::Opcode;
-constexpr double kSqrt3 = 1.7320508075688772;
 
 Knowledge know_round(Params params, std::span<const Knowledge> children) {
   Knowledge k = offset(children[0], params[0]);

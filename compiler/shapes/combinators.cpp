@@ -11,7 +11,6 @@ namespace fathom::compiler {
 namespace {
 
 using vm::Opcode;
-constexpr double kSqrt2 = 1.4142135623730951, kSqrt3 = 1.7320508075688772;
 
 Knowledge know_union(Params, std::span<const Knowledge> children) {
   Knowledge k = together(children);

@@ -19,11 +19,11 @@ std::vector<NodeSpec> make_table() {
   return table;
 }
 
-using Names = std::unordered_map<std::string_view, const NodeSpec*>;
+using SpecsByName = std::unordered_map<std::string_view, const NodeSpec*>;
 
 // The rows by name: those of functions, or those of nodes of scenes.
-Names make_names(bool functions) {
-  Names names;
+SpecsByName make_names(bool functions) {
+  SpecsByName names;
   for (const NodeSpec& row : node_table()) {
     if (row.category != Category::Internal && (row.category == Category::Function) == functions) {
       names.emplace(row.name, &row);
@@ -32,7 +32,7 @@ Names make_names(bool functions) {
   return names;
 }
 
-const NodeSpec* find(const Names& names, std::string_view name) {
+const NodeSpec* find(const SpecsByName& names, std::string_view name) {
   const auto found = names.find(name);
   return found == names.end() ? nullptr : found->second;
 }
@@ -64,12 +64,12 @@ const NodeSpec& spec(Kind kind) {
 }
 
 const NodeSpec* find_node(std::string_view name) {
-  static const Names names = make_names(false);
+  static const SpecsByName names = make_names(false);
   return find(names, name);
 }
 
 const NodeSpec* find_function(std::string_view name) {
-  static const Names names = make_names(true);
+  static const SpecsByName names = make_names(true);
   return find(names, name);
 }
 

@@ -17,7 +17,6 @@ namespace {
 
 using glm::dvec2;
 using vm::Opcode;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Box box_2d(dvec2 lo, dvec2 hi) { return {{lo.x, lo.y, -kInfinity}, {hi.x, hi.y, kInfinity}}; }
 // Of points and their mirror images across x = 0.

@@ -8,11 +8,10 @@ namespace fathom::compiler {
 namespace {
 
 using vm::Opcode;
-constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes};
 constexpr PrimitiveFacts kMirrored{.symmetric = {true, false, true}};
 constexpr PrimitiveFacts kAlongZ{.symmetric = {false, false, true}};
 // Round ends that overlap are deeper than the distance from the middle line says.
-constexpr PrimitiveFacts kArc{Exactness::Exact, Exactness::Bound, {true, false, true}};
+constexpr PrimitiveFacts kArcFacts{Exactness::Exact, Exactness::Bound, {true, false, true}};
 
 ParamSpec half_size_2d(std::string_view doc) {
   return {"half_size", ParamType::Vec2, Rule::Positive, kRequired, doc};
@@ -166,7 +165,7 @@ std::vector<NodeSpec> outline_rows() {
        .check = check_arc,
        .code = code_of<Opcode::Arc, arc_immediates>,
        .bound = arc_bound,
-       .facts = kArc,
+       .facts = kArcFacts,
        .magnitude = outline_magnitude<arc_bound>},
       {.kind = Kind::Ring,
        .name = "ring",

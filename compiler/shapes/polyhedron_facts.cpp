@@ -1,14 +1,14 @@
 // Facts of the regular polyhedra and the pyramid.
 #include <cmath>
 
+#include "compiler/shapes/rows.h"
 #include "compiler/shapes/solid_facts.h"
 
 namespace fathom::compiler {
 namespace {
 
-constexpr double kSqrt2 = 1.4142135623730951, kSqrt3 = 1.7320508075688772, kSqrt6 = 2.4494897427831781;
-constexpr double kGolden = 1.6180339887498949;
 constexpr double kSqrt2PlusGolden = 1.9021130325903071;  // sqrt(1 + golden ratio^2) as well
+constexpr double kGolden = 1.6180339887498949;
 
 }  // namespace
 

@@ -22,7 +22,7 @@ using vm::Opcode;
 // through the middle of the nearest; then the child's reach and box.
 
 constexpr double kAll = -1;
-constexpr double kEndless = 8388608;  // 2^23: a float still counts the cells
+constexpr double kMostCells = 8388608;  // 2^23: a float still counts the cells
 constexpr int kMostCopies = 512;
 
 struct RepeatedAxis {
@@ -33,8 +33,8 @@ struct RepeatedAxis {
   bool repeated() const { return period > 0; }
   bool endless() const { return count == 0; }
   double half() const { return !endless() && std::fmod(count, 2) == 0 ? 0.5 : 0; }
-  double first() const { return endless() ? -kEndless : -std::floor(count / 2); }
-  double last() const { return endless() ? kEndless - 1 : first() + count - 1; }
+  double first() const { return endless() ? -kMostCells : -std::floor(count / 2); }
+  double last() const { return endless() ? kMostCells - 1 : first() + count - 1; }
   double position(double number) const { return (number + half()) * period; }
   // Copies evaluated at each point: a whole number, beyond any `int` for a period next to nothing.
   double copies() const {

@@ -7,7 +7,6 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kSqrt3 = 1.7320508075688772;
 
 }  // namespace
 

@@ -8,6 +8,8 @@
 
 namespace fathom::compiler {
 
+inline constexpr double kSqrt2 = 1.4142135623730951, kSqrt3 = 1.7320508075688772, kSqrt6 = 2.4494897427831781;
+
 std::vector<NodeSpec> solid_rows();
 std::vector<NodeSpec> composed_rows();
 std::vector<NodeSpec> outline_rows();
@@ -17,6 +19,7 @@ std::vector<NodeSpec> repetition_rows();
 std::vector<NodeSpec> combinator_rows();
 std::vector<NodeSpec> function_rows();
 
+inline constexpr auto kPrimitive = Category::Primitive;
 inline constexpr std::optional<double> kRequired = std::nullopt;
 
 // A length above 0; at least 0; any number; a direction; a point.
@@ -50,6 +53,7 @@ double outline_magnitude(Params params) {
 }
 
 inline constexpr std::array<bool, 3> kAllAxes = {true, true, true};
+inline constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes};
 
 // Lipschitz constants, certificates, reach and symmetry of several children together: the worst of each. Boxes and
 // exactness inside are the caller's.

@@ -172,11 +172,11 @@ Complaint check_menger_sponge(Params p) {
 Complaint check_julia(Params p) {
   if (p[4] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[4]);
   // |q|^2 after the escaping iteration is about bailout^4 and must be a float.
-  constexpr double kLargest = 1e6;
+  constexpr double kLargestRadius = 1e6;
   const double radius = julia_escape_radius(p);
-  if (radius > kLargest) return fmt::format("`c` is too large; every orbit escapes from beyond {:.3g}", radius);
-  if (p[5] < radius || p[5] > kLargest) {
-    return fmt::format("`bailout` is {}; for this `c` it must be between {:.6g} and {}", p[5], radius, kLargest);
+  if (radius > kLargestRadius) return fmt::format("`c` is too large; every orbit escapes from beyond {:.3g}", radius);
+  if (p[5] < radius || p[5] > kLargestRadius) {
+    return fmt::format("`bailout` is {}; for this `c` it must be between {:.6g} and {}", p[5], radius, kLargestRadius);
   }
   return std::nullopt;
 }

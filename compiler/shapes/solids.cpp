@@ -6,11 +6,9 @@ namespace fathom::compiler {
 namespace {
 
 using vm::Opcode;
-constexpr auto kPrimitive = Category::Primitive;
-constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes};
 constexpr PrimitiveFacts kAboutAxis{.symmetric = {true, false, true}};
 // Where the ends of an arc meet, or its hole closes, the inside is a bound.
-constexpr PrimitiveFacts kArc{Exactness::Exact, Exactness::Bound, {true, false, true}};
+constexpr PrimitiveFacts kTorusArcFacts{Exactness::Exact, Exactness::Bound, {true, false, true}};
 constexpr PrimitiveFacts kSymmetricBound{Exactness::Bound, Exactness::Bound, kAllAxes};
 constexpr PrimitiveFacts kBound{Exactness::Bound, Exactness::Bound};
 constexpr PrimitiveFacts kEstimate{Exactness::Estimate, Exactness::Estimate};
@@ -74,7 +72,7 @@ std::vector<NodeSpec> solid_rows() {
        .check = check_capped_torus,
        .code = code_of<Opcode::CappedTorus, capped_torus_immediates>,
        .bound = capped_torus_bound,
-       .facts = kArc,
+       .facts = kTorusArcFacts,
        .magnitude = torus_magnitude},
       {.kind = Kind::Plane,
        .name = "plane",

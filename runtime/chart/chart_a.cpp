@@ -13,7 +13,7 @@
 namespace fathom::runtime {
 namespace {
 
-using Rows = std::vector<RayMeasurement>;
+using MeasuredRows = std::vector<RayMeasurement>;
 
 // What tells a row's method from the others' but for the precision: rows alike in it share a colour.
 std::string variant_of(const RayMeasurement& row, std::span<const RayMeasurement> rows) {
@@ -52,7 +52,7 @@ std::string tooltip_of(const RayMeasurement& row, const std::string& name) {
 // The colours of a scene's methods, the same in every panel.
 class Colors {
  public:
-  explicit Colors(const Rows& rows) : rows_(rows) {
+  explicit Colors(const MeasuredRows& rows) : rows_(rows) {
     for (const RayMeasurement& row : rows) {
       if (has_own_color(row)) continue;
       const std::string method = row.method + variant_of(row, rows_);
@@ -77,7 +77,7 @@ class Colors {
  private:
   static bool has_own_color(const RayMeasurement& row) { return row.reference || row.method == kDefaultMethod; }
 
-  const Rows& rows_;
+  const MeasuredRows& rows_;
   std::vector<std::string> methods_;
 };
 
@@ -95,8 +95,8 @@ PlotPoint point_of(const RayMeasurement& row, std::span<const RayMeasurement> ro
   return point;
 }
 
-std::vector<PlotSeries> series_of(const Rows& panel, const Rows& scene, Cost cost, const Colors& colors) {
-  Rows sorted = panel;
+std::vector<PlotSeries> series_of(const MeasuredRows& panel, const MeasuredRows& scene, Cost cost, const Colors& colors) {
+  MeasuredRows sorted = panel;
   std::stable_sort(sorted.begin(), sorted.end(), [](const RayMeasurement& a, const RayMeasurement& b) {
     const auto coarseness = [](double eps) { return eps > 0 ? eps : 0; };
     return coarseness(a.eps) > coarseness(b.eps);
@@ -118,7 +118,7 @@ std::vector<PlotSeries> series_of(const Rows& panel, const Rows& scene, Cost cos
   return all;
 }
 
-std::vector<std::string> classes_of(const Rows& rows) {
+std::vector<std::string> classes_of(const MeasuredRows& rows) {
   std::vector<std::string> classes;
   const auto add = [&](const std::string& name) {
     const bool measured =
@@ -130,8 +130,8 @@ std::vector<std::string> classes_of(const Rows& rows) {
   return classes;
 }
 
-PlotPanel panel_of(const std::string& ray_class, const Rows& scene, Cost cost, const Colors& colors) {
-  Rows rows;
+PlotPanel panel_of(const std::string& ray_class, const MeasuredRows& scene, Cost cost, const Colors& colors) {
+  MeasuredRows rows;
   std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max(), most = 0;
   for (const RayMeasurement& row : scene) {
     if (row.ray_class != ray_class) continue;
@@ -157,7 +157,7 @@ std::string name_of(const RayMeasurement& row, std::span<const RayMeasurement> r
 
 std::string chart_a(std::span<const RayMeasurement> rows, const std::string& scene, Cost cost,
                     const Provenance& provenance) {
-  Rows of_scene;
+  MeasuredRows of_scene;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_scene),
                [&](const RayMeasurement& row) { return row.scene == scene; });
   Plot plot;

@@ -65,7 +65,7 @@ void write(Picture& picture, int left, int top, std::string_view text, const Rgb
   }
 }
 
-constexpr Rgb kPaper{255, 255, 255}, kInk{40, 40, 40};
+constexpr Rgb kPaper{255, 255, 255}, kLabelInk{40, 40, 40};
 constexpr int kMargin = 8, kBarHeight = 12, kBoxWidth = 18, kNarrowest = 160;
 constexpr int kBarTop = 5, kTickHeight = 3, kTextGap = 2;
 
@@ -99,7 +99,7 @@ std::vector<double> marks_of(const ColorScale& scale, int most) {
 int draw_box(Picture& picture, int left, int top, const Rgb& color, std::string_view name) {
   fill(picture, left, top + kBarTop, kBoxWidth, kBarHeight, color);
   write(picture, left + (kBoxWidth - width_of(name)) / 2, top + kBarTop + kBarHeight + kTickHeight + kTextGap, name,
-        kInk);
+        kLabelInk);
   return left + kBoxWidth + kMargin;
 }
 
@@ -121,8 +121,8 @@ void draw_scale(Picture& picture, int top, const ColorScale& scale) {
     const int x = left + static_cast<int>(std::lround(at * (width - 1)));
     const std::string text = readable(mark);
     const int text_left = std::clamp(x - width_of(text) / 2, left, picture.width - 2 - width_of(text));
-    fill(picture, x, top + kBarTop + kBarHeight, 1, kTickHeight, kInk);
-    write(picture, text_left, top + kBarTop + kBarHeight + kTickHeight + kTextGap, text, kInk);
+    fill(picture, x, top + kBarTop + kBarHeight, 1, kTickHeight, kLabelInk);
+    write(picture, text_left, top + kBarTop + kBarHeight + kTickHeight + kTextGap, text, kLabelInk);
   }
 }
 

@@ -11,7 +11,7 @@ std::string field(int number) { return fmt::format("{}", number); }
 std::string field(std::uint64_t number) { return fmt::format("{}", number); }
 
 template <class Row>
-struct Column {
+struct CsvColumn {
   const char* name;
   std::string (*text)(const Row&, const Provenance&);
 };
@@ -26,39 +26,39 @@ std::string of_provenance(const Row&, const Provenance& provenance) {
   return field(provenance.*member);
 }
 
-using Ray = RayMeasurement;
-constexpr Column<Ray> kRayColumns[] = {
-    {"scene", of_row<Ray, &Ray::scene>},
-    {"method", of_row<Ray, &Ray::method>},
-    {"precision", of_row<Ray, &Ray::precision>},
-    {"eps", of_row<Ray, &Ray::eps>},
-    {"relax", of_row<Ray, &Ray::relax>},
-    {"steps_max", of_row<Ray, &Ray::steps_max>},
-    {"class", of_row<Ray, &Ray::ray_class>},
-    {"rays", of_row<Ray, &Ray::rays>},
-    {"ns_med", of_row<Ray, &Ray::ns_med>},
-    {"ns_min", of_row<Ray, &Ray::ns_min>},
-    {"ns_max", of_row<Ray, &Ray::ns_max>},
-    {"evals_mean", of_row<Ray, &Ray::evals_mean>},
-    {"evals_p99", of_row<Ray, &Ray::evals_p99>},
-    {"false_hit_ppm", of_row<Ray, &Ray::false_hit_ppm>},
-    {"false_miss_ppm", of_row<Ray, &Ray::false_miss_ppm>},
-    {"exhausted_ppm", of_row<Ray, &Ray::exhausted_ppm>},
-    {"contact_ppm", of_row<Ray, &Ray::contact_ppm>},
-    {"gross_ppm", of_row<Ray, &Ray::gross_ppm>},
-    {"terr_p50", of_row<Ray, &Ray::terr_p50>},
-    {"terr_p99", of_row<Ray, &Ray::terr_p99>},
-    {"terr_max", of_row<Ray, &Ray::terr_max>},
-    {"nerr_p50", of_row<Ray, &Ray::nerr_p50>},
-    {"nerr_p99", of_row<Ray, &Ray::nerr_p99>},
-    {"nerr_max", of_row<Ray, &Ray::nerr_max>},
-    {"commit", of_provenance<Ray, &Provenance::commit>},
-    {"cpu", of_provenance<Ray, &Provenance::cpu>},
-    {"compiler", of_provenance<Ray, &Provenance::compiler>},
+using MeasuredRay = RayMeasurement;
+constexpr CsvColumn<MeasuredRay> kRayColumns[] = {
+    {"scene", of_row<MeasuredRay, &MeasuredRay::scene>},
+    {"method", of_row<MeasuredRay, &MeasuredRay::method>},
+    {"precision", of_row<MeasuredRay, &MeasuredRay::precision>},
+    {"eps", of_row<MeasuredRay, &MeasuredRay::eps>},
+    {"relax", of_row<MeasuredRay, &MeasuredRay::relax>},
+    {"steps_max", of_row<MeasuredRay, &MeasuredRay::steps_max>},
+    {"class", of_row<MeasuredRay, &MeasuredRay::ray_class>},
+    {"rays", of_row<MeasuredRay, &MeasuredRay::rays>},
+    {"ns_med", of_row<MeasuredRay, &MeasuredRay::ns_med>},
+    {"ns_min", of_row<MeasuredRay, &MeasuredRay::ns_min>},
+    {"ns_max", of_row<MeasuredRay, &MeasuredRay::ns_max>},
+    {"evals_mean", of_row<MeasuredRay, &MeasuredRay::evals_mean>},
+    {"evals_p99", of_row<MeasuredRay, &MeasuredRay::evals_p99>},
+    {"false_hit_ppm", of_row<MeasuredRay, &MeasuredRay::false_hit_ppm>},
+    {"false_miss_ppm", of_row<MeasuredRay, &MeasuredRay::false_miss_ppm>},
+    {"exhausted_ppm", of_row<MeasuredRay, &MeasuredRay::exhausted_ppm>},
+    {"contact_ppm", of_row<MeasuredRay, &MeasuredRay::contact_ppm>},
+    {"gross_ppm", of_row<MeasuredRay, &MeasuredRay::gross_ppm>},
+    {"terr_p50", of_row<MeasuredRay, &MeasuredRay::terr_p50>},
+    {"terr_p99", of_row<MeasuredRay, &MeasuredRay::terr_p99>},
+    {"terr_max", of_row<MeasuredRay, &MeasuredRay::terr_max>},
+    {"nerr_p50", of_row<MeasuredRay, &MeasuredRay::nerr_p50>},
+    {"nerr_p99", of_row<MeasuredRay, &MeasuredRay::nerr_p99>},
+    {"nerr_max", of_row<MeasuredRay, &MeasuredRay::nerr_max>},
+    {"commit", of_provenance<MeasuredRay, &Provenance::commit>},
+    {"cpu", of_provenance<MeasuredRay, &Provenance::cpu>},
+    {"compiler", of_provenance<MeasuredRay, &Provenance::compiler>},
 };
 
 using Image = ImageMeasurement;
-constexpr Column<Image> kImageColumns[] = {
+constexpr CsvColumn<Image> kImageColumns[] = {
     {"scene", of_row<Image, &Image::scene>},
     {"method", of_row<Image, &Image::method>},
     {"precision", of_row<Image, &Image::precision>},
@@ -81,7 +81,7 @@ constexpr Column<Image> kImageColumns[] = {
 };
 
 template <class Row>
-std::string table(std::span<const Column<Row>> columns, std::span<const Row> rows, const Provenance& provenance) {
+std::string table(std::span<const CsvColumn<Row>> columns, std::span<const Row> rows, const Provenance& provenance) {
   std::string text;
   const auto add_line = [&](const auto& field_of) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -90,8 +90,8 @@ std::string table(std::span<const Column<Row>> columns, std::span<const Row> row
     }
     text += '\n';
   };
-  add_line([](const Column<Row>& column) { return std::string(column.name); });
-  for (const Row& row : rows) add_line([&](const Column<Row>& column) { return column.text(row, provenance); });
+  add_line([](const CsvColumn<Row>& column) { return std::string(column.name); });
+  for (const Row& row : rows) add_line([&](const CsvColumn<Row>& column) { return column.text(row, provenance); });
   return text;
 }
 
@@ -108,7 +108,7 @@ std::string csv_field(std::string_view text) {
 }
 
 std::string rays_csv(std::span<const RayMeasurement> rows, const Provenance& provenance) {
-  return table<Ray>(kRayColumns, rows, provenance);
+  return table<MeasuredRay>(kRayColumns, rows, provenance);
 }
 
 std::string images_csv(std::span<const ImageMeasurement> rows, const Provenance& provenance) {

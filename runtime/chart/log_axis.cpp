@@ -15,7 +15,7 @@ namespace {
 constexpr double kZeroSlot = 26;           // pixels
 constexpr double kRoomForTwoAndFive = 28;  // pixels per decade from which lines at 2 and 5 do not crowd
 constexpr double kRoomForAll = 90;         // the same for 2 to 9
-constexpr double kEdge = 1e-9;             // decades; a tick that is an end of the axis belongs to it
+constexpr double kAxisEdge = 1e-9;             // decades; a tick that is an end of the axis belongs to it
 
 TickLabel power_label(double value) {
   const std::string text = scientific(value);  // `1e-3`, `5e-3`
@@ -68,7 +68,7 @@ std::vector<Tick> LogAxis::ticks(double label_room) const {
       const double room = digit == 1 ? 0 : two_or_five ? kRoomForTwoAndFive : kRoomForAll;
       if (pixels_per_decade < room) continue;
       const double at = decade + std::log10(digit) - low_;
-      if (at < -kEdge || at > decades_ + kEdge) continue;
+      if (at < -kAxisEdge || at > decades_ + kAxisEdge) continue;
       // Read as text, 1e-5 is the double nearest to it; a power of 10 computed may be its neighbour.
       const std::string text = fmt::format("{}e{}", digit, decade);
       double value = 0;

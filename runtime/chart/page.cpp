@@ -63,7 +63,7 @@ code { overflow-wrap: anywhere; }
 )";
 
 // A column of the table of rows; what the scene's rows are is needed for names and fronts.
-struct Column {
+struct TableColumn {
   const char* title;
   std::string (*text)(const RayMeasurement& row, const std::vector<RayMeasurement>& scene);
 };
@@ -78,11 +78,11 @@ std::string failures_of(const RayMeasurement& row, const std::vector<RayMeasurem
   return failures == 0 ? fmt::format("0 (< {})", readable(unseen_failures_ppm(row.rays))) : readable(failures);
 }
 
-using Rows = std::vector<RayMeasurement>;
-constexpr Column kColumns[] = {
-    {"rays", [](const RayMeasurement& row, const Rows&) { return row.ray_class; }},
-    {"method", [](const RayMeasurement& row, const Rows& scene) { return name_of(row, scene); }},
-    {"eps", [](const RayMeasurement& row, const Rows&) { return row.eps > 0 ? scientific(row.eps) : "–"; }},
+using TableRows = std::vector<RayMeasurement>;
+constexpr TableColumn kColumns[] = {
+    {"rays", [](const RayMeasurement& row, const TableRows&) { return row.ray_class; }},
+    {"method", [](const RayMeasurement& row, const TableRows& scene) { return name_of(row, scene); }},
+    {"eps", [](const RayMeasurement& row, const TableRows&) { return row.eps > 0 ? scientific(row.eps) : "–"; }},
     {"ns / ray", number_of<&RayMeasurement::ns_med>},
     {"evaluations / ray", number_of<&RayMeasurement::evals_mean>},
     {"error p50", number_of<&RayMeasurement::terr_p50>},
@@ -92,19 +92,19 @@ constexpr Column kColumns[] = {
     {"failures, ppm", failures_of},
     {"contacts, ppm", number_of<&RayMeasurement::contact_ppm>},
     {"Pareto front",
-     [](const RayMeasurement& row, const Rows& scene) {
+     [](const RayMeasurement& row, const TableRows& scene) {
        if (row.reference) return std::string("reference");
        return std::string(on_pareto_front(row, scene, Cost::Time) ? "yes" : "");
      }},
 };
 
-std::string table_of(const Rows& scene) {
+std::string table_of(const TableRows& scene) {
   std::string html = "<div class=\"wide\"><table>\n<thead><tr>";
-  for (const Column& column : kColumns) html += fmt::format("<th scope=\"col\">{}</th>", escape_markup(column.title));
+  for (const TableColumn& column : kColumns) html += fmt::format("<th scope=\"col\">{}</th>", escape_markup(column.title));
   html += "</tr></thead>\n<tbody>\n";
   for (const RayMeasurement& row : scene) {
     html += is_default(row) ? "<tr class=\"default\">" : "<tr>";
-    for (const Column& column : kColumns) html += fmt::format("<td>{}</td>", escape_markup(column.text(row, scene)));
+    for (const TableColumn& column : kColumns) html += fmt::format("<td>{}</td>", escape_markup(column.text(row, scene)));
     html += "</tr>\n";
   }
   return html + "</tbody>\n</table></div>\n";
@@ -129,7 +129,7 @@ std::string section_of(const PageScene& scene, const Page& page) {
                         escape_markup(chart.reading));
   }
   html += maps_of(scene);
-  Rows rows;
+  TableRows rows;
   std::copy_if(page.rays.begin(), page.rays.end(), std::back_inserter(rows),
                [&](const RayMeasurement& row) { return row.scene == scene.name; });
   if (!rows.empty()) {

@@ -7,7 +7,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kChartExamples =
     "fathom chart -o charts                     # the project's own scenes; about five minutes\n"
     "fathom chart scene.json -o charts          # index.html there shows all of it\n"
     "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3   # a first look";
@@ -24,7 +24,7 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
       "chart",
       "Charts speed against accuracy: every way to follow rays, on rays of the scene and on its picture,\n"
       "against a search in double. Needs no display; the page it writes needs no network.",
-      kExamples);
+      kChartExamples);
   add_scene_arguments(arguments, request.scene, false);
   arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
   arguments.option("-o,--output", "FOLDER", "Where index.html, *.csv, *.svg and *.png go (chart)", any_text(folder));

@@ -15,7 +15,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCheckExamples =
     "fathom check scene.json\n"
     "fathom check --error-format short scene.json   # one line an error, for editors\n"
     "fathom check --error-format json scene.json    # errors and report as JSON lines\n"
@@ -31,7 +31,7 @@ struct CheckRequest {
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, CheckRequest& request) {
   Arguments arguments("check",
                       "Prints every error and warning of a scene and how exact its distances are; renders nothing.",
-                      kExamples);
+                      kCheckExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.option("--probe", "N",
                    "Compare gradients and differences at N points with every constant the compiler proved",

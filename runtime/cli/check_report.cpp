@@ -14,7 +14,7 @@ namespace {
 
 using compiler::Place;
 using compiler::ProbeRow;
-using Json = nlohmann::ordered_json;
+using ReportJson = nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -47,8 +47,8 @@ std::string text(const Place& place, const compiler::Source& source) {
   return fmt::format("{} at {}:{}:{}", describe(place), source.name(), at.line, at.column);
 }
 
-Json json(const Place& place, const compiler::Source& source) {
-  Json json = {{"type", place.type}, {"name", place.name}};
+ReportJson json(const Place& place, const compiler::Source& source) {
+  ReportJson json = {{"type", place.type}, {"name", place.name}};
   if (place.span.end == 0) return json;
   const compiler::Position at = source.locate(place.span.begin);
   json["file"] = source.name();
@@ -58,13 +58,13 @@ Json json(const Place& place, const compiler::Source& source) {
 }
 
 // JSON has no infinity: null.
-Json json(const glm::dvec3& v) {
-  Json list = Json::array();
-  for (int i = 0; i < 3; ++i) list.push_back(std::isfinite(v[i]) ? Json(v[i]) : Json(nullptr));
+ReportJson json(const glm::dvec3& v) {
+  ReportJson list = ReportJson::array();
+  for (int i = 0; i < 3; ++i) list.push_back(std::isfinite(v[i]) ? ReportJson(v[i]) : ReportJson(nullptr));
   return list;
 }
 
-std::string line(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string line(const ReportJson& json) { return json.dump(-1, ' ', false, ReportJson::error_handler_t::replace) + "\n"; }
 
 std::string describe_program(std::string_view name, const vm::VerifiedProgram& program) {
   return fmt::format("  {} program: {}, {}, stacks of {} and {}, about {} a point\n", name,
@@ -131,7 +131,7 @@ std::string report_text(const compiler::CompiledScene& scene, const compiler::Re
 std::string report_json(const compiler::CompiledScene& scene, const compiler::Report& report) {
   std::string out;
   for (const compiler::ObjectReport& object : report.objects) {
-    Json costliest = nullptr;
+    ReportJson costliest = nullptr;
     if (object.costliest) {
       costliest = json(object.costliest->place, scene.source);
       costliest["times"] = object.costliest->times;
@@ -145,9 +145,9 @@ std::string report_json(const compiler::CompiledScene& scene, const compiler::Re
                  {"box", {{"lo", json(known.box.lo)}, {"hi", json(known.box.hi)}}},
                  {"costliest", costliest}});
   }
-  Json estimates = Json::array();
+  ReportJson estimates = ReportJson::array();
   for (const Place& place : report.estimates) estimates.push_back(json(place, scene.source));
-  Json parameters = Json::object();
+  ReportJson parameters = ReportJson::object();
   for (const compiler::Parameter& parameter : scene.parameters) parameters[parameter.name] = parameter.value;
   out += line({{"scene", scene.source.name()},
                {"certified", report.certified},

@@ -29,7 +29,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kDiffExamples =
     "fathom diff out.png reference.png\n"
     "fathom diff out.exr reference.exr --metric relmse --tol 0.01   # exit status 1 when it is more\n"
     "fathom diff out.png reference.png -o where.png                 # FLIP pixel by pixel, as colours\n"
@@ -77,7 +77,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   for (const Metric& metric : kMetrics) {
     if (metric.bounded) names.push_back(metric.name);
   }
-  Arguments arguments("diff", "Compares a picture with a reference.", kExamples);
+  Arguments arguments("diff", "Compares a picture with a reference.", kDiffExamples);
   arguments.positional("picture", "The picture", request.first);
   arguments.positional("reference", "What it should be", request.second);
   arguments.option("--tol", "X", "End with 1 when the metric is more than this",

@@ -19,7 +19,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kDumpExamples =
     "fathom dump scene.json                        # the distance program\n"
     "fathom dump scene.json --program surface      # the one that knows the objects\n"
     "fathom dump scene.json --stage graph          # after all passes\n"
@@ -110,7 +110,7 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DumpRequest& request) {
-  Arguments arguments("dump", "Prints what the compiler made of a scene.", kExamples);
+  Arguments arguments("dump", "Prints what the compiler made of a scene.", kDumpExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.positional("other", "Of --diff: the scene to compare with", request.other, false);
   arguments.option("--stage", "STAGE",
@@ -268,7 +268,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
   if (input.stored && !input.stored->contents.text) {
     return fail(
         streams, kUsage,
-        fmt::format("{} holds programs without the scene they were compiled from", quoted(request.scene.path)),
+        fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(request.scene.path)),
         {"--stage bytecode and --stage file print what it holds"});
   }
   if (input.stored) {

@@ -15,7 +15,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEmitExamples =
     "fathom emit cpp scene.json -o scene.h           # template <class T> T fathom_scene::distance(T x, T y, T z)\n"
     "fathom emit cpp scene.json --namespace wall     # in a namespace of that name\n"
     "fathom emit glsl scene.json > scene.glsl        # float scene_distance(vec3 p)\n"
@@ -45,7 +45,7 @@ Setter identifier(std::string (*problem_with)(std::string_view), std::optional<s
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EmitRequest& request) {
-  Arguments arguments("emit", "Writes the scene's distance function as source code of another language.", kExamples);
+  Arguments arguments("emit", "Writes the scene's distance function as source code of another language.", kEmitExamples);
   std::string language;
   arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language, true, "LANGUAGE");
   add_scene_arguments(arguments, request.scene);

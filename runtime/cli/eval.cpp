@@ -16,7 +16,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kEvalExamples =
     "fathom eval scene.json --at 0,1,0 --at -1,0.5,2\n"
     "fathom eval scene.json --points points.txt --number f32   # a line of the file is: x y z\n"
     "fathom eval scene.json --box -1,-1,-1,1,1,1               # bounds of the distance in a box\n"
@@ -37,7 +37,7 @@ struct EvalRequest {
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EvalRequest& request) {
   Arguments arguments("eval",
                       "Prints the field at points, a line each: distance, the gradient's x y z, the object's name.",
-                      kExamples);
+                      kEvalExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.option("--at", "X,Y,Z", "A point, scene units; may be repeated", append_to(read_point, request.points));
   arguments.option("--points", "FILE", "Points from a file, a line each: x y z; - reads standard input",

@@ -14,7 +14,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kImportExamples =
     "fathom import prospero.vm -o prospero.json\n"
     "fathom import molecule.json | fathom check -\n"
     "fathom import scene.fbc -o scene.json         # the text that a compiled scene carries\n"
@@ -33,7 +33,7 @@ std::string printable(std::string text) {
 int run_import(std::span<const std::string> args, const Streams& streams) {
   SceneArguments scene_arguments;
   std::optional<std::string> output;
-  Arguments arguments("import", "Writes a model of another format as a scene file.", kExamples);
+  Arguments arguments("import", "Writes a model of another format as a scene file.", kImportExamples);
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "Scene file to write (standard output)", any_text(output));
   if (const auto code = arguments.parse(args, streams)) return *code;

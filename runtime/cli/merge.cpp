@@ -19,7 +19,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kMergeExamples =
     "fathom render scene.json -s 64 --sample-range 0:32 -o a.film    # on one machine\n"
     "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # on another\n"
     "fathom merge a.film b.film -o out.exr -o out.png\n"
@@ -36,7 +36,7 @@ struct MergeRequest {
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MergeRequest& request) {
-  Arguments arguments("merge", "Adds up the films of parts of a render.", kExamples);
+  Arguments arguments("merge", "Adds up the films of parts of a render.", kMergeExamples);
   arguments.positionals("film", "The films to read, each of a part that no other has", request.inputs);
   arguments.option("-o,--output", "FILE", "What to write: film, or a picture as of `fathom render`; may be repeated",
                    append_to(read_output, request.pictures.outputs));

@@ -5,22 +5,22 @@
 namespace fathom::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // A file's name may be no UTF-8; JSON must be.
-std::string print(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string print(const OrderedJson& json) { return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
 
-Json immediate_json(const vm::Program& program, const vm::OpcodeInfo& row, std::size_t word, int index) {
-  return vm::is_integer_immediate(row, index) ? Json(program.words[word]) : Json(program.wide[word]);
+OrderedJson immediate_json(const vm::Program& program, const vm::OpcodeInfo& row, std::size_t word, int index) {
+  return vm::is_integer_immediate(row, index) ? OrderedJson(program.words[word]) : OrderedJson(program.wide[word]);
 }
 
 // By name; of an outline a list of the groups.
-Json immediates_json(const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
+OrderedJson immediates_json(const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
   const std::uint32_t word = program.words[at];
-  Json groups = Json::array();
+  OrderedJson groups = OrderedJson::array();
   std::size_t next = at + 1 + static_cast<std::size_t>(vm::leading_immediates(word));
   for (std::uint32_t group = 0; group < vm::group_count(word); ++group) {
-    Json& immediates = groups.emplace_back(Json::object());
+    OrderedJson& immediates = groups.emplace_back(OrderedJson::object());
     for (int i = 0; i < row.immediates; ++i) {
       immediates[std::string(vm::immediate_name(row, i))] = immediate_json(program, row, next++, i);
     }
@@ -29,7 +29,7 @@ Json immediates_json(const vm::Program& program, std::size_t at, const vm::Opcod
 }
 
 // What the operand says beside the row: "at" and "min" of a shape, "operands" of a function.
-void add_modes(Json& line, const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
+void add_modes(OrderedJson& line, const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
   const std::uint32_t word = program.words[at];
   const std::uint32_t operand = vm::operand_of(word);
   if (row.has_operand) line["operand"] = operand;
@@ -41,17 +41,17 @@ void add_modes(Json& line, const vm::Program& program, std::size_t at, const vm:
     return;
   }
   const vm::Sources sources = vm::sources_of(word);
-  const auto source = [&](vm::Source from) -> Json {
+  const auto source = [&](vm::Source from) -> OrderedJson {
     if (from == vm::Source::Constant) return *leading++;
     if (from == vm::Source::Local) return {{"local", sources.local}};
     constexpr const char* kNames[] = {"stack", "x", "y", "z"};
     return kNames[static_cast<int>(from)];
   };
-  line["operands"] = Json::array({source(sources.a)});
+  line["operands"] = OrderedJson::array({source(sources.a)});
   if (row.form == vm::Form::Binary) line["operands"].push_back(source(sources.b));
 }
 
-Json source_json(const vm::DebugEntry& entry) {
+OrderedJson source_json(const vm::DebugEntry& entry) {
   if (entry.line == 0) return nullptr;
   return {{"line", entry.line}, {"column", entry.column}};
 }
@@ -61,7 +61,7 @@ Json source_json(const vm::DebugEntry& entry) {
 std::string program_json(const vm::VerifiedProgram& verified, std::string_view which,
                          const compiler::CompiledScene& scene) {
   const vm::Program& program = verified.program();
-  Json head = {{"scene", program.source_name}, {"program", which}, {"summary", scene.summary}};
+  OrderedJson head = {{"scene", program.source_name}, {"program", which}, {"summary", scene.summary}};
   if (scene.origin != glm::dvec3(0)) head["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
   head["instructions"] = verified.instructions();
   head["words"] = program.words.size();
@@ -75,7 +75,7 @@ std::string program_json(const vm::VerifiedProgram& verified, std::string_view w
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {
     const vm::OpcodeInfo& row = *vm::find_opcode(program.words[at] & 0xff);
-    Json line = {{"offset", at}, {"op", row.mnemonic}};
+    OrderedJson line = {{"offset", at}, {"op", row.mnemonic}};
     add_modes(line, program, at, row);
     line["immediates"] = immediates_json(program, at, row);
     const vm::StackEffect effect = vm::effect_of(program.words[at]);

@@ -13,7 +13,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kRenderExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
     "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
@@ -329,7 +329,7 @@ std::optional<ExitCode> override_size(const RenderRequest& request, compiler::Fi
 
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
   RenderRequest request;
-  Arguments arguments("render", "Renders a scene to image files.", kExamples);
+  Arguments arguments("render", "Renders a scene to image files.", kRenderExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
   arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);

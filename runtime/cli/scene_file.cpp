@@ -120,16 +120,16 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
   if (!arguments.definitions.empty()) {
     return fail(streams, kUsage,
                 fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
-                            quoted(arguments.path)),
+                            cli::quoted(arguments.path)),
                 help);
   }
   if (asks_for_graph(options)) {
     return fail(streams, kUsage,
-                fmt::format("{} holds programs without the scene they were compiled from", quoted(arguments.path)),
+                fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
                 help);
   }
   note(streams,
-       fmt::format("{} holds programs without their scene: nothing is proved of them", quoted(arguments.path)));
+       fmt::format("{} holds programs without their scene: nothing is proved of them", cli::quoted(arguments.path)));
   return within_limits(std::move(stored.scene), arguments, streams);
 }
 
@@ -171,7 +171,7 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const c
 }
 
 ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable) {
-  return fail(streams, unreadable.code, fmt::format("cannot read {}: {}", quoted(path), unreadable.reason),
+  return fail(streams, unreadable.code, fmt::format("cannot read {}: {}", cli::quoted(path), unreadable.reason),
               unreadable.help.empty() ? Help{} : Help{unreadable.help});
 }
 
@@ -185,7 +185,7 @@ ExitCode fail_whole(const std::string& path, const std::string& reason, const st
   if (!remedy.empty()) help.push_back(remedy);
   const auto format = static_cast<compiler::ErrorFormat>(error_format);
   if (format == compiler::ErrorFormat::Text) {
-    return fail(streams, kBadScene, fmt::format("{}: {}", quoted(path), reason), help);
+    return fail(streams, kBadScene, fmt::format("{}: {}", cli::quoted(path), reason), help);
   }
   compiler::Diagnostics diagnostics;
   diagnostics.error("E0701", {}, reason, "", help);
@@ -244,12 +244,12 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     if (asks_for_graph(options)) {
       note(streams, fmt::format("{}: this program makes other programs of the scene in it than those in the file, of "
                                 "which nothing is said here. `fathom compile` makes it anew",
-                                quoted(arguments.path)));
+                                cli::quoted(arguments.path)));
       return std::move(*scene);
     }
     note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
                               "and nothing is proved of them. `fathom compile` makes it anew",
-                              quoted(arguments.path)));
+                              cli::quoted(arguments.path)));
     return within_limits(std::move(input.stored->scene), arguments, streams);
   }
   return std::move(*scene);

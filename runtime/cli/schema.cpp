@@ -10,14 +10,14 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSchemaExamples =
     "fathom schema > scene.schema.json   # a scene names it in its first property:\n"
     "                                    # \"$schema\": \"./scene.schema.json\"";
 
 }  // namespace
 
 int run_schema(std::span<const std::string> args, const Streams& streams) {
-  Arguments arguments("schema", "Prints the JSON Schema (draft 2020-12) of scene files.", kExamples);
+  Arguments arguments("schema", "Prints the JSON Schema (draft 2020-12) of scene files.", kSchemaExamples);
   if (const auto code = arguments.parse(args, streams)) return *code;
   streams.out << compiler::scene_schema();
   return kDone;

@@ -21,7 +21,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kSliceExamples =
     "fathom slice scene.json -o out.png                          # across z, as seen from the front\n"
     "fathom slice scene.json -o out.png --axis y --at 0.5        # from above, at the height 0.5\n"
     "fathom slice scene.json -o out.png --show sign --box -1,-1,1,1 --size 1024x1024\n"
@@ -44,7 +44,7 @@ struct SliceRequest {
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, SliceRequest& request) {
   std::optional<std::string> output;
-  Arguments arguments("slice", "Draws the field on a plane across one of the axes.", kExamples);
+  Arguments arguments("slice", "Draws the field on a plane across one of the axes.", kSliceExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp", into(read_shown_output, output));
   arguments.option("--axis", "AXIS", "The axis the plane lies across: x, y or z (z)",

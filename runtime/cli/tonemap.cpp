@@ -17,7 +17,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kTonemapExamples =
     "fathom tonemap render.exr -o out.png                      # as the scene says\n"
     "fathom tonemap render.exr -o out.png --exposure 1.5 --tone agx --bits 16\n"
     "fathom tonemap render.exr -o normal.png --layer normal";
@@ -39,7 +39,7 @@ std::vector<std::string_view> layer_names() {
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, TonemapRequest& request) {
-  Arguments arguments("tonemap", "Makes a picture of a render's numbers.", kExamples);
+  Arguments arguments("tonemap", "Makes a picture of a render's numbers.", kTonemapExamples);
   arguments.positional("picture", "The file to read: " + runtime::image_endings(), request.input);
   arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp",
                    into(read_shown_output, request.output));

@@ -12,7 +12,7 @@ namespace {
 // Far from those of the pictures, which count from 1.
 constexpr std::uint64_t kReferenceSeed = 1u << 20;
 // Of the mean of the reference, squared: what keeps the relative error of dark pixels finite.
-constexpr double kDark = 0.01;
+constexpr double kDarkShare = 0.01;
 constexpr double kTrimmed = 0.001;
 
 Channels channels_of(const Film& film) {
@@ -36,7 +36,7 @@ RelativeError relative_error(const Channels& picture, const Channels& reference)
   std::vector<double> errors;
   for (std::size_t i = 0; i < picture.size(); ++i) {
     const double difference = picture[i] - reference[i];
-    errors.push_back(difference * difference / (reference[i] * reference[i] + kDark * mean * mean + 1e-30));
+    errors.push_back(difference * difference / (reference[i] * reference[i] + kDarkShare * mean * mean + 1e-30));
   }
   std::sort(errors.begin(), errors.end());
   const std::size_t kept = errors.size() - static_cast<std::size_t>(kTrimmed * static_cast<double>(errors.size()));
