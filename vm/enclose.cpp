@@ -1,9 +1,19 @@
-// The enclosing evaluator, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
+// The enclosing evaluator. FATHOM_TARGET as in vm/evaluate.cpp.
 #include "vm/enclose.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/enclose.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+void enclose_boxes(const Code& program, const Boxes& boxes, float* lo, float* hi, ChoiceBounds* choices,
+                   Workspace& workspace);
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == FATHOM_TARGET
 #include "vm/enclosed-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -33,8 +43,9 @@ void enclose_boxes(const Code& program, const Boxes& boxes, float* lo, float* hi
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+#endif
 
-#if HWY_ONCE
+#if HWY_ONCE && FATHOM_TARGET == 0
 namespace fathom::vm {
 
 HWY_EXPORT(enclose_boxes);
@@ -46,4 +57,4 @@ void enclose(const Code& program, const Boxes& boxes, float* lo, float* hi, std:
 }
 
 }  // namespace fathom::vm
-#endif  // HWY_ONCE
+#endif

@@ -1,4 +1,6 @@
-// The f32 evaluators, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
+// The f32 evaluators.
+// Compiled once for each instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for what chooses among
+// them at run time.
 #include "vm/evaluate.h"
 
 #include <algorithm>
@@ -10,6 +12,18 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+void distance_batch(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
+void convex_batch(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                  Workspace& workspace);
+void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace);
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == FATHOM_TARGET
 #include "vm/blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,8 +75,9 @@ void surface_batch(const Code& program, Points points, std::size_t count, Surfac
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+#endif
 
-#if HWY_ONCE
+#if HWY_ONCE && FATHOM_TARGET == 0
 namespace fathom::vm {
 
 HWY_EXPORT(distance_batch);
@@ -136,11 +151,13 @@ bool force_isa(std::string_view name) {
   const std::string_view before = isa_name();
   const std::int64_t supported = supported_targets();
   bool found = false;
+  for (const Isa& isa : kIsas) found = found || (isa.name == name && (supported & isa.target) != 0);
+  // The instruction set and all below it: what is not compiled for this one runs on the next, not on the portable code.
+  std::int64_t targets = 0;
   for (const Isa& isa : kIsas) {
-    const bool wanted = isa.name == name && (supported & isa.target) != 0;
-    if (wanted || (!found && isa.name == before)) hwy::SetSupportedTargetsForTest(isa.target);
-    found = found || wanted;
+    if (targets != 0 || isa.name == (found ? name : before)) targets |= isa.target;
   }
+  hwy::SetSupportedTargetsForTest(targets & supported);
   hwy::GetChosenTarget().DeInit();
   return found;
 }
@@ -154,4 +171,4 @@ std::string_view isa_name() {
 }
 
 }  // namespace fathom::vm
-#endif  // HWY_ONCE
+#endif

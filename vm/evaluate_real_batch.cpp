@@ -1,10 +1,19 @@
 // Many points in double, compiled for the instruction sets whose registers hold four doubles or more; elsewhere one
-// point at a time is as fast.
+// point at a time is as fast. FATHOM_TARGET as in vm/evaluate.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate_real_batch.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "vm/blocks-inl.h"
+#include "hwy/highway.h"
 #include "vm/evaluate.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+void real_distances(const Code& program, RealPoints points, std::size_t count, double* distance, Workspace& workspace);
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == FATHOM_TARGET
+#include "vm/blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -25,8 +34,9 @@ void real_distances(const Code& program, RealPoints points, std::size_t count, d
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+#endif
 
-#if HWY_ONCE
+#if HWY_ONCE && FATHOM_TARGET == 0
 namespace fathom::vm {
 
 HWY_EXPORT(real_distances);
@@ -37,4 +47,4 @@ void evaluate_distance(const Code& program, RealPoints points, std::size_t count
 }
 
 }  // namespace fathom::vm
-#endif  // HWY_ONCE
+#endif

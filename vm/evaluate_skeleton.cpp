@@ -1,4 +1,4 @@
-// The evaluator of skeletons, compiled once for each instruction set (Highway's foreach_target).
+// The evaluator of skeletons. FATHOM_TARGET as in vm/evaluate.cpp.
 #include <algorithm>
 #include <numeric>
 
@@ -7,6 +7,16 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate_skeleton.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
+                    std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace);
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == FATHOM_TARGET
 #include "vm/interpret-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -174,8 +184,9 @@ void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const 
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
+#endif
 
-#if HWY_ONCE
+#if HWY_ONCE && FATHOM_TARGET == 0
 namespace fathom::vm {
 
 HWY_EXPORT(skeleton_batch);
@@ -186,4 +197,4 @@ void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, con
 }
 
 }  // namespace fathom::vm
-#endif  // HWY_ONCE
+#endif
