@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "runtime/material.h"
 #include "vm/real.h"
 #include "runtime/angle.h"
 
@@ -54,7 +55,7 @@ void Lights::add_lamps(const compiler::CompiledScene& scene, std::vector<LightBo
   has_lamps_.resize(scene.surfaces.size(), false);
   for (const compiler::Lamp& lamp : scene.lamps) {
     const compiler::Material& material = scene.materials[lamp.material];
-    const glm::vec3 radiance(material.emission * material.emission_luminance);
+    const glm::vec3 radiance = typical_point(material).emitted();
     lamps_.push_back({LampShape(lamp), radiance, false});
     bounds.push_back(bounds_of(lamps_.back().shape, radiance));
     has_lamps_[lamp.surface] = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/exponential.hpp>
 
 #include "runtime/elementary.h"
 #include "runtime/pattern.h"
@@ -11,6 +12,7 @@ namespace fathom::runtime {
 namespace {
 
 using compiler::MaterialNumbers;
+
 // Light that a medium may take away, per scene unit: beyond this nothing is left anyway.
 constexpr float kLargestAbsorption = 1e18f;
 
@@ -84,9 +86,19 @@ constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 
 }  // namespace
 
+// Light crosses the coat once, which takes the square root of coat_color.
+glm::vec3 MaterialPoint::emitted() const {
+  if (coat_weight == 0) return emission * opacity;
+  return emission * opacity * glm::sqrt(glm::mix(glm::vec3(1), coat_color, coat_weight));
+}
+
+MaterialPoint typical_point(const compiler::Material& material) {
+  return to_point(material, material.type, material.thin_walled);
+}
+
 Materials::Materials(const compiler::CompiledScene& scene) : scene_(&scene) {
   for (const compiler::Material& m : scene.materials) {
-    points_.push_back(to_point(m, m.type, m.thin_walled));
+    points_.push_back(typical_point(m));
     pass_straight_ |= m.thin_walled || points_.back().passes_straight() ||
                       std::any_of(m.textured.begin(), m.textured.end(), may_open);
   }
@@ -174,7 +186,7 @@ MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t) {
 glm::vec3 albedo_of(const MaterialPoint& m) {
   glm::vec3 color = m.base_color;
   if (m.type == MaterialType::Principled) color = color * (1 - m.transmission) + m.transmission_color * m.transmission;
-  return glm::min(color + m.emission, glm::vec3(1));
+  return glm::min(color + m.emitted(), glm::vec3(1));
 }
 
 }  // namespace fathom::runtime

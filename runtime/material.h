@@ -35,9 +35,11 @@ struct MaterialPoint {
   float coat_roughness = 0, coat_ior = 1.6f;
   bool thin_walled = false;
   float opacity = 1;        // geometry_opacity; 1 for what fills a body
-  glm::vec3 emission{0};    // radiance
+  glm::vec3 emission{0};    // radiance of a surface that is opaque and has no coat
   glm::vec3 absorption{0};  // inside, per scene unit
 
+  // The radiance that leaves the surface, to both sides: what is there of it emits, through the coat.
+  glm::vec3 emitted() const;
   // Whether a path may get through the surface, and whether it then is in a medium of this index.
   bool transmits() const { return passes_light() || opacity < 1; }
   bool fills() const { return passes_light() && !thin_walled; }
@@ -47,6 +49,9 @@ struct MaterialPoint {
  private:
   bool passes_light() const { return type == MaterialType::Transparent || transmission > 0; }
 };
+
+// The material where it does not vary, with stand-ins for what varies.
+MaterialPoint typical_point(const compiler::Material& material);
 
 // All parameters mixed linearly, t in [0,1]; at 0 and below it is a, at 1 and above b. Two of one type stay of it; of
 // two types both become principled. NaN counts as 0.

@@ -211,14 +211,15 @@ void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
 }
 
 void Integrator::add_emission(const Vertex& v) {
-  if (v.material->emission == glm::vec3(0)) return;
+  const glm::vec3 emitted = v.material->emitted();
+  if (emitted == glm::vec3(0)) return;
   const Path& path = *v.path;
   float light_pdf = 0;
   if (path.pdf > 0 && !world_.lights.empty()) {
     light_pdf = world_.lights.pdf_of_hit(path.from, v.point->surface, v.hit->position);
   }
   const float share = hit_share(path, light_pdf);
-  if (share > 0) add_light(*v.path, path.throughput * v.material->emission * share, path.bounces);
+  if (share > 0) add_light(*v.path, path.throughput * emitted * share, path.bounces);
 }
 
 // A light is chosen and a place on it.
@@ -243,7 +244,7 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   if (!(light.pdf > 0) || (!light.delta && way == LightSampling::Hits)) return std::nullopt;
   if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
     const glm::dvec3 lamp = v.query.position + light.distance * glm::dvec3(light.wi);
-    light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emission;
+    light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emitted();
   }
   const BsdfValue value = v.bsdf->evaluate(light.wi);
   const bool both = !light.delta && way == LightSampling::Both;

@@ -122,6 +122,39 @@ inline LightScene smooth_gauze() {
   return scene;
 }
 
+// A black sheet that fills the picture, crossed twice, where so much of it is there and emits 3, before a background
+// of 1.
+inline LightScene glowing_gauze(double opacity) {
+  LightScene scene = in_even_light(
+      R"({"type": "principled", "color": 0, "specular_weight": 0, "emission": [3, 3, 3], "opacity": )" +
+          std::to_string(opacity) + "}",
+      R"("type": "box", "half_size": [3, 3, 0.1])");
+  const double holes = 1 - opacity;
+  scene.radiance = 3 * opacity * (1 + holes) + holes * holes;
+  return scene;
+}
+
+// P3 under a ball of which a part is there: it shines by its near side, and by its far side through the holes.
+inline LightScene under_glowing_gauze(double opacity) {
+  LightScene scene = under_ball(0.5, 0, 2);
+  scene.json = floor_spot("", R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 2, 0], "material": "veil"})",
+                          R"(, "veil": {"type": "principled", "color": 0, "specular_weight": 0,
+                                        "emission": [8, 8, 8], "opacity": )" +
+                              std::to_string(opacity) + "}");
+  scene.radiance *= opacity * (2 - opacity);
+  return scene;
+}
+
+// P3 under a black ball whose coat, which reflects nothing, lets half of the light through once and covers all of it.
+inline LightScene under_coated_ball() {
+  LightScene scene = under_ball(0.5, 0, 2);
+  scene.json = floor_spot("", R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 2, 0], "material": "coated"})",
+                          R"(, "coated": {"type": "principled", "color": 0, "specular_weight": 0, "coat": 1,
+                                          "coat_ior": 1, "coat_color": 0.25, "emission": [8, 8, 8]})");
+  scene.radiance *= 0.5;
+  return scene;
+}
+
 inline std::string gauze_at(double y) {
   return R"(, {"type": "box", "half_size": [0.5, 0.01, 0.5], "translate": [0, )" + std::to_string(y) +
          R"(, 0], "material": "veil"})";
