@@ -1,7 +1,9 @@
 #include "runtime/energy.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 
 #include "runtime/fresnel.h"
@@ -128,7 +130,7 @@ AlbedoRow interpolate(float alpha, float eta, Between between, RowAt&& row_at) {
   const float share = std::clamp(way, 0.0f, 1.0f);
   AlbedoRow row = AlbedoRow::constant(0);
   const auto add = [&](int at, float part) {
-    if (part > 0) add_rows(alpha, part, row, [&](int node) -> const AlbedoRow& { return row_at(at, node); });
+    if (part > 0) add_rows(alpha, part, row, [&](int node) -> decltype(auto) { return row_at(at, node); });
   };
   add(slice, 1 - share);
   add(slice + 1, share);
@@ -149,6 +151,84 @@ void for_visible_normals(float cos, const Ggx& ggx, Lattice lattice, Visit&& vis
     turn = (turn + lattice.step) % lattice.points;
   }
 }
+
+// What is linear in a function of the cosine, by the function's values at the nodes.
+struct AlbedoMatrix {
+  std::array<AlbedoRow, kNodes> row{};
+
+  AlbedoRow operator*(const AlbedoRow& function) const {
+    AlbedoRow product;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      float sum = 0;
+      for (std::size_t k = 0; k < kNodes; ++k) sum += row[i].node[k] * function.node[k];
+      product.node[i] = sum;
+    }
+    return product;
+  }
+};
+
+// Node `o` of the matrix that makes of a function g the mean of g(cos_i) - g(cos_o) over the light of wo that leaves
+// lower; the facets reflect share(cos_m) of it.
+template <typename Share>
+void add_lowered(std::size_t o, float alpha, AlbedoRow& row, Share&& share) {
+  const Ggx ggx(alpha);
+  const float cos = AlbedoRow::node_cos(static_cast<int>(o));
+  for_visible_normals(cos, ggx, kOutside, [&](glm::vec3 wo, glm::vec3 m, float weight) {
+    const float cos_m = std::min(glm::dot(wo, m), 1.0f), cos_i = 2 * cos_m * m.z - wo.z;
+    if (!(cos_i > 0 && cos_i < cos)) return;
+    const float part = weight * share(cos_m) * ggx.seen_on_leaving(cos, cos_i);
+    const Stencil s = stencil_at(place_of(cos_i));
+    for (std::size_t k = 0; k < 4; ++k) row.node[static_cast<std::size_t>(s.first) + k] += part * s.weight[k];
+    row.node[o] -= part;
+  });
+}
+
+const AlbedoMatrix& lowered_by_conductor(int roughness) {
+  static RowTable<AlbedoMatrix> table;
+  return table.row(roughness, [&](float, std::size_t k, AlbedoMatrix& matrix) {
+    add_lowered(k, node_alpha(roughness), matrix.row[k], [](float) { return 1.0f; });
+  });
+}
+
+const AlbedoMatrix& lowered_by_reflection(int slice, int roughness) {
+  static std::array<RowTable<AlbedoMatrix>, kSlices> tables;
+  return tables[static_cast<std::size_t>(slice)].row(roughness, [&](float, std::size_t k, AlbedoMatrix& matrix) {
+    const float eta = slice_eta(slice);
+    add_lowered(k, node_alpha(roughness), matrix.row[k], [&](float cos_m) { return fresnel(cos_m, eta); });
+  });
+}
+
+// Results of the last calls of a thread, for a material asks the same at every hit: a product of matrices takes
+// longer than all else that is made of a coat.
+class CoatLosses {
+ public:
+  template <typename Make>
+  const AlbedoRow& get(float alpha, float eta, const AlbedoRow& coat, Make&& make) {
+    Entry& entry = entries_[place(alpha, eta, coat)];
+    if (entry.alpha != alpha || entry.eta != eta || entry.coat.node != coat.node) {
+      entry = {alpha, eta, coat, make()};
+      for (float& value : entry.loss.node) value = std::max(value, 0.0f);
+    }
+    return entry.loss;
+  }
+
+ private:
+  struct Entry {
+    float alpha = -1, eta = 0;
+    AlbedoRow coat = {}, loss = {};
+  };
+  static constexpr std::size_t kEntries = 32;
+  static std::size_t place(float alpha, float eta, const AlbedoRow& coat) {
+    std::uint32_t hash = 0;
+    for (const float value : {alpha, eta, coat.node[kNodes / 2], coat.node[kNodes - 1]}) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b1u;
+      hash ^= hash >> 15;
+    }
+    return hash % kEntries;
+  }
+  std::array<Entry, kEntries> entries_;
+};
+thread_local CoatLosses coat_losses;
 
 }  // namespace
 
@@ -200,6 +280,21 @@ AlbedoRow smooth_albedo(float eta) {
   AlbedoRow row;
   for (int i = 0; i < kNodes; ++i) row.node[static_cast<std::size_t>(i)] = fresnel(AlbedoRow::node_cos(i), eta);
   return row;
+}
+
+AlbedoRow coat_loss_of_conductor(float alpha, const AlbedoRow& coat) {
+  return coat_losses.get(alpha, 0, coat, [&] {
+    AlbedoRow row = AlbedoRow::constant(0);
+    add_rows(alpha, 1, row, [&](int node) { return lowered_by_conductor(node) * coat; });
+    return row;
+  });
+}
+
+AlbedoRow coat_loss_of_reflection(float alpha, float eta, const AlbedoRow& coat) {
+  return coat_losses.get(alpha, eta, coat, [&] {
+    const auto row_at = [&](int slice, int node) { return lowered_by_reflection(slice, node) * coat; };
+    return interpolate(alpha, eta, Between::Reflectances, row_at);
+  });
 }
 
 // Of a visible normal G2 / G1(wo) of the light that is reflected there gets away, and of the light that passes

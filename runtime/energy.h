@@ -45,6 +45,13 @@ AlbedoRow dielectric_loss(float alpha, float eta);
 // The part that a smooth dielectric reflects; eta >= 1.
 AlbedoRow smooth_albedo(float eta);
 
+// What a coat over a rough boundary takes of the reflected light because that leaves lower than it came, where light
+// counts by what the coat passes of it on the way in or out, whichever is less: the mean of
+// max(0, coat(cos_i) - coat(cos_o)). `coat` is the part that the coat reflects, which must fall as the cosine rises:
+// where it does not the result is too small. eta >= 1. One row is kept for each thread and material.
+AlbedoRow coat_loss_of_conductor(float alpha, const AlbedoRow& coat);
+AlbedoRow coat_loss_of_reflection(float alpha, float eta, const AlbedoRow& coat);
+
 // The integrals themselves, over the visible normals on a Fibonacci lattice of so many points: a pair of neighbours
 // in Fibonacci's sequence. `cos` in [0,1].
 struct Lattice {

@@ -20,6 +20,8 @@ constexpr float kLeastBend = 0.01f;
 constexpr float kLeastCos = 1e-6f;
 // Of a lobe that light may take, to be drawn.
 constexpr float kLeastChance = 0.01f;
+// In place of an index: facets that reflect everything.
+constexpr float kReflectsAll = INFINITY;
 constexpr float kBelowOne = 0x1.fffffep-1f;
 
 float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
@@ -101,7 +103,7 @@ void Principled::add_metal(const MaterialPoint& m) {
   const float once = 1 - lost.average();
   const glm::vec3 average = m.specular_weight * metal_tint_.average();
   const glm::vec3 color = average * average * once / (1.0f - average * (1 - once));
-  lost_metal_.row = inside_ ? lost : under_coat(lost);
+  lost_metal_.row = inside_ ? lost : with_coat_loss(under_coat(lost), kReflectsAll);
   const float norm = lost_metal_.row.average();
   if (norm > 0) lost_metal_.strength = coat_tint_ * m.metalness * color * (lost_metal_.row.at(wo_.z) / norm);
 }
@@ -127,6 +129,7 @@ void Principled::add_pigment(const MaterialPoint& m) {
     passed = rest_of(reflected);
   }
   pigment_.row = inside_ ? passed : under_coat(passed);
+  if (over_pigment_ > 0 && !smooth_boundary_) pigment_.row = with_coat_loss(pigment_.row, eta_);
   const float norm = glm::mix(pigment_.row.average(), pigment_.row.greatest(), m.diffuse_roughness);
   if (!(norm > 0)) return;
   const glm::vec3 strength = coat_tint_ * (part * pigment_.row.at(wo_.z) / norm);
@@ -150,7 +153,7 @@ void Principled::add_lost_glass(const MaterialPoint& m) {
     passed = average_passed(eta_);
   }
   AlbedoRow& outside = inside_ ? beyond : here;
-  outside = under_coat(outside);
+  outside = with_coat_loss(under_coat(outside), inside_ && !thin_ ? 1 / eta_ : eta_);
   const float average_here = here.average(), average_beyond = beyond.average();
   if (!(average_here > 0 && average_beyond > 0)) return;
   const float at_o = here.at(wo_.z), part = (1 - m.metalness) * m.transmission;
@@ -196,6 +199,15 @@ float Principled::coat_passes(float cos) const { return coat_weight_ > 0 ? 1 - c
 AlbedoRow Principled::under_coat(AlbedoRow row) const {
   if (coat_weight_ == 0) return row;
   for (std::size_t i = 0; i < AlbedoRow::kNodes; ++i) row.node[i] *= 1 - coat_weight_ * coat_row_.node[i];
+  return row;
+}
+
+// `row`, of directions outside, and what the coat takes too much of what facets below it reflect; eta: from outside.
+AlbedoRow Principled::with_coat_loss(AlbedoRow row, float eta) const {
+  if (coat_weight_ == 0 || eta < 1) return row;
+  const AlbedoRow lost = eta == kReflectsAll ? coat_loss_of_conductor(ggx_.alpha(), coat_row_)
+                                             : coat_loss_of_reflection(ggx_.alpha(), eta, coat_row_);
+  for (std::size_t i = 0; i < AlbedoRow::kNodes; ++i) row.node[i] += coat_weight_ * lost.node[i];
   return row;
 }
 

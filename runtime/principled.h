@@ -74,6 +74,7 @@ class Principled {
   void set_chances();
 
   AlbedoRow under_coat(AlbedoRow row) const;
+  AlbedoRow with_coat_loss(AlbedoRow row, float eta) const;
   float coat_passes(float cos) const;
   glm::vec3 boundary_reflects(float fresnel) const;
   glm::vec3 boundary_passes(float passed) const;

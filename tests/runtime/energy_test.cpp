@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/fresnel.h"
+#include "runtime/microfacet.h"
 #include "runtime/sampler.h"
 #include "tests/support/effort.h"
 
@@ -110,6 +111,32 @@ TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
   for (AlbedoRow& row : rows) threads.emplace_back([&row] { row = dielectric_loss(0.37f, 1.77f); });
   for (std::thread& thread : threads) thread.join();
   for (const AlbedoRow& row : rows) CHECK(row.node == rows[0].node);
+}
+
+// Against the definition, by other points.
+TEST_CASE("energy: what a coat takes too much is the mean of what it dims more", "[runtime]") {
+  const AlbedoRow coat = smooth_albedo(1.6f);
+  Sampler sampler(9, 0, 0, 0);
+  for (const float alpha : {0.05f, 0.3f, 0.8f}) {
+    const Ggx ggx(alpha);
+    const AlbedoRow metal = coat_loss_of_conductor(alpha, coat), glass = coat_loss_of_reflection(alpha, 1.5f, coat);
+    for (const float cos : {1.0f, 0.7f, 0.4f, 0.15f}) {
+      const glm::vec3 wo(std::sqrt(1 - cos * cos), 0, cos);
+      double of_metal = 0, of_glass = 0;
+      constexpr int kPoints = 20000;
+      for (int i = 0; i < kPoints; ++i) {
+        const glm::vec3 m = ggx.sample_visible(wo, sampler.next2());
+        const float cos_m = std::min(glm::dot(wo, m), 1.0f), cos_i = 2 * cos_m * m.z - cos;
+        if (!(cos_i > 0)) continue;
+        const double more = static_cast<double>(std::max(0.0f, coat.at(cos_i) - coat.at(cos)));
+        of_metal += more * static_cast<double>(ggx.seen_on_leaving(cos, cos_i)) / kPoints;
+        of_glass += more * static_cast<double>(ggx.seen_on_leaving(cos, cos_i) * fresnel(cos_m, 1.5f)) / kPoints;
+      }
+      CAPTURE(alpha, cos);
+      CHECK(static_cast<double>(metal.at(cos)) == Approx(of_metal).margin(4e-3));
+      CHECK(static_cast<double>(glass.at(cos)) == Approx(of_glass).margin(4e-3));
+    }
+  }
 }
 
 }  // namespace

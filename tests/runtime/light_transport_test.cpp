@@ -9,6 +9,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
 #include "tests/support/light_scenes.h"
+#include "tests/support/white_furnace.h"
 
 namespace fathom::runtime {
 namespace {
@@ -141,6 +142,21 @@ TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
     options.light_sampling = way;
     expect(tests::under_coated_ball(), options, way == LightSampling::Hits ? 2e-2 : 5e-3);
   }
+}
+
+TEST_CASE("light: random white materials return what they get", "[render][light]") {
+  const int count = test::few(16);
+  double sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const tests::WhiteMaterial material = tests::random_white(static_cast<std::uint32_t>(i));
+    const double returned = tests::returned(scene_of(tests::furnace(material.json)), 16, 64);
+    sum += returned;
+    CAPTURE(material.json, returned);
+    CHECK(returned < 1.04);
+    CHECK(returned > (material.coat && material.glass ? 0.84 : 0.93));
+    if (!material.glass && !material.rough_pigment) CHECK(returned == Approx(1).margin(1e-2));
+  }
+  CHECK(sum / count > 0.98);
 }
 
 // What goes straight on is not scattered: however few bounces a path may make, it sees what lies behind a hole.

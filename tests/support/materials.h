@@ -172,6 +172,14 @@ inline std::vector<MaterialCase> white_materials() {
     cases.push_back({"pane", glass(alpha, true)});
     cases.push_back({"plastic", principled(roughness)});
     cases.push_back({"plastic from inside", principled(roughness), true});
+    for (const MaterialPoint& base : {metal(alpha), principled(roughness)}) {
+      for (float coat_roughness : {0.0f, 0.3f}) {
+        MaterialCase c{"varnish over metal or plastic", base};
+        c.material.coat_weight = coat_roughness > 0 ? 0.7f : 1.0f;
+        c.material.coat_roughness = coat_roughness;
+        cases.push_back(c);
+      }
+    }
   }
   return cases;
 }
