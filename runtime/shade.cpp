@@ -11,7 +11,9 @@
 namespace fathom::runtime {
 namespace {
 
-// A path goes on with at most this probability, so that even a closed white room ends.
+// A path that loses nothing goes on for so many bounces beyond the settled ones, and from there with at most this
+// probability, so that even a closed white room ends.
+constexpr int kFreeBounces = 1024;
 constexpr float kMostSurvival = 0.95f;
 // A shadow ray ends so many of the start's offsets before a lamp met head-on, but takes no more than this share of
 // its way off.
@@ -295,7 +297,8 @@ bool Integrator::plays_roulette(int bounces) const {
 bool Integrator::survives(Path& path, float roulette) const {
   if (world_.settings.cut_after) return path.bounces <= *world_.settings.cut_after;
   if (!plays_roulette(path.bounces)) return true;
-  const float q = std::min(kMostSurvival, max_component(path.throughput) * path.eta_scale);
+  const float most = path.bounces - world_.settings.bounces < kFreeBounces ? 1 : kMostSurvival;
+  const float q = std::min(most, max_component(path.throughput) * path.eta_scale);
   if (roulette >= q) return false;
   path.throughput /= q;
   return true;
