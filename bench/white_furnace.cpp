@@ -4,6 +4,8 @@
 //     build/release/bench_white_furnace                500 random materials of specular_weight 1, and some by name
 //     build/release/bench_white_furnace --count 50     fewer of them
 //     build/release/bench_white_furnace --spp 256      less noise; 64 samples of 32 x 32 pixels err by some 1e-3
+#include "tests/support/white_furnace.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include <vector>
 
 #include "compiler/compile.h"
-#include "tests/support/white_furnace.h"
 
 namespace fathom::bench {
 namespace {
@@ -83,8 +84,7 @@ void print_table(int count, int spp) {
   fmt::print("\n{:<48}{:>8}{:>9}{:>9}{:>9}\n", "random materials", "count", "least", "mean", "most");
   using tests::WhiteMaterial;
   print_row("all", all, [](const WhiteMaterial&) { return true; });
-  print_row("no coat, diffuse_roughness 0", all,
-            [](const WhiteMaterial& m) { return !m.coat && !m.rough_pigment; });
+  print_row("no coat, diffuse_roughness 0", all, [](const WhiteMaterial& m) { return !m.coat && !m.rough_pigment; });
   print_row("no coat, diffuse_roughness above 0", all,
             [](const WhiteMaterial& m) { return !m.coat && m.rough_pigment; });
   print_row("coat over what is opaque, diffuse_roughness 0", all,

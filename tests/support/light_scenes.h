@@ -125,10 +125,10 @@ inline LightScene smooth_gauze() {
 // A black sheet that fills the picture, crossed twice, where so much of it is there and emits 3, before a background
 // of 1.
 inline LightScene glowing_gauze(double opacity) {
-  LightScene scene = in_even_light(
-      R"({"type": "principled", "color": 0, "specular_weight": 0, "emission": [3, 3, 3], "opacity": )" +
-          std::to_string(opacity) + "}",
-      R"("type": "box", "half_size": [3, 3, 0.1])");
+  LightScene scene =
+      in_even_light(R"({"type": "principled", "color": 0, "specular_weight": 0, "emission": [3, 3, 3], "opacity": )" +
+                        std::to_string(opacity) + "}",
+                    R"("type": "box", "half_size": [3, 3, 0.1])");
   const double holes = 1 - opacity;
   scene.radiance = 3 * opacity * (1 + holes) + holes * holes;
   return scene;
