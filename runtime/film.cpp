@@ -9,7 +9,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kUnit = 0x1p-32;
+constexpr double kUnit = kFilmStep;
 constexpr std::int64_t kFull = std::numeric_limits<std::int64_t>::max();
 
 // Nearest multiple of 2^-32; `value` must be finite. Half-way cases go away from zero.

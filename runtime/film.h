@@ -36,6 +36,8 @@ namespace fathom::runtime {
 
 // What the samples of a pixel may add up to.
 inline constexpr double kFullPixel = 0x1p31;
+// Fainter samples may be off by more than a hundredth, and are 0 below half of kFilmStep.
+inline constexpr double kFilmStep = 0x1p-32, kFaintLight = 50 * kFilmStep;
 
 // What one camera path adds to its pixel.
 struct PathSample {

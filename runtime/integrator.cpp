@@ -232,6 +232,10 @@ void Integrator::hand_in(std::uint32_t id) {
     path.result.radiance = glm::vec3(0);
   }
   path.result.radiance *= path.weight;
+  const glm::vec3 radiance = path.result.radiance;
+  const float brightest = std::max({radiance.x, radiance.y, radiance.z});
+  if (brightest > 0) ++stats_.lit_samples;
+  if (brightest > 0 && brightest < static_cast<float>(kFaintLight)) ++stats_.faint_samples;
   if (!exchange_.add(path.key, path.result)) ++stats_.saturated;
   free_ids_.push_back(id);
 }

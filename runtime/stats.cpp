@@ -37,6 +37,8 @@ constexpr Row kRows[] = {
     {"region_programs", "evaluations of parts", nullptr, &MarchCounters::region_programs},
     {"dropped_samples", "samples dropped", &Stats::dropped_samples, nullptr},
     {"saturated_samples", "samples over full", &Stats::saturated, nullptr},
+    {"lit_samples", "samples with light", &Stats::lit_samples, nullptr},
+    {"faint_samples", "samples too faint", &Stats::faint_samples, nullptr},
 };
 
 std::uint64_t count_of(const Stats& stats, const Row& row) {

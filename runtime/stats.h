@@ -47,6 +47,8 @@ struct Stats {
   std::uint64_t bounce_rays = 0;       // by which paths go on after a hit: all the others
   std::uint64_t dropped_samples = 0;   // paths whose radiance was not finite; they count as black
   std::uint64_t saturated = 0;         // paths that overfilled a pixel's sum
+  std::uint64_t lit_samples = 0;       // paths that brought light
+  std::uint64_t faint_samples = 0;     // those of them that the film cannot hold to a hundredth (kFaintLight)
   std::optional<StageSeconds> stages;  // of all threads together; when asked for (RenderOptions::profile)
   std::uint64_t peak_memory = 0;       // bytes, of the whole process until now; 0: not known
   std::uint64_t region_bytes = 0;      // that the scene's regions take; 0: it has none

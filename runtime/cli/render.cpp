@@ -246,8 +246,12 @@ class Job {
   }
 
   void warn_of_lost(const runtime::Stats& stats) {
-    if (stats.saturated == 0) return;
-    warn(streams_, lost_text(count_of(stats.saturated, "sample")));
+    if (stats.saturated > 0) warn(streams_, lost_text(count_of(stats.saturated, "sample")));
+    // Where other light is brighter, so faint a light is black in every picture.
+    if (stats.faint_samples == 0 || 2 * stats.faint_samples < stats.lit_samples) return;
+    warn(streams_, fmt::format("{} of {} with light are too faint for the film, which counts in steps of {:.2g}: "
+                               "coarse or black; scale the lights up, and --exposure down",
+                               stats.faint_samples, count_of(stats.lit_samples, "sample"), runtime::kFilmStep));
   }
 
   // "a pixel has 3 samples at least, 5.20 on average, 8 at most"

@@ -127,6 +127,24 @@ TEST_CASE("cli merge: what is full only together is said to be lost") {
   CHECK_THAT(folder.run("render bright.json -s 8 -q -o m.exr").err, Contains("samples lost"));
 }
 
+// Once, light of 1e-10 was black without a word.
+TEST_CASE("cli merge: light too faint for the film is said to be") {
+  const Folder folder;
+  const auto render = [&](const std::string& background) {
+    folder.write("faint.json", R"({"version": 1, "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
+        "film": {"width": 4, "height": 4}, "background": )" +
+                                   background + R"(, "objects": [{"type": "sphere", "radius": 0.1}]})");
+    return folder.run("render faint.json -s 8 -q -o m.exr").err;
+  };
+  CHECK_THAT(render("[1e-10, 1e-10, 1e-10]"),
+             Contains("warning: 128 of 128 samples with light are too faint for the film"));
+  CHECK_THAT(render("[1e-9, 1e-9, 1e-9]"), Contains("too faint for the film"));
+  CHECK_THAT(render("[1e-7, 1e-7, 1e-7]"), !Contains("warning"));
+  CHECK_THAT(render("[0, 0, 0]"), !Contains("too faint"));
+  // In a picture that is bright elsewhere there is nothing to see in it.
+  CHECK_THAT(render(R"({"bottom": [0, 0, 1e-12], "top": [1, 1, 1]})"), !Contains("too faint"));
+}
+
 TEST_CASE("cli merge: usage, files that are none, and outputs in the way") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -s 2 -q -o a.film").code == 0);
