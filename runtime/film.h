@@ -62,7 +62,7 @@ struct FilmLayers {
   bool cost = false;      // evaluations, instructions: 16
   bool position = false;  // of the first surface: 24
   bool ids = false;       // of the first surface: 12
-  bool variance = false;  // of radiance: 48
+  bool variance = false;  // of radiance, as if samples were independent: 48
   bool halves = false;    // radiance of the samples with odd numbers, what the denoiser needs: 32
 
   bool operator==(const FilmLayers&) const = default;
@@ -75,7 +75,9 @@ struct PixelMeans {
   glm::dvec3 radiance{0};
   glm::dvec3 noisy{0};                                    // radiance before it was denoised; otherwise the same
   glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // of the samples with even and with odd numbers
-  glm::dvec3 variance{0};  // of `noisy`, the mean: that of the samples by their number; 0 for fewer than two
+  // Of `noisy`, the mean, as if the samples were independent: that of the samples by their number; 0 for fewer than
+  // two. Of samplers that spread samples evenly, sobol and blue, the mean's own variance is less.
+  glm::dvec3 variance{0};
   glm::dvec3 albedo{0};    // 0 where nothing was hit
   glm::dvec3 normal{0};    // not normalised; 0 where nothing was hit
   double depth = 0;        // over the samples that hit; 0 when none did

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "runtime/render.h"
+#include "runtime/sampler.h"
+#include "tests/runtime/scenes.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -127,6 +131,45 @@ TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
   Film one(1, 1, {.variance = true});
   one.add(0, 0, sample);
   CHECK(one.means(0, 0).variance == glm::dvec3(0));
+}
+
+// Of independent samples the truth; of samples that avoid each other an upper bound, for it takes them as
+// independent. Once, the layer's description did not say so.
+TEST_CASE("film: the variance layer against the variance between seeds", "[render]") {
+  const auto scene =
+      scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 0.3, 0]}, "background": [0.2, 0.3, 0.5],
+      "materials": {"lamp": {"type": "emissive", "emission": [8, 8, 8]}},
+      "objects": [{"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 0.5, "translate": [0, 0.5, 0]},
+                  {"type": "sphere", "radius": 0.3, "translate": [1, 2, 1], "material": "lamp"}])");
+  const auto ratio_of = [&](SamplerKind kind) {
+    constexpr int kSide = 12, kSeeds = 32;
+    RenderOptions options;
+    options.width = options.height = kSide;
+    options.spp = 16;
+    options.sampler = kind;
+    options.layers.variance = true;
+    std::array<double, kSide * kSide> sum{}, squares{};
+    double layer = 0, measured = 0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      options.seed = seed;
+      const Film film = render(scene, options).film;
+      for (std::size_t i = 0; i < sum.size(); ++i) {
+        const PixelMeans means = film.means(static_cast<int>(i) % kSide, static_cast<int>(i) / kSide);
+        layer += means.variance.y / kSeeds;
+        sum[i] += means.radiance.y;
+        squares[i] += means.radiance.y * means.radiance.y;
+      }
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) measured += (squares[i] - sum[i] * sum[i] / kSeeds) / (kSeeds - 1);
+    return layer / measured;
+  };
+  CHECK(ratio_of(SamplerKind::Independent) == Approx(1).margin(0.15));
+  for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
+    const double ratio = ratio_of(kind);
+    CAPTURE(ratio);
+    CHECK(ratio > 1);
+    CHECK(ratio < 8);
+  }
 }
 
 TEST_CASE("film: squares beyond whole numbers are full, and variance stays finite", "[runtime]") {
