@@ -173,7 +173,7 @@ template <typename Share>
 void add_lowered(std::size_t o, float alpha, AlbedoRow& row, Share&& share) {
   const Ggx ggx(alpha);
   const float cos = AlbedoRow::node_cos(static_cast<int>(o));
-  for_visible_normals(cos, ggx, kOutside, [&](glm::vec3 wo, glm::vec3 m, float weight) {
+  for_visible_normals(cos, ggx, kFromOutside, [&](glm::vec3 wo, glm::vec3 m, float weight) {
     const float cos_m = std::min(glm::dot(wo, m), 1.0f), cos_i = 2 * cos_m * m.z - wo.z;
     if (!(cos_i > 0 && cos_i < cos)) return;
     const float part = weight * share(cos_m) * ggx.seen_on_leaving(cos, cos_i);
