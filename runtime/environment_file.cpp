@@ -30,7 +30,13 @@ std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& 
     if (channel == nullptr) channel = grey;
     if (channel == nullptr) return UnreadImage{fmt::format("`{}` has neither channels R, G and B nor Y", path)};
   }
+  const double pixels = static_cast<double>(image.area.pixels());
+  const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + sizeof(glm::vec3));
+  if (needed > limits.memory) {
+    return UnreadImage{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
+  }
   EnvironmentImage result{image.area.width(), image.area.height(), {}};
+  result.pixels.reserve(image.area.pixels());
   for (std::size_t i = 0; i < channels[0]->size(); ++i) {
     result.pixels.emplace_back(usable((*channels[0])[i]), usable((*channels[1])[i]), usable((*channels[2])[i]));
   }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <span>
@@ -21,6 +22,9 @@ namespace fathom::runtime {
 
 // Of a file that is read: more than any of ours has, and few enough that a broken header does not take all memory.
 inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28, kMostValues = std::int64_t{1} << 31;
+
+// Deflate makes at most so many bytes of one: 258 of a length and a distance of a bit each (RFC 1951, section 3.2.5).
+inline constexpr double kMostDeflated = 1032;
 
 // What a file says of itself: name -> value. Matrices act on row vectors from the right (p M), row by row: what
 // OpenEXR keeps and pbrt writes.
@@ -52,6 +56,12 @@ struct ImageShape {
 // Why an image is not read that takes so many bytes.
 inline std::string too_much_memory(double needed, double allowed) {
   return fmt::format("it takes {:.15g} bytes of memory, and {:.15g} are allowed", needed, std::max(0.0, allowed));
+}
+
+// Why an image is not read whose file is shorter than the best compression makes so many pixels.
+inline std::string too_few_bytes(int width, int height, double least, double has) {
+  return fmt::format("it ends too early: {} by {} pixels take {:.0f} bytes at least, and it has {:.0f}", width,
+                     height, std::ceil(least), has);
 }
 
 struct FloatImage : ImageShape {

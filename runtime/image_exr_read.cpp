@@ -28,6 +28,23 @@ double pixels_of(const exr_attr_box2i_t& window) {
   return static_cast<double>(width_of(window)) * static_cast<double>(height_of(window));
 }
 
+// How many bytes the best of each compression makes of one; a limit, not what is usual.
+double most_unpacked(exr_compression_t compression) {
+  switch (compression) {
+    case EXR_COMPRESSION_NONE:
+      return 1;
+    case EXR_COMPRESSION_RLE:
+      return 64;  // a run of 128 in two
+    case EXR_COMPRESSION_B44:
+    case EXR_COMPRESSION_B44A:
+      return 11;  // 16 halves in 14, flat ones in three
+    case EXR_COMPRESSION_PXR24:
+      return kMostDeflated * 4 / 3;  // floats have lost a fourth byte before
+    default:
+      return kMostDeflated;  // ZIP; PIZ has at most 410, runs of 256 halves in ten bits
+  }
+}
+
 std::string text_of(const exr_attr_string_t& text) { return {text.str, static_cast<std::size_t>(text.length)}; }
 
 // Nothing for kinds that Attribute does not have.
@@ -99,6 +116,7 @@ class ExrReader {
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
       return fail("it is compressed by DWA, which is not read; ZIP and PIZ lose nothing");
     }
+    most_unpacked_ = most_unpacked(compression);
     tiled_ = storage == EXR_STORAGE_TILED;
     return tiled_ || storage == EXR_STORAGE_SCANLINE || fail("its pixels are deep: each has many samples");
   }
@@ -121,7 +139,21 @@ class ExrReader {
     const double values = pixels_of(data_) * channels_->num_channels;
     if (values > static_cast<double>(kMostValues)) return fail("it is too large");
     const double needed = sizeof(float) * values + kChunks * static_cast<double>(chunk);
-    return needed <= memory_ || fail(too_much_memory(needed, memory_));
+    if (needed > memory_) return fail(too_much_memory(needed, memory_));
+    const double least = pixels_of(data_) * bytes_per_pixel() / most_unpacked_,
+                 has = static_cast<double>(bytes_.size());
+    return least <= has ||
+           fail(too_few_bytes(static_cast<int>(width_of(data_)), static_cast<int>(height_of(data_)), least, has));
+  }
+
+  // As the file has them, unpacked.
+  double bytes_per_pixel() const {
+    double bytes = 0;
+    for (const exr_attr_chlist_entry_t& channel :
+         std::span(channels_->entries, static_cast<std::size_t>(channels_->num_channels))) {
+      bytes += channel.pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    }
+    return bytes;
   }
 
   // As far as their table tells, which must fit the file, before memory is set aside for what they hold.
@@ -219,6 +251,7 @@ class ExrReader {
   const double memory_;
   exr_context_t context_ = nullptr;
   bool tiled_ = false;
+  double most_unpacked_ = 1;
   std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; those at the edges may be smaller
   exr_attr_box2i_t data_{}, display_{};
   const exr_attr_chlist_t* channels_ = nullptr;

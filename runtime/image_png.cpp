@@ -107,6 +107,7 @@ class PngReader {
 
   // The header has been read.
   static void begin(png_structp png, png_infop about) {
+    self(png).row_bytes_ = static_cast<double>(png_get_rowbytes(png, about));  // of the file's own samples
     png_set_expand_16(png);
     if (std::endian::native == std::endian::little) png_set_swap(png);
     png_set_interlace_handling(png);
@@ -133,6 +134,11 @@ class PngReader {
       problem_ = too_much_memory(needed, memory_);
       return false;
     }
+    const double least = picture_.height * (1 + row_bytes_) / kMostDeflated;
+    if (least > file_size_) {
+      problem_ = too_few_bytes(picture_.width, picture_.height, least, file_size_);
+      return false;
+    }
     picture_.samples.resize(static_cast<std::size_t>(samples));
     return true;
   } catch (const std::bad_alloc&) {
@@ -155,6 +161,7 @@ class PngReader {
   }
 
   const double file_size_, memory_;
+  double row_bytes_ = 0;
   png_structp png_;
   png_infop about_;
   PngPicture picture_;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "runtime/elementary.h"
 #include "runtime/image_exr.h"
 #include "runtime/image_io.h"
+#include "runtime/image_jpeg.h"
 #include "runtime/image_png.h"
 
 namespace fathom::runtime {
@@ -96,18 +98,39 @@ struct StbSource {
 };
 constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
 
+// The least bytes of a file with so many pixels.
+using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
+
+// BMP, uncompressed: the bits of a pixel stand in the header, whose length is its first number.
+double least_of_bmp(const Bytes& bytes, double width, double height) {
+  const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
+  const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
+  return width * height * std::max(1.0, bits) / 8;
+}
+
+// Radiance: a row begins with four bytes, and each of its four components has a run of up to 127 in two; rows that
+// are very short or very long have no runs, nor has an older file.
+double least_of_hdr(const Bytes&, double width, double height) {
+  const bool runs = width >= 8 && width < 32768;
+  return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
+}
+
 // The reason why stb may not be asked for a picture, which is its header's size: of `sample` bytes for each number in
 // what it decodes, a float for each in what is made of that.
-std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory) {
+std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes least_of) {
   int width = 0, height = 0, components = 0;
   // From memory, whose end stb sees.
   if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
     const char* reason = stbi_failure_reason();
     return reason != nullptr ? reason : "its content makes no sense";
   }
+  if (width < 1 || height < 1) return "it has no pixels";
+  if (std::int64_t{width} * height > kMostPixels) return "it is too large";
   const double numbers = static_cast<double>(width) * height * std::max(3, components);
   const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
   if (needed > memory) return too_much_memory(needed, memory);
+  const double least = least_of(bytes, width, height), has = static_cast<double>(bytes.size());
+  if (least > has) return too_few_bytes(width, height, least, has);
   return std::nullopt;
 }
 
@@ -158,10 +181,19 @@ Decoded decode_deep(const Bytes& bytes, double memory) {
   return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
 }
 
+Decoded decode_lossy(const Bytes& bytes, double memory) {
+  const auto read = decode_jpeg(bytes, memory);
+  if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
+  const auto& picture = std::get<JpegPicture>(read);
+  return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
+}
+
 Decoded decode_shown(const Bytes& bytes, double memory) {
-  // Whatever its name says: stb sets aside what a chunk says that it has before it reads any of it.
+  // Whatever its name says. stb sets aside what a chunk of a PNG says that it has before it reads any of it, and
+  // makes up what a JPEG ends without.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
-  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory)) return std::move(*problem);
+  if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
+  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, least_of_bmp)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
   const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
@@ -181,7 +213,7 @@ Decoded decode_hdr(const Bytes& bytes, double memory) {
   // Otherwise stb would make light of any other picture.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   if (!ends_hdr_header(bytes)) return "its header does not end";
-  if (auto problem = stb_problem(bytes, sizeof(float), memory)) return std::move(*problem);
+  if (auto problem = stb_problem(bytes, sizeof(float), memory, least_of_hdr)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes, '\xff'};  // no run is so long
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));

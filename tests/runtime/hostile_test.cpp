@@ -73,7 +73,7 @@ std::string expanded(const std::string& recipe) {
 
 // The case's own file, and small ones that others name.
 void make_files(const Folder& folder, const Case& hostile) {
-  for (const char* beside : {"chunk-of-a-gigabyte.png", "huge.hdr"})
+  for (const char* beside : {"chunk-of-a-gigabyte.png", "huge.hdr", "of-nothing.hdr"})
     fs::copy_file(kFolder / beside, folder.path() / beside);
   fs::create_symlink("/dev/zero", folder.path() / "zero.pfm");
   fs::remove(folder.path() / hostile.name);
