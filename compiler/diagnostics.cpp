@@ -98,7 +98,7 @@ std::string print_text(const Diagnostic& d, const Source& source, const Style& s
                                 word(d.severity), d.code, s.off, s.strong, d.message, s.off);
   std::string margin = "  ";  // as wide as the gutter: the line number and a blank on either side
   if (nowhere(d.span)) {
-    out += fmt::format("{}{}-->{} {}\n", margin, s.gutter, s.off, source.name());
+    out += fmt::format("{}{}-->{} {}\n", margin, s.gutter, s.off, shown(source.name()));
     margin += ' ';
   } else {
     const Position at = source.locate(d.span.begin);
@@ -107,7 +107,8 @@ std::string print_text(const Diagnostic& d, const Source& source, const Style& s
     const std::string number = std::to_string(at.line);
     margin = std::string(number.size() + 2, ' ');
     const std::string_view severity = d.severity == Severity::Error ? s.error : s.warning;
-    out += fmt::format("{}{}-->{} {}:{}:{}\n", margin.substr(1), s.gutter, s.off, source.name(), at.line, at.column);
+    out += fmt::format("{}{}-->{} {}:{}:{}\n", margin.substr(1), s.gutter, s.off, shown(source.name()), at.line,
+                       at.column);
     out += fmt::format("{}{}|{}\n", margin, s.gutter, s.off);
     out += fmt::format("{} {} |{}{}{}\n", s.gutter, number, s.off, line.empty() ? "" : " ", line);
     out += fmt::format("{}{}|{} {}{}{}{}{}\n", margin, s.gutter, s.off, severity, carets, d.label.empty() ? "" : " ",
@@ -120,14 +121,14 @@ std::string print_text(const Diagnostic& d, const Source& source, const Style& s
 }
 
 std::string print_short(const Diagnostic& d, const Source& source) {
-  if (nowhere(d.span)) return fmt::format("{}: {}: {} [{}]\n", source.name(), word(d.severity), d.message, d.code);
+  const std::string name = shown(source.name());
+  if (nowhere(d.span)) return fmt::format("{}: {}: {} [{}]\n", name, word(d.severity), d.message, d.code);
   const Position at = source.locate(d.span.begin);
-  return fmt::format("{}:{}:{}: {}: {} [{}]\n", source.name(), at.line, at.column, word(d.severity), d.message,
-                     d.code);
+  return fmt::format("{}:{}:{}: {}: {} [{}]\n", name, at.line, at.column, word(d.severity), d.message, d.code);
 }
 
 std::string json_line(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return vm::escape_controls(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
 std::string print_json(const Diagnostic& d, const Source& source) {
@@ -153,7 +154,7 @@ std::string print_rest(std::size_t count, const Source& source, ErrorFormat form
     case ErrorFormat::Text:
       return "\n" + message + "\n";
     case ErrorFormat::Short:
-      return fmt::format("{}: {}\n", source.name(), message);
+      return fmt::format("{}: {}\n", shown(source.name()), message);
     case ErrorFormat::Json:
       break;
   }
