@@ -50,8 +50,8 @@ class Checkpoint {
 
   const std::string& path() const { return path_; }
   bool named() const { return named_; }
-  // Whether there is a state of this render in it, read or written by it.
-  bool holds_state() const { return ours_ && !replaced_by_another(); }
+  // Whether there is a state of this render in it, read or written by it, and still there.
+  bool holds_state() const { return ours_ && runtime::stamp_of(path_) == known_; }
   // Why it was not written the last time.
   const std::optional<std::string>& problem() const { return problem_; }
   int written() const { return written_; }

@@ -245,6 +245,19 @@ TEST_CASE("cli checkpoint: the picture so far is written before every pixel has 
   CHECK_THAT(part.err, Contains("a pixel has 1 sample at least, 1.00 on average"));
 }
 
+TEST_CASE("cli checkpoint: no help names one in a folder that is gone") {
+  const SlowFolder folder;
+  const std::string options = "slow.json -o a.exr --checkpoint kept/now.film";
+  REQUIRE(folder.run_script("mkdir kept\n" + interrupted(options, "INT", "kept/now.film")).out == "75\n");
+  const Result gone = folder.run_script(
+      "touch mark\n\"$fathom\" render " + options + " -q --resume --checkpoint-interval 0.01s &\npid=$!\n" +
+      "while ! [ kept/now.film -nt mark ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\n" +
+      "rm -r kept\nkill -INT $pid 2>/dev/null\nwait $pid; echo $?\n");
+  INFO(gone.err);
+  CHECK(gone.out == "74\n");
+  CHECK_THAT(gone.err, Contains("is not kept") && !Contains("an earlier state of it is in"));
+}
+
 TEST_CASE("cli checkpoint: nobody who listens need stay") {
   const SlowFolder folder;
   // Messages go into a pipe that nobody reads any more.
