@@ -38,8 +38,9 @@ struct FileContents {
 };
 
 struct FileError {
-  std::string reason;  // with the section and the offset in it; for people
-  std::string remedy;  // may be empty
+  std::string reason;     // with the section and the offset in it; for people
+  std::string remedy;     // may be empty
+  bool textless = false;  // nothing is wrong with it, but it came without the scene's text, which was asked for
 };
 
 // A file cut into its sections, whose digests are right.

@@ -70,7 +70,8 @@ std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_
   if (auto* error = std::get_if<FileError>(&opened)) return std::move(*error);
   auto& file = std::get<CompiledFile>(opened);
   if (file.text) return StoredText{beside(*file.text, path), std::move(file.definitions)};
-  return FileError{"it holds programs without the scene they were compiled from", "compile the scene's own file"};
+  return FileError{"it holds programs without the scene they were compiled from", "compile the scene's own file",
+                   true};
 }
 
 CompiledScene unproved(CompiledScene stored) {

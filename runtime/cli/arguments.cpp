@@ -83,7 +83,19 @@ void Arguments::option(const std::string& names, const std::string& value, const
   option.option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
 }
 
+// What a verb does not declare itself, so that every verb knows -q, and every verb with a scene -v.
+void Arguments::add_common(const Streams& streams) {
+  group("Options");
+  if (app_->get_option_no_throw("--quiet") == nullptr) {
+    flag("-q,--quiet", "Print errors, warnings and notes only", streams.quiet);
+  }
+  if (app_->get_option_no_throw("scene") != nullptr && app_->get_option_no_throw("--verbose") == nullptr) {
+    counter("-v,--verbose", "Say what the scene compiles to; -vv: and what each pass leaves", streams.verbosity);
+  }
+}
+
 std::optional<int> Arguments::parse(std::span<const std::string> args, const Streams& streams) {
+  add_common(streams);
   try {
     app_->parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
   } catch (const CLI::CallForHelp&) {

@@ -54,6 +54,7 @@ class Arguments {
     std::vector<std::string> texts;
     Setter setter;
   };
+  void add_common(const Streams& streams);
   int report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const;
   int report_usage(const Streams& streams, const std::string& message, Help help = {}) const;
 

@@ -140,7 +140,7 @@ class Charts {
                            other.eps);
       }
     }
-    streams_.out << line << '\n' << why;
+    print(streams_, line + '\n' + why);
   }
 
   void add_pictures(const compiler::CompiledScene& scene, runtime::PageScene& section) {

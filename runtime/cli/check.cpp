@@ -52,7 +52,7 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   const std::vector<compiler::ProbeRow> rows = probe(graph, scene.surfaces, options);
   const std::vector<const compiler::ProbeRow*> culprits = compiler::culprits(graph, rows);
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
-  streams.out << (json ? probe_json(scene.source, rows, culprits) : probe_text(scene.source, rows, culprits));
+  print(streams, json ? probe_json(scene.source, rows, culprits) : probe_text(scene.source, rows, culprits));
   return culprits.empty() ? kDone : kFoundProblems;
 }
 
@@ -76,7 +76,7 @@ int run_check(std::span<const std::string> args, const Streams& streams) {
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   const compiler::Report report = make_report(graph, scene.surfaces);
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
-  streams.out << (json ? report_json(scene, report) : report_text(scene, report));
+  if (!streams.quiet) print(streams, json ? report_json(scene, report) : report_text(scene, report));
   return request.probes ? run_probe(request, scene, graph, streams) : kDone;
 }
 

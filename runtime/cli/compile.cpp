@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <ostream>
+#include <string_view>
+#include <utility>
 
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/programs.h"
@@ -10,6 +12,7 @@
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/image_io.h"
 
 namespace fathom::cli {
 namespace {
@@ -33,13 +36,32 @@ ExitCode write_compiled(const compiler::CompiledScene& scene, const compiler::Fi
     return kDone;
   }
   if (const auto problem = runtime::write_file(bytes, path)) return fail(streams, kIo, *problem);
-  streams.err << fmt::format("wrote {} ({} bytes)\n", path, bytes.size());
+  say(streams, fmt::format("wrote {} ({} bytes)", path, bytes.size()));
   return kDone;
+}
+
+// The kind of file that a name says and a compiled scene is not; nothing for .fbc, no ending or one nobody knows.
+std::optional<std::string_view> other_kind(const std::string& path) {
+  constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
+      {".film", "a film"}, {".json", "a scene"}, {".vm", "a scene"}, {".stl", "a mesh"},
+      {".obj", "a mesh"},  {".ply", "a mesh"},   {".glb", "a mesh"}, {".gltf", "a mesh"},
+  };
+  if (runtime::image_format_of(path)) return "a picture";
+  for (const auto& [ending, kind] : kKinds) {
+    if (path.ends_with(ending)) return kind;
+  }
+  return std::nullopt;
 }
 
 std::optional<ExitCode> check_output(const std::string& input, const std::string& output, const Streams& streams) {
   if (output.empty()) return fail(streams, kUsage, "-o FILE is missing", {"- writes to standard output"});
   if (output == "-") return std::nullopt;
+  if (const auto kind = other_kind(output)) {
+    Help help = {"name it with .fbc at its end"};
+    if (*kind == "a picture") help.push_back("`fathom render` draws pictures");
+    return fail(streams, kUsage,
+                fmt::format("`{}` is the name of {}, and this writes a compiled scene", output, *kind), help);
+  }
   if (const auto code = check_collisions(input, {output}, streams)) return code;
   if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
   return std::nullopt;

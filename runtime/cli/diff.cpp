@@ -38,6 +38,9 @@ constexpr const char* kDiffExamples =
     "of\n"
     "the second. flip: what an eye sees of the difference, 0 to 1, with each picture as a screen shows it.";
 
+// Of both pictures' colours and of FLIP's planes; measured.
+constexpr double kBytesPerPixel = 80;
+
 // Every number that is printed, and whether --tol can be about it.
 struct Measured {
   runtime::Differences differences;
@@ -118,6 +121,7 @@ std::variant<Colors, ExitCode> read_colors(const std::string& path, const compil
       return fail(streams, kBadScene, fmt::format("`{}` has no channel `{}`", path, kNames[c]));
     }
   }
+  colors.rgb.reserve(3 * channels[0]->size());
   for (std::size_t i = 0; i < channels[0]->size(); ++i) {
     for (const std::vector<float>* channel : channels) colors.rgb.push_back((*channel)[i]);
   }
@@ -181,13 +185,20 @@ int run_diff(std::span<const std::string> args, const Streams& streams) {
                             request.second, reference.width, reference.height),
                 {"only pictures of one size can be compared"});
   }
+  const double pixels = static_cast<double>(picture.width) * picture.height, allowed = allowed_memory(request.limits);
+  if (pixels * kBytesPerPixel > allowed) {
+    return fail(streams, kBadScene,
+                fmt::format("`{}` cannot be compared: {}", request.first,
+                            runtime::too_much_memory(pixels * kBytesPerPixel, allowed)),
+                {compiler::raise(&compiler::Limits::memory, pixels * kBytesPerPixel)});
+  }
   const Measured measured{runtime::compare(picture.view(), reference.view()),
                           runtime::flip(picture.view(), reference.view())};
   streams.out << (request.json ? json(measured) : table(measured));
   if (request.map) {
     const runtime::Picture map = map_picture(measured.flip, picture.width, picture.height);
     if (const auto problem = runtime::write_image(map, *request.map)) return fail(streams, kIo, *problem);
-    streams.err << fmt::format("wrote {} ({}x{})\n", *request.map, map.width, map.height);
+    say(streams, fmt::format("wrote {} ({}x{})", *request.map, map.width, map.height));
   }
   return judge(request, measured, streams);
 }

@@ -199,13 +199,13 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = scene; };
   }
   const auto compiled = compile_scene({source, std::nullopt}, request.scene, streams, options);
-  if (request.stage == kSyntax) streams.out << syntax;  // of a scene with errors in it, too
+  if (request.stage == kSyntax) print(streams, syntax);  // of a scene with errors in it, too
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (request.diff && !request.after) diff.add_fused(scene.distance);
   if (request.stage == kGraph) {
     if (request.format <= kText) streams.out << origin_line(scene);
-    streams.out << (request.diff ? diff.text() : print(graph, source, request.format));
+    cli::print(streams, request.diff ? diff.text() : print(graph, source, request.format));
   }
   if (request.region) {
     const std::optional<std::string> listing = region_listing(scene, *request.region);
@@ -243,7 +243,7 @@ ExitCode dump_difference(const DumpRequest& request, const Streams& streams) {
   const auto side = [&](const std::string& name, const auto& scene) {
     return DiffSide{name, program_of(std::get<compiler::CompiledScene>(scene), request)};
   };
-  streams.out << program_diff(side(request.scene.path, before), side(request.other, after));
+  cli::print(streams, program_diff(side(request.scene.path, before), side(request.other, after)));
   return kDone;
 }
 

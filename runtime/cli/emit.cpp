@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <ostream>
 
 #include "runtime/cli/output_file.h"
@@ -66,7 +65,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
     return fail(streams, kUsage, "--name is about GLSL", {"use --namespace"});
   }
   if (!request.output) return std::nullopt;
-  return check_collisions(request.scene.path, {*request.output}, streams);
+  if (const auto code = check_collisions(request.scene.path, {*request.output}, streams)) return code;
+  if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -86,11 +87,8 @@ int run_emit(std::span<const std::string> args, const Streams& streams) {
     streams.out << text;
     return kDone;
   }
-  std::ofstream file(*request.output, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) return fail(streams, kIo, fmt::format("cannot write `{}`", *request.output));
-  streams.err << fmt::format("wrote {}\n", *request.output);
+  if (const auto problem = write_text(text, *request.output)) return fail(streams, kIo, *problem);
+  say(streams, fmt::format("wrote {}", *request.output));
   return kDone;
 }
 

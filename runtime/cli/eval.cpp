@@ -12,6 +12,7 @@
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "vm/evaluate.h"
+#include "vm/printable.h"
 
 namespace fathom::cli {
 namespace {
@@ -87,9 +88,9 @@ std::optional<ExitCode> read_points(const std::string& path, const compiler::Lim
   return std::nullopt;
 }
 
-std::string_view surface_name(const compiler::CompiledScene& scene, std::uint32_t surface) {
+std::string surface_name(const compiler::CompiledScene& scene, std::uint32_t surface) {
   if (surface >= scene.surfaces.size() || scene.surfaces[surface].name.empty()) return "-";
-  return scene.surfaces[surface].name;
+  return vm::escape_controls(scene.surfaces[surface].name);
 }
 
 void print_f64(const compiler::CompiledScene& scene, const std::vector<glm::dvec3>& points, std::ostream& out) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <ostream>
 
 #include "compiler/frontend/write_json.h"
@@ -39,6 +38,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (output) {
     if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
+    if (const auto problem = check_text_path(*output)) return fail(streams, kIo, *problem);
   }
   auto read = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
@@ -63,11 +63,8 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
     streams.out << text;
     return kDone;
   }
-  std::ofstream file(*output, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) return fail(streams, kIo, fmt::format("cannot write `{}`", *output));
-  streams.err << fmt::format("wrote {}\n", *output);
+  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
+  say(streams, fmt::format("wrote {}", *output));
   return kDone;
 }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <set>
 
 #include "compiler/diagnostics.h"
 #include "compiler/limits.h"
@@ -49,6 +50,22 @@ std::string limits_text() {
   return text;
 }
 
+// Of a thread whose exception nobody catches, or of one that the main thread's exception leaves without being joined:
+// with memory or threads at an end nothing is left but to say so.
+[[noreturn]] void end_at_once() {
+  std::string_view reason = "not enough memory, or not enough threads";
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    reason = "not enough memory";
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  for (const std::string_view part : {std::string_view("error: "), reason, std::string_view("\n")})
+    (void)!::write(STDERR_FILENO, part.data(), part.size());
+  std::_Exit(kInternal);
+}
+
 int unknown_verb(const std::string& word, const Streams& streams) {
   std::vector<std::string_view> names = {"help", "--help", "--version"};
   for (const Verb& verb : kVerbs) names.push_back(verb.name);
@@ -73,8 +90,10 @@ int run(std::span<const std::string> args, const Streams& streams) {
     streams.out << "fathom " << kVersion << '\n';
     return kDone;
   }
-  const bool help = word == "help" || word == "--help" || word == "-h";
-  if (help && args.size() == 1) {
+  const std::set<std::string_view> help_words = {"help", "--help", "-h"};
+  const bool help = help_words.contains(word);
+  const bool of_help = args.size() == 2 && help_words.contains(args[1]);
+  if (help && (args.size() == 1 || of_help)) {
     streams.out << overview();
     return kDone;
   }
@@ -109,6 +128,7 @@ int main(int argc, char** argv) {
   const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
   std::ios::sync_with_stdio(false);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, not the end
+  std::set_terminate(end_at_once);
   std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // how a failed CHECK ends, after its message
   const Streams streams{std::cin, std::cout, std::cerr, terminal && !dumb, color};
   try {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "runtime/cli/scene_file.h"
 #include "runtime/film.h"
 #include "runtime/options.h"
 
@@ -43,11 +44,13 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
   const double needed = pixels * each;
   if (needed + (regions <= allowed / 2 ? regions : 0) <= allowed) return std::nullopt;
   const bool given = request.size || request.resolution || request.crop;
-  return fail(streams, given ? kUsage : kBadScene,
-              fmt::format("{}the render would take {} of memory ({:.0f} pixels of {:.0f} bytes); {} are allowed",
-                          given ? "" : scene.source.name() + ": ", in_words(needed), pixels, each, in_words(allowed)),
-              {"ask for a smaller picture, or a part of it with --crop",
-               compiler::raise(&compiler::Limits::memory, needed + regions)});
+  return fail_about(
+      request.scene, given ? kUsage : kBadScene,
+      fmt::format("{}the render would take {} of memory ({:.0f} pixels of {:.0f} bytes); {} are allowed",
+                  given ? "" : scene.source.name() + ": ", in_words(needed), pixels, each, in_words(allowed)),
+      {"ask for a smaller picture, or a part of it with --crop",
+       compiler::raise(&compiler::Limits::memory, needed + regions)},
+      streams);
 }
 
 }  // namespace fathom::cli

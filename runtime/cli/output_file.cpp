@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/atomic_file.h"
 #include "runtime/image_io.h"
 
 namespace fathom::cli {
@@ -54,6 +56,24 @@ std::string default_output(const std::string& scene) {
 std::string beside(const std::string& path, const std::string& suffix) {
   const std::size_t dot = path.rfind('.');
   return path.substr(0, dot) + "-" + suffix + path.substr(dot);
+}
+
+bool is_special(const std::string& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+         !std::filesystem::is_directory(status);
+}
+
+std::optional<std::string> check_text_path(const std::string& path) {
+  return is_special(path) ? std::nullopt : runtime::check_file_path(path);
+}
+
+std::optional<std::string> write_text(const std::string& text, const std::string& path) {
+  if (!is_special(path)) return runtime::write_file({text.begin(), text.end()}, path);
+  std::ofstream file(path, std::ios::binary);
+  file << text << std::flush;
+  return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
 std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,

@@ -30,6 +30,13 @@ std::string default_output(const std::string& scene);
 // "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
 std::string beside(const std::string& path, const std::string& suffix);
 
+// Texts: of a file as a whole or not at all; devices and pipes are written to as they are.
+bool is_special(const std::string& path);  // whether something other than a regular file has that name
+// The reason why the text could not be written, as far as can be known before there is any.
+std::optional<std::string> check_text_path(const std::string& path);
+// The reason why it was not written; what was there before is as it was.
+[[nodiscard]] std::optional<std::string> write_text(const std::string& text, const std::string& path);
+
 // An ExitCode, after a message, when a picture of that size would be too large.
 std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
                                            const Streams& streams);

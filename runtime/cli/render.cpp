@@ -9,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <ostream>
 #include <system_error>
@@ -31,19 +30,6 @@
 
 namespace fathom::cli {
 namespace {
-
-// Devices and pipes are written to as they are; only files appear whole or not at all.
-bool is_special(const std::string& path) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-}
-
-std::optional<std::string> check_stats_path(const std::string& path) {
-  std::error_code ignored;
-  if (path == "-" || (is_special(path) && !std::filesystem::is_directory(path, ignored))) return std::nullopt;
-  return runtime::check_file_path(path);
-}
 
 PictureFiles pictures_of(const RenderRequest& request) {
   return {request.outputs, request.albedo, request.depth, request.normal, request.denoise, request.bits != 0};
@@ -72,12 +58,13 @@ std::vector<std::string> output_files(const RenderRequest& request) {
 }
 
 // The picture that the scene's background names.
-std::optional<ExitCode> read_background(const compiler::Background& background, const compiler::Limits& limits,
+std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
                                         runtime::RenderOptions& options, const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
-  auto image = runtime::read_environment(background.image.file, read_limits(limits));
+  auto image = runtime::read_environment(background.image.file, read_limits(arguments.limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
-    return fail(streams, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem);
+    return fail_about(arguments, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem, {},
+                      streams);
   }
   options.environment =
       std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
@@ -96,7 +83,9 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
     }
   }
   if (request.stats_json) {
-    if (const auto problem = check_stats_path(*request.stats_json)) return fail(streams, kIo, *problem);
+    const bool stream = *request.stats_json == "-";
+    if (const auto problem = stream ? std::nullopt : check_text_path(*request.stats_json))
+      return fail(streams, kIo, *problem);
   }
   return std::nullopt;
 }
@@ -113,10 +102,7 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
     streams.out << text;
     return std::nullopt;
   }
-  if (!is_special(path)) return runtime::write_file({text.begin(), text.end()}, path);
-  std::ofstream file(path);
-  file << text << std::flush;
-  return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
+  return write_text(text, path);
 }
 
 constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sample yet";
@@ -124,20 +110,22 @@ constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sam
 // A render from its compiled scene to its files.
 class Job {
  public:
-  Job(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams, Watching* watching)
+  Job(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams, Watching* watching,
+      std::optional<Interruption>& interruption)
       : request_(request),
         scene_(scene),
         streams_(streams),
         watching_(watching),
+        interruption_(interruption),
         header_(film_header(scene, runtime::resolve(scene, request.options), request.options)),
         checkpoint_(checkpoint_of(request)),
         line_(streams) {}
 
   ExitCode run() {
     if (const auto code = begin()) return *code;
-    std::optional<Interruption> interruption;
-    if (!watching_) interruption.emplace();  // under --watch a signal that ends programs ends this one
-    runtime::RenderResult result = render(interruption);
+    // Under --watch a signal that ends programs ends this one.
+    if (!watching_ && !interruption_) interruption_.emplace();
+    runtime::RenderResult result = render();
     line_.wipe();
     if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
     return end(result);
@@ -152,9 +140,9 @@ class Job {
   }
 
   // All that is printed meanwhile comes from the thread that ticks.
-  runtime::RenderResult render(std::optional<Interruption>& interruption) {
+  runtime::RenderResult render() {
     runtime::RenderOptions options = request_.options;
-    options.cancel = watching_ ? &watching_->changed : &interruption->stop();
+    options.cancel = watching_ ? &watching_->changed : &interruption_->stop();
     std::mutex mutex;
     std::optional<runtime::Progress> latest;
     options.on_progress = [&](const runtime::Progress& progress) {
@@ -172,7 +160,7 @@ class Job {
       if (watching_ && watching_->files.changed()) watching_->changed = true;
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       if (checkpoint_) checkpoint_->tick(header_, look, seconds, streams_);
-      if (interruption && interruption->picture_wanted()) write_so_far(look);
+      if (interruption_ && interruption_->picture_wanted()) write_so_far(look);
     };
     return runtime::render(scene_, options);
   }
@@ -300,13 +288,20 @@ class Job {
   const compiler::CompiledScene& scene_;
   const Streams& streams_;
   Watching* watching_;
+  std::optional<Interruption>& interruption_;
   const runtime::FilmHeader header_;
   std::optional<Checkpoint> checkpoint_;
   ProgressLine line_;
 };
 
+bool asks_for_checkpoint(std::span<const std::string> args) {
+  return std::any_of(args.begin(), args.end(),
+                     [](const std::string& arg) { return arg.starts_with("--checkpoint") || arg == "--resume"; });
+}
+
 // One picture of the file as it is now.
-ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching) {
+ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching,
+                     std::optional<Interruption>& interruption) {
   RenderRequest request = asked;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
@@ -317,8 +312,7 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
   if (const auto code = check_memory(request, scene, streams)) return *code;
-  if (const auto code = read_background(scene.background, request.scene.limits, request.options, streams))
-    return *code;
+  if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.default_output && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
@@ -326,15 +320,16 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   if (request.options.clamp && !request.quiet) {
     note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
   }
-  return Job(request, scene, streams, watching).run();
+  return Job(request, scene, streams, watching, interruption).run();
 }
 
 // Until a signal ends the program: files are written whole or not at all, so any moment will do.
 [[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
   Watching watching{runtime::FileWatch({request.scene.path})};
+  std::optional<Interruption> none;
   while (true) {
     watching.changed = false;
-    render_once(request, streams, &watching);
+    render_once(request, streams, &watching, none);
     if (!watching.changed && !request.quiet) {
       note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
     }
@@ -349,6 +344,9 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
 
 int run_render(std::span<const std::string> args, const Streams& streams) {
   std::signal(SIGUSR1, SIG_IGN);  // who asks for a picture when there is none gets none
+  // Whoever asks for a checkpoint gets one from the first moment on, while the scene is read and compiled, too.
+  std::optional<Interruption> interruption;
+  if (asks_for_checkpoint(args)) interruption.emplace();
   std::signal(SIGPIPE, SIG_IGN);  // who reads the messages may go before the render is done
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
@@ -356,8 +354,11 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = check_bits(pictures_of(request), streams)) return *code;
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
-  if (request.watch) render_on_change(request, streams);
-  return render_once(request, streams, nullptr);
+  if (request.watch) {
+    interruption.reset();
+    render_on_change(request, streams);
+  }
+  return render_once(request, streams, nullptr, interruption);
 }
 
 }  // namespace fathom::cli

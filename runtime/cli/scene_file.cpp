@@ -13,6 +13,8 @@
 
 #include "compiler/artefact/programs.h"
 #include "compiler/frontend/formula.h"
+#include "runtime/cli/verbosity.h"
+#include "vm/printable.h"
 
 namespace fathom::cli {
 namespace {
@@ -84,7 +86,11 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
   const std::string& path = arguments.path;
   auto text = read_text(path, arguments.limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    const Help help = unreadable->help.empty() ? Help{} : Help{unreadable->help};
+    return fail_about(arguments, unreadable->code,
+                      fmt::format("cannot read {}: {}", cli::quoted(path), unreadable->reason), help, streams);
+  }
   return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
 }
 
@@ -133,6 +139,23 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
   return within_limits(std::move(stored.scene), arguments, streams);
 }
 
+// The source as messages are to name it: the text in a compiled file by both their names.
+compiler::Source named(const compiler::Source& source, const std::string& path) {
+  const std::string name = source_name(path);
+  if (path.empty() || source.name() == name) return source;
+  return compiler::Source(fmt::format("{} ({})", name, source.name()), source.text());
+}
+
+void print(const compiler::Diagnostics& diagnostics, const compiler::Source& source, const SceneArguments& arguments,
+           const Streams& streams) {
+  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
+  streams.err << diagnostics.print(source, format, streams.color);
+  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.warnings();
+  if (errors == 0 || format != compiler::ErrorFormat::Text) return;
+  streams.err << vm::printable(source.name()) << ": " << count_of(errors, "error")
+              << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
+}
+
 // Whether anything is wrong with the command line's values for parameters (E05xx).
 bool about_definitions(const compiler::Diagnostics& diagnostics) {
   const auto& all = diagnostics.all();
@@ -179,18 +202,23 @@ std::string quoted(const std::string& path) { return path == "-" ? "standard inp
 
 std::string source_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
-ExitCode fail_whole(const std::string& path, const std::string& reason, const std::string& remedy, int error_format,
+ExitCode fail_about(const SceneArguments& arguments, ExitCode code, const std::string& message, const Help& help,
                     const Streams& streams) {
+  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
+  if (format == compiler::ErrorFormat::Text) return fail(streams, code, message, help);
+  compiler::Diagnostics diagnostics;
+  diagnostics.error("E0701", {}, message, "", help);
+  streams.err << diagnostics.print(compiler::Source(source_name(arguments.path), ""), format);
+  return code;
+}
+
+ExitCode fail_whole(const std::string& path, const std::string& reason, const std::string& remedy, int error_format,
+                    const Streams& streams, ExitCode code) {
   Help help;
   if (!remedy.empty()) help.push_back(remedy);
-  const auto format = static_cast<compiler::ErrorFormat>(error_format);
-  if (format == compiler::ErrorFormat::Text) {
-    return fail(streams, kBadScene, fmt::format("{}: {}", cli::quoted(path), reason), help);
-  }
-  compiler::Diagnostics diagnostics;
-  diagnostics.error("E0701", {}, reason, "", help);
-  streams.err << diagnostics.print(compiler::Source(source_name(path), ""), format);
-  return kBadScene;
+  const bool text = static_cast<compiler::ErrorFormat>(error_format) == compiler::ErrorFormat::Text;
+  return fail_about({path, error_format, {}, {}}, code, text ? fmt::format("{}: {}", cli::quoted(path), reason) : reason,
+                    help, streams);
 }
 
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
@@ -213,7 +241,8 @@ std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, con
   if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
   auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
   if (const auto* error = std::get_if<compiler::FileError>(&text)) {
-    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams);
+    const ExitCode code = error->textless ? kUsage : kBadScene;
+    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams, code);
   }
   auto& stored = std::get<compiler::StoredText>(text);
   arguments.definitions = both(stored.definitions, arguments.definitions);
@@ -226,19 +255,21 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   if (input.stored && !input.stored->contents.text) {
     return take_stored(*std::move(input.stored), arguments, streams, options);
   }
-  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
   compiler::Diagnostics diagnostics;
   options.definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   options.limits = arguments.limits;
-  auto scene = compiler::compile(input.source, diagnostics, options);
-  streams.err << diagnostics.print(input.source, format, streams.color);
-  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.warnings();
-  if (errors > 0 && format == compiler::ErrorFormat::Text) {
-    streams.err << input.source.name() << ": " << count_of(errors, "error")
-                << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
+  Verbosity verbosity(streams.verbosity, streams);
+  if (const auto watch = verbosity.watch_compiler().on_pass) {
+    options.on_pass = [watch, own = options.on_pass](std::string_view pass, const compiler::Scene& graph) {
+      if (own) own(pass, graph);
+      watch(pass, graph);
+    };
   }
+  auto scene = compiler::compile(input.source, diagnostics, options);
+  if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);
   if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
+  verbosity.describe(*scene);
   const bool comparable = input.stored && arguments.definitions.empty() && !options.stop_after;
   if (comparable && compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
     if (asks_for_graph(options)) {

@@ -41,10 +41,14 @@ ExitCode fail(const Streams& streams, const std::string& path, const Unreadable&
 std::string quoted(const std::string& path);
 std::string source_name(const std::string& path);
 
-// kBadScene, after the error E0701 that is about a compiled scene or a listing as a whole. `error_format` is a
+// `code`, after a message in the form that --error-format says.
+ExitCode fail_about(const SceneArguments& arguments, ExitCode code, const std::string& message, const Help& help,
+                    const Streams& streams);
+
+// `code`, after the error E0701 that is about a compiled scene or a listing as a whole. `error_format` is a
 // compiler::ErrorFormat.
 ExitCode fail_whole(const std::string& path, const std::string& reason, const std::string& remedy, int error_format,
-                    const Streams& streams);
+                    const Streams& streams, ExitCode code = kBadScene);
 
 // A scene as a file has it.
 struct SceneInput {

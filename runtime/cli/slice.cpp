@@ -136,8 +136,8 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
   note_invalid(field, streams);
   const Drawing drawing = draw(request, slice, field);
   if (const auto problem = runtime::write_image(drawing.picture, request.output)) return fail(streams, kIo, *problem);
-  streams.out << drawing.line;
-  streams.err << fmt::format("wrote {} ({}x{})\n", request.output, slice.width, slice.height);
+  print(streams, drawing.line);
+  say(streams, fmt::format("wrote {} ({}x{})", request.output, slice.width, slice.height));
   return kDone;
 }
 

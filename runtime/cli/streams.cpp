@@ -12,6 +12,12 @@ ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, c
   return code;
 }
 
+void print(const Streams& streams, std::string_view text) { streams.out << vm::escape_controls(text); }
+
+void say(const Streams& streams, std::string_view message) {
+  if (!streams.quiet) streams.err << vm::printable(message) << '\n';
+}
+
 void note(const Streams& streams, std::string_view message) {
   streams.err << (streams.color ? "\033[1mnote\033[0m: " : "note: ") << vm::printable(message) << '\n';
 }

@@ -23,6 +23,9 @@ struct Streams {
   std::ostream& err;
   bool terminal = false;  // a person watches `err`: progress may redraw its line
   bool color = false;     // `err` understands colours and NO_COLOR does not forbid them
+  // What every verb knows, set by Arguments: -q, and how often -v was given to a verb that has no -v of its own.
+  mutable bool quiet = false;
+  mutable int verbosity = 0;
 };
 
 using Help = std::vector<std::string>;  // each a line after "= help:"
@@ -30,6 +33,12 @@ using Help = std::vector<std::string>;  // each a line after "= help:"
 // Prints the message and returns `code`, so that a verb can end with `return fail(...)`.
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help = {});
 
+// Text to standard output, in which names of scenes may be: controls of a terminal as \u0085, what is no UTF-8 as
+// U+FFFD. JSON keeps its meaning.
+void print(const Streams& streams, std::string_view text);
+
+// A line about what was done, not printed with -q.
+void say(const Streams& streams, std::string_view message);
 void note(const Streams& streams, std::string_view message);
 void warn(const Streams& streams, std::string_view message);
 

@@ -103,7 +103,7 @@ int run_tonemap(std::span<const std::string> args, const Streams& streams) {
   if (const auto problem = runtime::write_layer(*values, options_of(request, image), *request.output)) {
     return fail(streams, kIo, *problem);
   }
-  streams.err << fmt::format("wrote {} ({}x{})\n", *request.output, image.area.width(), image.area.height());
+  say(streams, fmt::format("wrote {} ({}x{})", *request.output, image.area.width(), image.area.height()));
   return kDone;
 }
 

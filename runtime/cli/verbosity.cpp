@@ -9,6 +9,7 @@
 #include "runtime/cli/operation_table.h"
 #include "vm/disassemble.h"
 #include "vm/evaluate.h"
+#include "vm/printable.h"
 
 namespace fathom::cli {
 namespace {
@@ -70,16 +71,20 @@ compiler::CompileOptions Verbosity::watch_compiler() {
   return options;
 }
 
-void Verbosity::describe(const compiler::CompiledScene& scene, const runtime::Settings& settings) const {
+void Verbosity::describe(const compiler::CompiledScene& scene) const {
+  if (level_ < 1) return;
   const std::chrono::duration<double, std::milli> compiling = std::chrono::steady_clock::now() - start_;
+  streams_.err << fmt::format("{}: {}\ncompiled in {:.1f} ms to {}, about {} a point\n",
+                              vm::printable(scene.source.name()), scene.summary, compiling.count(),
+                              count_of(scene.distance.instructions(), "instruction"),
+                              count_of(scene.distance.cost(), "multiply-add"));
+}
+
+void Verbosity::describe(const compiler::CompiledScene& scene, const runtime::Settings& settings) const {
   std::ostream& err = streams_.err;
-  if (level_ >= 1) {
-    err << fmt::format("{}: {}\ncompiled in {:.1f} ms to {}, about {} a point\n", scene.source.name(), scene.summary,
-                       compiling.count(), count_of(scene.distance.instructions(), "instruction"),
-                       count_of(scene.distance.cost(), "multiply-add"));
-  }
+  describe(scene);
   if (level_ >= 3) err << describe_settings(scene, settings);
-  if (level_ >= 4) err << describe_tables(scene);
+  if (level_ >= 4) err << vm::printable(describe_tables(scene));
   if (level_ >= 5) err << operation_table(scene.distance);
   if (level_ >= 6) err << vm::disassemble(scene.distance) << '\n' << vm::disassemble(scene.surface);
 }

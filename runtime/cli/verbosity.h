@@ -1,4 +1,4 @@
-// What `fathom render -v` to `-vvvvvv` tell, each level beside those below it:
+// What `fathom render -v` to `-vvvvvv` tell, and of other verbs the first two, each level beside those below it:
 //
 //     1  what the scene compiled to, and how long it took     4  camera, film, materials
 //     2  the compiler's passes and the size after each        5  how often each operation occurs
@@ -21,6 +21,7 @@ class Verbosity {
 
   // Options for compile() that report the passes; starts the clock.
   compiler::CompileOptions watch_compiler();
+  void describe(const compiler::CompiledScene& scene) const;  // the first level
   void describe(const compiler::CompiledScene& scene, const runtime::Settings& settings) const;
 
  private:

@@ -100,7 +100,7 @@ TEST_CASE("import gives back the text that a compiled scene carries", "[cli]") {
   REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
   CHECK(folder.run("import two.fbc").out == kTwo);
   REQUIRE(folder.run("compile two.json --no-text -o bare.fbc").code == 0);
-  CHECK(folder.run("import bare.fbc").code == 65);
+  CHECK(folder.run("import bare.fbc").code == 2);
 }
 
 TEST_CASE("a compiled scene's picture lies beside it under the name that the scene has", "[cli]") {
@@ -166,7 +166,7 @@ TEST_CASE("a damaged file is refused with its name, and nothing is written", "[c
   bytes[bytes.size() / 2] ^= 1;
   folder.write("bad.fbc", bytes);
   for (const char* verb :
-       {"render bad.fbc -o out.png", "check bad.fbc", "dump bad.fbc", "compile bad.fbc -o out.png"}) {
+       {"render bad.fbc -o out.png", "check bad.fbc", "dump bad.fbc", "compile bad.fbc -o out.fbc"}) {
     const Result refused = folder.run(verb);
     CAPTURE(verb, refused.err);
     CHECK(refused.code == 65);
