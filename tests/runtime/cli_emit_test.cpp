@@ -39,6 +39,10 @@ TEST_CASE("emit says what it cannot do", "[cli][emit]") {
   refused("cpp ball.json --name x", 2, "use --namespace");
   refused("glsl ball.json --namespace x", 2, "use --name");
   refused("cpp ball.json --namespace 1x", 2, "a namespace is made of letters");
+  refused("cpp ball.json --namespace class", 2, "a word of C++ itself");
+  refused("cpp ball.json --namespace my::co_await::ball", 2, "a word of C++ itself");
+  refused("cpp ball.json --namespace _Ball", 2, "for itself");
+  refused("cpp ball.json --namespace std", 2, "standard library");
   refused("glsl ball.json --name gl_x", 2, "GLSL keeps names");
   refused("cpp ball.json -o ball.json", 2, "would be overwritten");
   refused("cpp ball.json -o no/such/folder/ball.h", 74, "cannot write to the folder `no/such/folder`");
