@@ -27,8 +27,9 @@ HWY_INLINE BatchMask mask_of(std::uint32_t bits) {
 
 class Settling {
  public:
-  HWY_INLINE Settling(const ChoiceLink* links, const ChoiceBounds* bounds, Interest* interest, KeptOperands* kept)
-      : links_(links), bounds_(bounds), interest_(interest), kept_(kept) {}
+  HWY_INLINE Settling(const ChoiceLink* links, const ChoiceBounds* bounds, float error, Interest* interest,
+                      KeptOperands* kept)
+      : links_(links), bounds_(bounds), error_(error), interest_(interest), kept_(kept) {}
 
   HWY_INLINE void reset(std::size_t count) {
     const Batch none = Batch::broadcast(kInfinity);
@@ -98,26 +99,33 @@ class Settling {
     const Batch limit = min(hi, min(a_hi, b_hi)), all = Batch::broadcast(kInfinity);
     // What may be NaN is not left alone: the other operand may be what the choice gives then.
     const BatchMask number_a = (a_lo > -all) | (a_hi < all), number_b = (b_lo > -all) | (b_hi < all);
-    // A rounded difference is above a float only where the true one is.
-    const BatchMask no_a = (a_lo - b_hi > width) | ((a_lo - limit > reach) & number_b);
-    const BatchMask no_b = (b_lo - a_hi > width) | ((b_lo - limit > reach) & number_a);
+    const BatchMask no_a = is_over(a_lo, b_hi, width) | (is_over(a_lo, limit, reach) & number_b);
+    const BatchMask no_b = is_over(b_lo, a_hi, width) | (is_over(b_lo, limit, reach) & number_a);
     const BatchMask a_first = a_lo <= b_lo;  // where neither matters one stays, to be above the limit
     keep_a &= bits_of((!no_a) | (no_b & a_first));
     keep_b &= bits_of((!no_b) | (no_a & !a_first));
-    const Batch most = limit + reach;
+    const Batch most = limit + reach + error_of(limit, reach);
     pass_on(link.a, r, keep_a, turn_a ? -most : lo, turn_a ? -lo : most);
     pass_on(link.b, r, keep_b, turn_b ? -most : lo, turn_b ? -lo : most);
   }
 
+  HWY_INLINE Batch error_of(Batch a, Batch b) const {
+    if (error_ == 0) return Batch::broadcast(0.0f);
+    return Batch::broadcast(error_) + Batch::broadcast(kSettleShare) * (abs(a) + abs(b));
+  }
+  // Whether a is above b by more than the margin. A rounded difference is above a float only where the true one is.
+  HWY_INLINE BatchMask is_over(Batch a, Batch b, Batch margin) const { return a - b > margin + error_of(a, b); }
+
   const ChoiceLink* links_;
   const ChoiceBounds* bounds_;
+  const float error_;
   Interest* interest_;
   KeptOperands* kept_;
 };
 
 void settle_all(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                float least, float most, Interest* interest, KeptOperands* kept) {
-  Settling settling(links, bounds, interest, kept);
+                float least, float most, float error, Interest* interest, KeptOperands* kept) {
+  Settling settling(links, bounds, error, interest, kept);
   settling.reset(count);
   for (std::size_t r = 0; r < kRegisters; ++r) {
     settling.pass_on(root, r, static_cast<std::uint32_t>((1ull << kLanes) - 1), Batch::broadcast(least),
@@ -135,8 +143,8 @@ namespace fathom::vm {
 HWY_EXPORT(settle_all);
 
 void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, Interest* interest, KeptOperands* kept) {
-  HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, interest, kept);
+                    float least, float most, float error, Interest* interest, KeptOperands* kept) {
+  HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, error, interest, kept);
 }
 
 void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept) {

@@ -39,9 +39,12 @@ struct KeptOperands {
 inline constexpr std::uint32_t kNone = 0xffffffff;
 
 // Settles choices [0, count), users after what they use. `root` is the choice whose value is the program's, of
-// interest within [least, most]. interest[choice] is scratch; kept[choice] the result.
+// interest within [least, most]. interest[choice] is scratch; kept[choice] the result. Above 0 an operand only loses
+// by more than `error`, and by more than kSettleShare of both values: what f32 may be off by.
 void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, Interest* interest, KeptOperands* kept);
+                    float least, float most, float error, Interest* interest, KeptOperands* kept);
+
+inline constexpr float kSettleShare = 0x1p-18f;
 
 // The same of one box, a choice by itself: an operand goes that loses to the other one. Results are bit 0.
 void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept);

@@ -108,13 +108,13 @@ void Specialiser::link_choices() {
   }
 }
 
-void Specialiser::decide(float least, float most) {
+void Specialiser::decide(float least, float most, float error) {
   CHECK(is_read_ || read(), "what is to be cut is an expression");
   kept_.resize(links_.size());
   is_counted_ = false;
   if (pairwise_) return settle_pairs(links_.data(), ranges_.data(), links_.size(), kept_.data());
   interest_.resize(links_.size());
-  settle_choices(links_.data(), bounds_.data(), links_.size(), under_[expression_.root()], least, most,
+  settle_choices(links_.data(), bounds_.data(), links_.size(), under_[expression_.root()], least, most, error,
                  interest_.data(), kept_.data());
 }
 

@@ -49,8 +49,9 @@ class Specialiser {
   float hi(std::size_t box) const { return hi_[box]; }
 
   // Settles the choices for the limits of all boxes; -infinity and infinity ask for the value everywhere, 0 and 0 for
-  // its sign.
-  void decide(float least, float most);
+  // its sign. With an `error` above 0 parts hold in double, too, of the unrounded constants: it is how far f32 may be
+  // from that in the boxes, beside kSettleShare of the values.
+  void decide(float least, float most, float error = 0);
   // Instructions of the part for `box`, roughly: the choices that stay, and one.
   std::uint32_t choices_left(std::size_t box) const;
   void part(std::size_t box, Part& out);

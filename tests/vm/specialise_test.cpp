@@ -318,7 +318,7 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
   std::vector<vm::Interest> interest(links.size());
   std::vector<vm::KeptOperands> pairs(links.size()), all(links.size());
   vm::settle_pairs(links.data(), ranges.data(), links.size(), pairs.data());
-  vm::settle_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity,
+  vm::settle_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity, 0,
                      interest.data(), all.data());
   int cut = 0, wrong = 0;
   for (std::size_t i = 0; i < links.size(); ++i) {
