@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "runtime/cli/scene_file.h"
 #include "runtime/film.h"
 #include "runtime/options.h"
@@ -39,18 +41,23 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
   const double allowed = allowed_memory(request.scene.limits);
   const double pixels = static_cast<double>(settings.crop.pixels()),
                each = bytes_per_pixel(settings, request.denoise);
-  const double regions = settings.regions ? static_cast<double>(settings.region_memory) : 0;
-  // Scenes too small for regions take none, so they do not count against a small limit.
   const double needed = pixels * each;
-  if (needed + (regions <= allowed / 2 ? regions : 0) <= allowed) return std::nullopt;
+  if (needed <= allowed) return std::nullopt;
   const bool given = request.size || request.resolution || request.crop;
   return fail_about(
       request.scene, given ? kUsage : kBadScene,
       fmt::format("{}the render would take {} of memory ({:.0f} pixels of {:.0f} bytes); {} are allowed",
                   given ? "" : scene.source.name() + ": ", in_words(needed), pixels, each, in_words(allowed)),
-      {"ask for a smaller picture, or a part of it with --crop",
-       compiler::raise(&compiler::Limits::memory, needed + regions)},
+      {"ask for a smaller picture, or a part of it with --crop", compiler::raise(&compiler::Limits::memory, needed)},
       streams);
+}
+
+void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene) {
+  const runtime::Settings settings = runtime::resolve(scene, request.options);
+  const double left = allowed_memory(request.scene.limits) -
+                      static_cast<double>(settings.crop.pixels()) * bytes_per_pixel(settings, request.denoise);
+  const auto most = static_cast<double>(request.options.region_memory);
+  request.options.region_memory = static_cast<std::size_t>(std::clamp(left, 0.0, most));
 }
 
 }  // namespace fathom::cli

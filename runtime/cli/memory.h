@@ -29,4 +29,7 @@ std::string in_words(double bytes);
 std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,
                                      const Streams& streams);
 
+// Leaves the render's regions no more memory than the limit leaves beside the film: they change no picture.
+void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene);
+
 }  // namespace fathom::cli

@@ -312,6 +312,7 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
   if (const auto code = check_memory(request, scene, streams)) return *code;
+  fit_regions(request, scene);
   if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.default_output && !request.quiet) {
