@@ -62,7 +62,6 @@ class Scene {
   Scene(const std::string& object, const std::string& camera, std::size_t share)
       : scene_(compile(object, camera)), whole_(runtime::make_field(scene_)), cut_(whole_) {
     runtime::add_regions(cut_, scene_, {});
-    whole_.convex = false;  // the same steps as with regions, which what is convex does not lead
     sets_ = runtime::make_ray_sets(scene_, cut_, kRays, 1);
     for (const runtime::RaySet& set : sets_) {
       std::vector<runtime::Ray>& some = shares_.emplace_back();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/region_plan.h"
 #include "vm/check.h"
 #include "vm/convexity.h"
 
@@ -54,6 +55,31 @@ double longest_told(const compiler::CompiledField& scene, double extent) {
   return 0;
 }
 
+// What regions are to cover.
+const compiler::Box& contents_of(const Field& field, const compiler::CompiledField& compiled) {
+  return field.bound.finite() ? field.bound : compiled.contents;
+}
+
+// A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a float
+// tells apart would be of no use (kCellMargin in region_splitter.h).
+int room_of(const Field& field, const compiler::CompiledField& compiled) {
+  constexpr int kLeastRoom = 3, kMostRoom = 6;
+  if (field.bound.finite() || compiled.contents.empty()) return 0;
+  const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
+  const double edge = std::max({extents.x, extents.y, extents.z});
+  int room = kLeastRoom;
+  while (room < kMostRoom && edge * (1 << room) < 2 * field.far) ++room;
+  return room;
+}
+
+// A large scene takes the same steps with regions as without. They know neither how far the solid is convex, but
+// within a cell, nor what the field does along a line, which asked of the whole program costs more than it tells.
+void become_large(Field& field, const FarLevels& levels) {
+  field.far_levels = levels;
+  field.convex = false;
+  field.longest_told = 0;
+}
+
 }  // namespace
 
 double extent_of(const compiler::CompiledScene& scene) {
@@ -92,22 +118,23 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   const bool bounded = compiled.bound.empty() || compiled.bound.finite();
   field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
   if (!bounded) field.far = std::min(field.far, kFarthest);
+  const auto regions = plan_regions(compiled.surface, contents_of(field, compiled), room_of(field, compiled));
+  if (regions) become_large(field, regions->far);
   return field;
 }
 
 void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options) {
-  // A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a
-  // float tells apart would be of no use (kCellMargin in region_builder.cpp).
-  constexpr double kLeastRoom = 3, kMostRoom = 6;
-  const bool bounded = field.bound.finite();
   RegionOptions chosen = options;
-  if (!bounded && !compiled.contents.empty()) {
-    const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
-    const double wanted = std::log2(2 * field.far / std::max({extents.x, extents.y, extents.z}));
-    chosen.room = static_cast<int>(std::clamp(std::ceil(wanted), kLeastRoom, kMostRoom));
-  }
-  field.regions =
-      Regions::build(compiled.surface, bounded ? field.bound : compiled.contents, compiled.lipschitz, chosen);
+  chosen.room = room_of(field, compiled);
+  chosen.magnitude = field.magnitude;
+  field.regions = Regions::build(compiled.surface, contents_of(field, compiled), chosen);
+  if (field.regions) become_large(field, field.regions->far_levels());
+}
+
+double Field::rounded(double value, glm::dvec3 point) const {
+  if (!far_levels.used()) return value;
+  const glm::vec3 p(point);
+  return far_levels(value, p.x, p.y, p.z);
 }
 
 void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
@@ -115,19 +142,22 @@ void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScr
   if (evaluator) return evaluator(points, count, out);
   if (regions) return regions->evaluate(points, count, out, scratch, workspace);
   vm::evaluate_distance(*distance, points, count, out, workspace);
+  far_levels.apply(points, count, out);
 }
 
 double Field::evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const {
   if (regions) return regions->evaluate(point, scratch, instructions);
   instructions += distance->instructions();
-  return vm::evaluate_distance(*distance, point, scratch.workspace);
+  return rounded(vm::evaluate_distance(*distance, point, scratch.workspace), point);
 }
 
 void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
                      RealScratch& scratch) const {
   if (!regions) {
     std::fill_n(instructions, count, distance->instructions());
-    return vm::evaluate_distance(*distance, points, count, out, scratch.workspace);
+    vm::evaluate_distance(*distance, points, count, out, scratch.workspace);
+    for (std::size_t i = 0; i < count; ++i) out[i] = rounded(out[i], {points.x[i], points.y[i], points.z[i]});
+    return;
   }
   // Points of different rays share no part.
   for (std::size_t i = 0; i < count; ++i) {
@@ -138,8 +168,6 @@ void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std:
 
 std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                           RealScratch& scratch, std::uint64_t& instructions) const {
-  // A stretch over several cells is cheaper cut until it is within one.
-  if (regions) return regions->along(origin, direction, begin, end, scratch, instructions);
   instructions += distance->instructions();
   return vm::evaluate_along(*distance, origin, direction, begin, end, scratch.workspace);
 }

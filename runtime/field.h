@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/far_levels.h"
 #include "runtime/regions.h"
 #include "vm/opcode.h"
 
@@ -25,18 +26,21 @@ struct Field {
   // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
   // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
   double longest_told;
+  // How distances are rounded where nothing is near, of a scene so large that it could have regions: then what
+  // follows evaluates to the same bits with them and without.
+  FarLevels far_levels;
   std::shared_ptr<const Regions> regions;  // of a scene that gains by them
   // Whether float distances come with how far around the point the solid is convex (vm::evaluate_convex), which saves
-  // evaluations where most of the scene is of convex shapes. Not of regions or an evaluator.
+  // evaluations where most of the scene is of convex shapes. Not of a large scene or an evaluator.
   bool convex;
 
   // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
   // same scene. May read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
-  bool knows_convex() const { return convex && !regions && evaluator == nullptr; }
+  bool knows_convex() const { return convex && evaluator == nullptr; }
 
-  // Distances of many points in float, or of one or many in double; with regions, lower bounds where nothing is near.
+  // Distances of many points in float, or of one or many in double; in a large scene rounded where nothing is near.
   // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`,
   // or put there for each.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
@@ -44,9 +48,13 @@ struct Field {
   double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
   void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
                 RealScratch& scratch) const;
-  // What the field does along a stretch of a line; with regions, nothing when it is not within one cell.
+  // What the field does along a stretch of a line, before it is rounded. The whole program tells, of a large scene at
+  // a price.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                      RealScratch& scratch, std::uint64_t& instructions) const;
+
+ private:
+  double rounded(double value, glm::dvec3 point) const;
 };
 
 // The scene's field. `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's

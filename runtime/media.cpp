@@ -1,5 +1,7 @@
 #include "runtime/media.h"
 
+#include <algorithm>
+
 namespace fathom::runtime {
 
 Media::Media(const compiler::CompiledScene& scene, double extent, std::optional<double> far) {
@@ -8,8 +10,12 @@ Media::Media(const compiler::CompiledScene& scene, double extent, std::optional<
   }
 }
 
-void Media::add_regions(const compiler::CompiledScene& scene, const RegionOptions& options) {
-  for (std::size_t i = 0; i < media_.size(); ++i) runtime::add_regions(media_[i].field, scene.media[i], options);
+void Media::add_regions(const compiler::CompiledScene& scene, RegionOptions options) {
+  for (std::size_t i = 0; i < media_.size(); ++i) {
+    Field& field = media_[i].field;
+    runtime::add_regions(field, scene.media[i], options);
+    if (field.regions) options.memory -= std::min(options.memory, field.regions->facts().bytes);
+  }
 }
 
 std::optional<std::uint32_t> Media::at(glm::dvec3 place, RealScratch& scratch) const {

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "runtime/region_splitter.h"
-#include "vm/expression.h"
 
 namespace fathom::runtime {
 namespace {
@@ -16,58 +15,38 @@ namespace {
 using Node = Regions::Node;
 using Kind = Regions::Kind;
 
-// Programs cheaper than this, in multiply-adds, are as fast whole (bench/culling.cpp).
-constexpr std::uint64_t kLeastCost = 2500;
-// The smallest cells: so many levels below that with as many cells as there are choices.
-constexpr int kExtraLevels = 3, kMostLevels = 10;
 // The top levels that are a grid, at most; it takes at most this share of the memory, and no more than all else.
 constexpr int kMostGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
-
-// Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
-// granted.
-bool is_unfolded(const vm::Code& code) {
-  for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
-    if (vm::find_opcode(code.words[at] & 0xff)->form != vm::Form::Binary) continue;
-    const vm::Sources sources = vm::sources_of(code.words[at]);
-    if (sources.a == vm::Source::Constant && sources.b == vm::Source::Constant) return true;
-  }
-  return false;
-}
+// What the whole program takes as a part and as rows of constants.
+constexpr std::size_t kBytesPerWord = 24;
+// Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
+// one.
+constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
+// Choices of the whole program for each time that leaves are longer than they should be.
+constexpr std::uint32_t kWorthShorter = 64;
+// How far outside the root rays are followed, in its edges.
+constexpr float kOutsideSize = 64;
 
 }  // namespace
 
-RegionBuilder::RegionBuilder(const vm::Code& program, const compiler::Box& contents, double lipschitz,
-                             const RegionOptions& options)
-    : options_(options), program_(program), contents_(contents), regions_(std::make_shared<Regions>()) {
+RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options)
+    : options_(options), plan_(plan), program_(program), regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
-  regions_->tree_.lipschitz = static_cast<float>(lipschitz) * 1.000001f;
-  regions_->tree_.far = 0.866f * kFar * static_cast<float>(lipschitz);
+  regions_->far_ = plan.far;
+  std::copy(plan.lo.begin(), plan.lo.end(), regions_->tree_.lo);
+  regions_->tree_.size = plan.size;
+  regions_->tree_.levels = plan.levels;
+  most_work_ = static_cast<std::size_t>(
+      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
 }
 
 std::shared_ptr<const Regions> RegionBuilder::build() {
   const auto start = std::chrono::steady_clock::now();
-  vm::Part& whole = regions_->whole_part_;
-  whole = vm::whole(program_);
-  vm::Expression expression;
-  if ((whole.cost < kLeastCost && !options_.always) || !expression.read(program_) || is_unfolded(program_)) {
-    return nullptr;
-  }
-  choices_ = std::max<std::size_t>(1, expression.choices().size());
-  if (!choose_root(contents_)) return nullptr;
+  if (program_.size * kBytesPerWord > options_.memory) return nullptr;
+  regions_->whole_part_ = vm::whole(program_);
   regions_->constants_.emplace(program_);
-  const std::size_t fixed_bytes = regions_->constants_->bytes();
-  // What takes too much memory is cut into fewer, longer leaves.
-  for (;; longer_ *= 2) {
-    regions_->nodes_.assign(1, {});
-    regions_->pool_.clear(), regions_->skeletons_ = {};
-    regions_->facts_ = {};
-    bytes_ = fixed_bytes;
-    split_all({{{0, 0, 0}, 0, std::numeric_limits<float>::infinity(), 0, whole, 0}});
-    if (work_ > kMostWork) return nullptr;
-    if (bytes_ <= options_.memory) break;
-    if (longer_ > choices_) return nullptr;
-  }
+  if (!split_root()) return nullptr;
   close_outside();
   choose_grid();
   make_grid();
@@ -76,46 +55,62 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   return regions_;
 }
 
-// A cube round the contents, with room about them; cells are as small as the contents alone warrant.
-bool RegionBuilder::choose_root(const compiler::Box& contents) {
-  if (contents.empty() || !contents.finite()) return false;
-  const glm::dvec3 middle = (contents.lo + contents.hi) / 2.0, extents = contents.hi - contents.lo;
-  const double edge = std::max({extents.x, extents.y, extents.z});
-  if (!(edge > 0)) return false;
-  regions_->tree_.size = static_cast<float>(edge * 1.001 * (1 << options_.room));
-  for (int axis = 0; axis < 3; ++axis) {
-    regions_->tree_.lo[static_cast<std::size_t>(axis)] =
-        static_cast<float>(middle[axis] - static_cast<double>(regions_->tree_.size) / 2);
+// What takes too much is cut into fewer, longer leaves, for half the work; leaves that are not much shorter than the
+// whole are not worth it, for an instruction of one costs as much as many of the whole.
+bool RegionBuilder::split_root() {
+  const float all = std::numeric_limits<float>::infinity();
+  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, most_work_ /= 2) {
+    regions_->nodes_.assign(1, {});
+    regions_->pool_ = {}, regions_->skeletons_ = {};
+    regions_->facts_ = {};
+    bytes_ = regions_->constants_->bytes();
+    work_ = 0;
+    split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
+    if (interrupted_) return false;
+    if (!is_in_vain()) return true;
   }
-  const int levels = kExtraLevels + static_cast<int>(std::ceil(std::log2(std::cbrt(static_cast<double>(choices_)))));
-  regions_->tree_.levels = std::min(levels, kMostLevels) + options_.room;
-  return true;
+  return false;
 }
 
+bool RegionBuilder::is_in_vain() const { return bytes_ > options_.memory || work_ > most_work_ || interrupted_; }
+
 void RegionBuilder::split_all(std::vector<Cell> cells) {
-  while (!cells.empty()) {
+  while (!cells.empty() && !is_in_vain()) {
     std::vector<Piece> pieces(cells.size());
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
       Splitter splitter(*this);
-      for (std::size_t i = next++; i < cells.size(); i = next++) splitter.run(cells[i], pieces[i]);
+      for (std::size_t i = next++; i < cells.size(); i = next++) {
+        splitter.run(cells[i], pieces[i]);
+        cells[i].part = {};
+      }
     };
     std::vector<std::thread> threads;
     const auto count = std::min<std::size_t>(static_cast<std::size_t>(std::max(1, options_.threads)), cells.size());
     for (std::size_t i = 1; i < count; ++i) threads.emplace_back(work);
     work();
     for (std::thread& thread : threads) thread.join();
-    std::vector<Cell> pending;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::uint32_t first = append(pieces[i]);
-      regions_->nodes_[cells[i].node] = make_node(Kind::Inner, first, 0);
-      for (Cell& cell : pieces[i].pending) {
-        cell.node += first;
-        pending.push_back(std::move(cell));
-      }
-    }
-    cells = std::move(pending);
+    if (is_in_vain()) return;
+    append_all(cells, pieces);
   }
+}
+
+// In the order of the cells, which the cells that are still to be split take the place of.
+void RegionBuilder::append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces) {
+  std::size_t nodes = regions_->nodes_.size(), words = regions_->pool_.size();
+  for (const Piece& piece : pieces) nodes += piece.nodes.size(), words += piece.pool.size();
+  regions_->nodes_.reserve(nodes), regions_->pool_.reserve(words);
+  std::vector<Cell> pending;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t first = append(pieces[i]);
+    regions_->nodes_[cells[i].node] = make_node(Kind::Inner, first, 0);
+    for (Cell& cell : pieces[i].pending) {
+      cell.node += first;
+      pending.push_back(std::move(cell));
+    }
+    pieces[i] = {};
+  }
+  cells = std::move(pending);
 }
 
 // The number its first node gets.
@@ -134,16 +129,12 @@ std::uint32_t RegionBuilder::append(Piece& piece) {
   return first;
 }
 
-// What matters outside the root, beyond each of its faces: a ray there may step by a tenth of the root's edge at a
-// time.
+// What matters outside the root, beyond each of its faces, where the cap is at its highest.
 void RegionBuilder::close_outside() {
   Regions& r = *regions_;
-  if (options_.room == 0) {  // no ray goes there
-    r.outside_.fill(make_node(Kind::Program, Regions::kWhole, std::numeric_limits<float>::infinity()));
-    return;
-  }
-  constexpr std::size_t kFaces = 6;
   const float infinity = std::numeric_limits<float>::infinity();
+  r.outside_.fill(make_node(Kind::Program, Regions::kWhole, infinity));
+  if (plan_.room == 0) return;  // no ray goes there
   BoxArrays boxes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::fill_n(boxes.lo[axis], vm::kEnclosedBoxes, -infinity);
@@ -155,12 +146,11 @@ void RegionBuilder::close_outside() {
   vm::Specialiser specialiser;
   vm::Workspace workspace;
   specialiser.look(r.whole_part_, boxes.view(), workspace);
-  const float limit = r.tree_.size / 10 * r.tree_.lipschitz;
-  specialiser.decide(-infinity, limit);
-  for (std::size_t i = 0; i < kFaces; ++i) {
+  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.magnitude));
+  for (std::size_t i = 0; i < r.outside_.size(); ++i) {
     vm::Part part;
     specialiser.part(i, part);
-    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), limit);
+    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), r.far_.most);
   }
 }
 
@@ -212,8 +202,9 @@ void RegionBuilder::count_bytes() {
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,
-                                              double lipschitz, const RegionOptions& options) {
-  return RegionBuilder(program, contents, lipschitz, options).build();
+                                              const RegionOptions& options) {
+  const std::optional<RegionPlan> plan = plan_regions(program, contents, options.room, options.always);
+  return plan ? RegionBuilder(program, *plan, options).build() : nullptr;
 }
 
 }  // namespace fathom::runtime

@@ -1,13 +1,14 @@
-// Builds the octree of regions (runtime/regions.h): the same tree for any number of threads.
+// Builds the octree of regions (runtime/regions.h): the same tree for any number of threads. Whether it fits what the
+// options allow is decided of sums over all cells, which no order of theirs changes.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
+#include "runtime/region_plan.h"
 #include "runtime/regions.h"
 #include "vm/specialise.h"
 
@@ -15,10 +16,9 @@ namespace fathom::runtime {
 
 class RegionBuilder {
  public:
-  RegionBuilder(const vm::Code& program, const compiler::Box& contents, double lipschitz,
-                const RegionOptions& options);
+  RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options);
 
-  // Nothing when the program is too short or cannot be cut.
+  // Nothing when what the options allow does not suffice, or they interrupt.
   std::shared_ptr<const Regions> build();
 
  private:
@@ -36,28 +36,31 @@ class RegionBuilder {
     std::vector<Regions::Node> nodes;
     vm::Skeletons skeletons;
     std::vector<std::uint32_t> pool;
-    std::vector<std::uint32_t> programs;                               // where they begin in the pool
-    std::unordered_multimap<std::uint64_t, std::uint32_t> program_at;  // by hash
-    std::vector<Cell> pending;                                         // left for other threads
+    std::vector<std::uint32_t> programs;  // where they begin in the pool, one behind the other
+    std::vector<std::uint32_t> slots;     // a hash table of them: number + 1, or 0
+    std::vector<Cell> pending;            // left for other threads
     Regions::Facts facts;
   };
   class Splitter;
 
-  bool choose_root(const compiler::Box& contents);
+  bool split_root();
   void split_all(std::vector<Cell> cells);
+  void append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces);
   std::uint32_t append(Piece& piece);
+  bool is_in_vain() const;
   void close_outside();
   void choose_grid();
   void make_grid();
   void count_bytes();
 
   RegionOptions options_;
+  RegionPlan plan_;
   vm::Code program_;
-  compiler::Box contents_;
-  std::size_t choices_ = 0;
   std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
   std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
-  std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far
+  std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far, in this attempt
+  std::size_t most_work_;
+  std::atomic<bool> interrupted_ = false;
   std::shared_ptr<Regions> regions_;
 };
 

@@ -38,7 +38,7 @@ class Descent {
       going = left;
     }
     std::size_t size = 0;
-    for (std::size_t at = 0; at < count; at += kLanes) size = finish(points, at, count, distance, near, size);
+    for (std::size_t at = 0; at < count; at += kLanes) size = finish(at, count, distance, near, size);
     return {size, !hn::AllFalse(Words(), outside_)};
   }
 
@@ -91,16 +91,13 @@ class Descent {
 
   // Appends those of the points from `at` on that are in no far leaf to the `size` there are; how many there are
   // then.
-  HWY_INLINE std::size_t finish(const vm::Points& points, std::size_t at, std::size_t count, float* distance,
-                                const NearPoints& near, std::size_t size) {
+  HWY_INLINE std::size_t finish(std::size_t at, std::size_t count, float* distance, const NearPoints& near,
+                                std::size_t size) {
     const Words words;
-    const Batch p[3] = {Batch::load(points.x + at), Batch::load(points.y + at), Batch::load(points.z + at)};
-    const Word cell[3] = {hn::Load(words, &cell_[0][at]), hn::Load(words, &cell_[1][at]),
-                          hn::Load(words, &cell_[2][at])};
     const Batch value{hn::BitCast(FloatLanes(), gather(tree_.nodes, hn::Load(words, &index_[at])))};
     const auto inside = hn::Ne(hn::Load(words, &inside_[at]), hn::Zero(words));
     Word ref = hn::Load(words, &ref_[at]);
-    put_far(p, cell, ref, value, distance + at);
+    value.store(distance + at);
     ref = hn::IfThenElse(inside, ref, hn::Set(words, kOutside));
     const Word point = hn::Iota(words, static_cast<std::uint32_t>(at));
     const auto is_near = hn::And(hn::Not(hn::Lt(ref, hn::Set(words, kFirstNear))),
@@ -110,26 +107,6 @@ class Descent {
     hn::StoreU(hn::Compress(value.v, hn::RebindMask(FloatLanes(), is_near)), FloatLanes(), near.limit + size);
     outside_ = hn::Or(outside_, hn::AndNot(inside, is_near));
     return size + hn::CountTrue(words, is_near);
-  }
-
-  // The ball round a far cell's centre; of other lanes a number nobody reads.
-  HWY_INLINE void put_far(const Batch (&p)[3], const Word (&cell)[3], Word ref, Batch value, float* distance) const {
-    const Words words;
-    const Word level = hn::And(ref, hn::Set(words, 31u));
-    const Word levels = hn::Set(words, static_cast<std::uint32_t>(tree_.levels));
-    const Word shift = hn::Sub(levels, hn::Min(level, levels));
-    // The root's edge over 2^level: its exponent less the level.
-    const Word root = hn::BitCast(words, hn::Set(FloatLanes(), tree_.size));
-    const Batch edge{hn::BitCast(FloatLanes(), hn::Sub(root, hn::ShiftLeft<23>(level)))};
-    const Batch half = Batch::broadcast(0.5f);
-    Batch squared = Batch::broadcast(0.0f);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Batch at{hn::ConvertTo(FloatLanes(), hn::BitCast(Ints(), hn::Shr(cell[axis], shift)))};
-      const Batch d = p[axis] - (Batch::broadcast(tree_.lo[axis]) + (at + half) * edge);
-      squared = squared + d * d;
-    }
-    const Batch ball = value - Batch::broadcast(tree_.lipschitz) * sqrt(squared);
-    max(ball, Batch::broadcast(tree_.far) * edge).store(distance);
   }
 
   template <class T>

@@ -15,8 +15,6 @@ struct RegionTree {
   const std::uint32_t* nodes;
   float lo[3];        // the root's corner, scene units
   float size, scale;  // the root's edge, scene units; finest cells per scene unit
-  float lipschitz;
-  float far;  // the least value in a far cell, in edges of it
   int levels, grid_level;
   bool beyond_cache;  // a core's own cache does not hold the scene's regions
 };
@@ -39,8 +37,8 @@ struct FoundPoints {
   bool outside;  // whether any of those are outside the root
 };
 
-// distance[i] of points in far leaves, of the others anything; and which the others are. `distance` is padded to a
-// multiple of 16.
+// distance[i] of points in far leaves is the leaf's, of the others anything; and which the others are. It is padded
+// to a multiple of 16.
 FoundPoints find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
                          const NearPoints& near);
 

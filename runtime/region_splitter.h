@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <unordered_map>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "runtime/region_builder.h"
 
 namespace fathom::runtime {
 
-// A cell is far when the field is at least this many half diagonals above zero all over it.
-inline constexpr float kFar = 0.25f;
 // Of the root's edge: how much larger a cell is taken than it is, for the rounding that finds a point's cell.
 inline constexpr double kCellMargin = 0x1p-20;
 
@@ -27,8 +24,9 @@ struct BoxArrays {
   vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-// Instructions that may be enclosed before regions are given up: scenes that cannot be cut are not worth the time.
-inline constexpr std::size_t kMostWork = 100'000'000;
+// What f32 may be off by, relative to the size of the numbers: six times what it is for a whole field
+// (kDistanceError), since operands within one are compared.
+inline constexpr float kCellError = 0x1p-18f;
 
 // Splits cells, on one thread.
 class RegionBuilder::Splitter {
@@ -44,23 +42,28 @@ class RegionBuilder::Splitter {
   using Place = std::array<std::uint32_t, 3>;  // in cells of a level
   using Children = std::array<bool, 8>;        // those that are leaves already
   using Parts = std::array<vm::Part, 8>;
+  using Limits = std::array<float, 8>;
 
   // Makes the eight children, at nodes[first] and on, of a cell; those that are no leaves are split in turn.
   void split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far, std::uint32_t first);
-  // The parts of the children that are no leaves yet.
-  void cut(float limit, const Children& done, Parts& parts);
-  // Leaves of those whose parts for the limit are short enough.
-  void make_leaves(float limit, int level, std::uint32_t first, Children& done, Parts& parts);
-  BoxArrays children_of(const Place& at, int level) const;
+  void go_on(const vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
+             std::uint32_t node);
+  // Up to where each child's values matter.
+  Limits limits_of(const BoxArrays& boxes, float limit) const;
+  // Leaves of those children in which all values round to one.
+  Children make_far(const Limits& limits, std::uint32_t first);
+  // The parts of the others; leaves of those that are short enough.
+  void make_parts(const Limits& limits, int level, std::uint32_t first, Children& done, Parts& parts);
+  // Sets error_, too.
+  BoxArrays children_of(const Place& at, int level);
   // What a piece's leaves take, but for the nodes.
   static std::size_t bytes_of(const Piece& piece);
-  // Children that nothing is near.
-  void find_far(const vm::Part& part, const BoxArrays& boxes, float half_diagonal, int level, float limit,
-                std::uint32_t first, Children& children);
-  // False when the part is too long for a leaf, and it need not always be one.
-  bool make_leaf(vm::Part& part, bool always, std::uint32_t choices, int level, float limit, std::uint32_t node);
+  void make_leaf(const vm::Part& part, float limit, std::uint32_t node);
   // The program that was packed last, or an equal one before it.
   std::uint32_t intern(std::uint32_t start);
+  std::span<const std::uint32_t> program(std::size_t number) const;
+  std::size_t slot_of(std::span<const std::uint32_t> program) const;
+  void grow_slots();
 
   RegionBuilder& builder_;
   const Regions& regions_;
@@ -69,6 +72,7 @@ class RegionBuilder::Splitter {
   vm::Specialiser specialiser_;
   vm::Workspace workspace_;
   std::vector<Parts> parts_;  // [level]
+  float error_ = 0;           // of f32, in the cell that is split
   Piece* piece_ = nullptr;
 };
 

@@ -31,19 +31,6 @@ Regions::Found Regions::find(float x, float y, float z) const {
   return {node, level, cell};
 }
 
-float Regions::far_value(const Found& found, float x, float y, float z) const {
-  const int level = static_cast<int>(found.node.payload());
-  const float edge = tree_.size / static_cast<float>(1u << level);
-  const float p[3] = {x, y, z};
-  float squared = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float centre =
-        tree_.lo[axis] + (static_cast<float>(found.cell[axis] >> (tree_.levels - level)) + 0.5f) * edge;
-    squared += (p[axis] - centre) * (p[axis] - centre);
-  }
-  return std::max(found.node.value - tree_.lipschitz * std::sqrt(squared), tree_.far * edge);
-}
-
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
   static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
@@ -63,6 +50,7 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
     jobs.clear();
   }
   s.met.clear();
+  far_.apply(points, count, distance);
 }
 
 // Sorts the first `near` points by their programs' skeletons.
@@ -126,27 +114,11 @@ const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
 double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& instructions) const {
   const glm::vec3 f(p);
   const Found found = find(f.x, f.y, f.z);
-  if (found.node.kind() == Kind::Far) return static_cast<double>(far_value(found, f.x, f.y, f.z));
   const double limit = static_cast<double>(found.node.value);
+  if (found.node.kind() == Kind::Far) return far_(limit, f.x, f.y, f.z);
   const vm::Part& part = part_of(found.node, scratch);
   instructions += part.sources.size();
-  return std::min(vm::evaluate_distance(part, p, scratch.workspace), limit);
-}
-
-std::optional<vm::AlongLine> Regions::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                            RealScratch& scratch, std::uint64_t& instructions) const {
-  const glm::vec3 a(origin + begin * direction), b(origin + end * direction);
-  const Found first = find(a.x, a.y, a.z), last = find(b.x, b.y, b.z);
-  if (first.level != last.level || first.cell_at(tree_.levels) != last.cell_at(tree_.levels)) return std::nullopt;
-  const double infinity = std::numeric_limits<double>::infinity();
-  if (first.node.kind() == Kind::Far) return vm::AlongLine{{-infinity, infinity}, {-infinity, infinity}};
-  const vm::Part& part = part_of(first.node, scratch);
-  instructions += part.sources.size();
-  vm::AlongLine line = vm::evaluate_along(part, origin, direction, begin, end, scratch.workspace);
-  const double limit = static_cast<double>(first.node.value);
-  line.value = {std::min(line.value.lo, limit), std::min(line.value.hi, limit)};
-  line.derivative = {std::min(line.derivative.lo, 0.0), std::max(line.derivative.hi, 0.0)};
-  return line;
+  return far_(std::min(vm::evaluate_distance(part, p, scratch.workspace), limit), f.x, f.y, f.z);
 }
 
 Regions::Region Regions::region(glm::dvec3 p) const {
@@ -175,11 +147,8 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
                                vm::Workspace& workspace) const {
   CHECK(count <= kMostHits, "a batch of hits is too large");
   std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // leaf, point
-  std::array<float, kMostHits> depth;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Found found = find(points.x[i], points.y[i], points.z[i]);
-    leaves[i] = {found.node.ref, i};
-    depth[i] = depth_within(found, points.x[i], points.y[i], points.z[i]);
+    leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
   std::sort(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t first = 0; first < count;) {
@@ -188,22 +157,6 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
     evaluate_surfaces_of(std::span(leaves).subspan(first, last - first), points, out, workspace);
     first = last;
   }
-  if (out.convex == nullptr) return;
-  for (std::size_t i = 0; i < count; ++i) out.convex[i] = std::min(out.convex[i], depth[i]);
-}
-
-// How far from the cell's sides the point is, times the Lipschitz constant: so far what holds in the cell holds.
-float Regions::depth_within(const Found& found, float x, float y, float z) const {
-  if (found.level < 0) return 0;
-  const float p[3] = {x, y, z};
-  const float edge = tree_.size / static_cast<float>(1u << found.level);
-  const std::array<std::uint32_t, 3> cell = found.cell_at(tree_.levels);
-  float depth = edge;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float in = p[axis] - (tree_.lo[axis] + static_cast<float>(cell[axis]) * edge);
-    depth = std::min(depth, std::min(in, edge - in));
-  }
-  return std::max(0.0f, depth) * tree_.lipschitz;
 }
 
 // Of points in leaves of one program. What is not near the surface at all, as rounding may have it, asks the whole

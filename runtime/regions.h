@@ -1,11 +1,12 @@
 // Regions: an octree over the scene that knows what of its program matters where, so that a point of a scene of a
 // hundred thousand objects meets the few that are near it.
 //
-// A leaf stands for the field cut off at the leaf's limit, min(f, limit), which is all a ray's step needs: near the
-// surface it is f, bit for bit, and far from it a bound. Two kinds:
+// Distances in such a scene are rounded where nothing is near (runtime/far_levels.h), and with that regions give the
+// whole program's bits at every point, in f32 and in double: a picture does not tell whether it was made with
+// regions, nor which. A leaf is one of two kinds:
 //
-//     far       nothing is near: a ball round the cell's centre, value - L |p - centre|
-//     program   the part of the program that matters in the cell (vm/specialise.h)
+//     far       all distances in the cell round to one value
+//     program   the part of the program that matters in the cell, up to the highest value there (vm/specialise.h)
 //
 // Points in cells whose programs differ by their constants alone are evaluated together (vm/skeleton.h).
 //
@@ -19,14 +20,16 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "compiler/box.h"
+#include "runtime/far_levels.h"
 #include "runtime/region_find.h"
 #include "vm/skeleton.h"
 
@@ -35,8 +38,14 @@ namespace fathom::runtime {
 struct RegionOptions {
   int threads = 1;
   std::size_t memory = 64u << 20;  // bytes; where they would take more, leaves are longer, or there are none
-  bool always = false;             // of scenes that would be as fast whole, too
-  int room = 0;                    // the root is 2^room times as long as the scene's bounded parts
+  // How often the field will be evaluated, roughly: building them is to take no longer than evaluating the whole
+  // program so often. Where it would, leaves are longer, or there are none.
+  double evaluations = std::numeric_limits<double>::infinity();
+  bool always = false;  // of scenes that would be as fast whole, too
+  int room = 0;         // the root is 2^room times as long as the scene's bounded parts
+  float magnitude = 0;  // of the numbers that cancel in the field, scene units (compiler/bounds.h)
+  // Asked before each cell is split, by any thread. Once it is true there will be no regions.
+  std::function<bool()> interrupted = {};
 };
 
 // How often points were in leaves of each kind.
@@ -69,26 +78,25 @@ struct RealScratch {
 
 class Regions {
  public:
-  // Of a program with Lipschitz constant `lipschitz` whose bounded parts lie in `contents`; nothing when the scene is
-  // too small for regions, or its program cannot be cut. The program must outlive them.
+  // Of a program whose bounded parts lie in `contents`; nothing when the scene is too small for regions
+  // (runtime/region_plan.h), or they would take more than the options allow. The program must outlive them.
   static std::shared_ptr<const Regions> build(const vm::Code& program, const compiler::Box& contents,
-                                              double lipschitz, const RegionOptions& options);
+                                              const RegionOptions& options);
 
-  // distance[i] <= f(points[i]), and equal to it where it is at most the leaf's limit.
+  // How distances are rounded.
+  const FarLevels& far_levels() const { return far_; }
+
+  // The rounded distances of the whole program.
   void evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   // The same of one point in double, with the program's unrounded constants; adds to `instructions`.
   double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
 
-  // What min(f, limit) does along a stretch of a line that lies in one cell; nothing when it does not.
-  std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-                                     RealScratch& scratch, std::uint64_t& instructions) const;
-
-  // The part of the program that holds at a point, near the surface: where its value is at most `limit`.
+  // The part of the program that holds at a point where its value is at most `limit`.
   struct Region {
     compiler::Box cell;  // may be unbounded
     const char* kind;
-    double limit;
+    double limit;   // of a far leaf what distances round to
     vm::Part part;  // empty of a far leaf
   };
   Region region(glm::dvec3 point) const;
@@ -110,9 +118,9 @@ class Regions {
 
   enum class Kind : std::uint32_t { Inner, Far, Program };
   struct Node {
-    float value;  // of a leaf its limit; of a far one the distance at the cell's centre
-    // Kind in the two high bits; below of Inner its first child's number, of Far the level, of Program where it
-    // begins in the pool, or kWhole.
+    float value;  // of a leaf its limit; of a far one what all distances in the cell round to
+    // Kind in the two high bits; below of Inner its first child's number, of Program where it begins in the pool, or
+    // kWhole.
     std::uint32_t ref;
 
     Kind kind() const { return static_cast<Kind>(ref >> 30); }
@@ -126,27 +134,20 @@ class Regions {
     Node node;
     int level;                          // of the cell; -1 outside the root
     std::array<std::uint32_t, 3> cell;  // in the finest cells; outside the root the face's number first
-
-    // In cells of its level.
-    std::array<std::uint32_t, 3> cell_at(int levels) const {
-      const int shift = level < 0 ? 0 : levels - level;
-      return {cell[0] >> shift, cell[1] >> shift, cell[2] >> shift};
-    }
   };
   Found find(float x, float y, float z) const;
-  float far_value(const Found& found, float x, float y, float z) const;
   void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
   std::size_t settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
                              vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
-  float depth_within(const Found& found, float x, float y, float z) const;
   void part_of(const Node& node, vm::Part& part) const;
   const vm::Part& part_of(const Node& node, RealScratch& scratch) const;
 
   vm::Code whole_;
   vm::Part whole_part_;
   RegionTree tree_{};
+  FarLevels far_;
   std::vector<Node> nodes_;        // first those of the cells of the grid's level
   std::array<Node, 6> outside_{};  // below and above the root on each axis; x before y before z
   std::optional<vm::Constants> constants_;

@@ -14,6 +14,18 @@
 namespace fathom::runtime {
 namespace {
 
+// The same for every part of a picture, at any time and with any number of threads: what the layer of costs tells
+// must not depend on these. With a time limit no more than the first sample of a pixel is certain.
+RegionOptions region_options(const Settings& settings, const RenderOptions& options) {
+  constexpr double kEvaluationsPerRay = 10;
+  const double pixels = static_cast<double>(settings.width) * settings.height;
+  const double paths = options.time_limit ? pixels : pixels * settings.spp;
+  RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
+  regions.evaluations = kEvaluationsPerRay * paths * (1 + std::min(settings.bounces, 3));
+  regions.interrupted = [cancel = options.cancel] { return cancel && cancel->load(std::memory_order_relaxed); };
+  return regions;
+}
+
 World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
   World world{scene,
               settings,
@@ -25,8 +37,9 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
               Lights(scene, options.environment),
               {}};
   if (settings.regions) {
-    const RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
+    RegionOptions regions = region_options(settings, options);
     add_regions(world.field, scene, regions);
+    if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
     world.media.add_regions(scene, regions);
   }
   RealScratch scratch;

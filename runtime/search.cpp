@@ -25,6 +25,9 @@ constexpr double kProgress = 0.8;
 // evaluations, and then twice as many.
 constexpr double kShorter = 8;
 constexpr std::uint32_t kSeldom = 1u << 10;
+// In a large scene they are asked after so many evaluations for the first time: an interval takes the whole program,
+// an evaluation little of it.
+constexpr std::uint32_t kLeastAsked = 16, kAskedShare = 16;
 // A step's length in what it should be for the balls of both ends just to touch, and the slope that is expected at
 // most, relative to the bound on it (compare tiered-inl.h).
 constexpr double kReach = 0.995, kLargestSlope = 0.9;
@@ -45,7 +48,8 @@ Search::Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int 
       done_(false),
       range_ratio_(std::isfinite(field.longest_told) ? kCostlyRangeRatio : kRangeRatio),
       hopeless_(field.longest_told / glm::length(direction)),
-      ask_at_(kSeldom) {
+      ask_at_(field.far_levels.used() ? std::max(kLeastAsked, field.distance->instructions() / kAskedShare)
+                                      : kSeldom) {
   ask(stretch.begin, Purpose::Begin);
 }
 

@@ -82,7 +82,8 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     points[i].surface = surface[i];
     points[i].material = scene.surfaces[surface[i]].material;
     points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
-    points[i].clear = found.exact && hits[i].side > 0 ? clear_of(convex[i], size, points[i].offset, field) : 0;
+    points[i].clear = found.exact && hits[i].side > 0 && !field.far_levels.used()
+                          ? clear_of(convex[i], size, points[i].offset, field) : 0;
   }
 }
 

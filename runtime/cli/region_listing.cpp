@@ -57,7 +57,7 @@ std::optional<std::string> region_listing(const compiler::CompiledScene& scene, 
   }
   if (!used) text += "; the whole program is so short that renders evaluate it everywhere\n";
   if (region.part.words.empty()) {
-    text += fmt::format("; nothing is near: at the cell's centre the field is at least {:.6g}\n", region.limit);
+    text += fmt::format("; nothing is near: distances round to {:.6g}\n", region.limit);
   } else {
     const vm::VerifiedProgram part = as_program(region.part, whole.program());
     if (std::isfinite(region.limit)) text += fmt::format("; holds where the field is at most {:.6g}\n", region.limit);

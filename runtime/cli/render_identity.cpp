@@ -67,7 +67,7 @@ std::string layers_of(const runtime::Settings& settings) {
   add(kept.variance, "variance");
   add(kept.halves, "halves");
   add(kept.cost, "cost");
-  // Regions change what rays cost, and nothing else.
+  // Regions change what rays cost, and nothing else: large scenes round distances alike without them.
   if (kept.cost) text += settings.regions ? fmt::format(" (regions of {} MB)", settings.region_memory >> 20) : "";
   return text;
 }
