@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -188,6 +189,13 @@ bool AtomicFile::give_up(std::string_view why) {
 }
 
 bool AtomicFile::write(std::span<const std::uint8_t> bytes) {
+  if (memory_ != nullptr) {
+    const std::size_t end = static_cast<std::size_t>(position_) + bytes.size();
+    if (memory_->size() < end) memory_->resize(end);
+    std::copy(bytes.begin(), bytes.end(), memory_->begin() + static_cast<std::ptrdiff_t>(position_));
+    position_ = end;
+    return true;
+  }
   while (!problem_ && !bytes.empty()) {
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
@@ -200,13 +208,13 @@ bool AtomicFile::write(std::span<const std::uint8_t> bytes) {
 
 bool AtomicFile::seek(std::uint64_t position) {
   if (problem_) return false;
-  if (::lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) return give_up(reason());
+  if (memory_ == nullptr && ::lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) return give_up(reason());
   position_ = position;
   return true;
 }
 
 std::optional<std::string> AtomicFile::commit() {
-  if (problem_) return problem_;
+  if (problem_ || memory_ != nullptr) return problem_;
   if (::fsync(file_) != 0 || !name_beside() || ::rename(beside_.c_str(), target_.c_str()) != 0) give_up(reason());
   if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
   struct stat status {};

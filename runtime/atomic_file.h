@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fathom::runtime {
@@ -33,6 +34,8 @@ std::optional<FileStamp> stamp_of(const std::string& path);  // nothing where th
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
+  // No file: what is written is put into `memory`. Messages call it `name`.
+  AtomicFile(std::string name, std::vector<std::uint8_t>& memory) : path_(std::move(name)), memory_(&memory) {}
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -42,6 +45,7 @@ class AtomicFile {
   bool seek(std::uint64_t position);  // from the file's beginning
   std::uint64_t position() const { return position_; }
   const std::optional<std::string>& problem() const { return problem_; }  // the first failure, for people
+  const std::string& name() const { return path_; }                       // for people
 
   // The reason when the file could not be written.
   [[nodiscard]] std::optional<std::string> commit();
@@ -58,6 +62,7 @@ class AtomicFile {
   std::string target_;  // the same with links followed
   std::string beside_;  // the name of what is written; empty: it has none yet
   int file_ = -1;
+  std::vector<std::uint8_t>* memory_ = nullptr;  // in place of a file
   std::uint64_t position_ = 0;
   std::optional<std::string> problem_;
   std::optional<FileStamp> stamp_;

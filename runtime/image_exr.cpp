@@ -26,7 +26,7 @@ constexpr int kNoThreads = 0;  // beside the caller's
 // OpenEXR's view of the file that is written. What goes wrong is kept there and said by commit().
 class FileSink : public Imf::OStream {
  public:
-  FileSink(AtomicFile& file, const std::string& path) : OStream(path.c_str()), file_(file) {}
+  explicit FileSink(AtomicFile& file) : OStream(file.name().c_str()), file_(file) {}
   void write(const char bytes[], int count) override {
     const auto* first = reinterpret_cast<const std::uint8_t*>(bytes);
     if (!file_.write({first, static_cast<std::size_t>(count)})) throw std::runtime_error("not written");
@@ -113,13 +113,17 @@ void write_rows(const ImageRows& image, Imf::OutputFile& file) {
 
 std::optional<std::string> write_exr(const ImageRows& image, const std::string& path) {
   AtomicFile target(path);
+  return write_exr(image, target);
+}
+
+std::optional<std::string> write_exr(const ImageRows& image, AtomicFile& target) {
   try {
-    FileSink sink(target, path);
+    FileSink sink(target);
     Imf::OutputFile file(sink, header_of(image), kNoThreads);
     write_rows(image, file);
   } catch (const std::exception& error) {
     if (target.problem()) return target.problem();
-    return fmt::format("cannot write `{}`: {}", path, error.what());
+    return fmt::format("cannot write `{}`: {}", target.name(), error.what());
   }
   return target.commit();
 }

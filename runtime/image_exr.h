@@ -12,12 +12,14 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/atomic_file.h"
 #include "runtime/float_image.h"
 
 namespace fathom::runtime {
 
 // Floats as floats, whole numbers as UINT. The reason when it cannot be done, and then the target is as it was.
 [[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, const std::string& path);
+[[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, AtomicFile& file);  // commits it
 
 // The image in the bytes of a file, halves and UINTs as floats, or what is wrong with them. Attributes of kinds that
 // Attribute does not have are left out.

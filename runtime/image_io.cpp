@@ -50,9 +50,7 @@ std::vector<std::uint8_t> encode_shown(const Shown& shown, int bits, bool srgb) 
 // Puts `components` numbers a pixel of row `y`, from the top.
 using FloatRow = std::function<void(int y, std::span<float> values)>;
 
-std::optional<std::string> write_pfm(int width, int height, int components, const FloatRow& fill,
-                                     const std::string& path) {
-  AtomicFile file(path);
+std::optional<std::string> write_pfm(int width, int height, int components, const FloatRow& fill, AtomicFile& file) {
   const std::string header =
       fmt::format("{}\n{} {}\n-1.0\n", components == 1 ? "Pf" : "PF", width, height);  // below zero: little endian
   file.write({reinterpret_cast<const std::uint8_t*>(header.data()), header.size()});
@@ -68,7 +66,7 @@ std::optional<std::string> write_pfm(int width, int height, int components, cons
   return file.commit();
 }
 
-std::optional<std::string> write_float_map(const LayerValues& layer, const std::string& path) {
+std::optional<std::string> write_float_map(const LayerValues& layer, AtomicFile& file) {
   const PixelRect area = layer.area;
   const std::size_t components = layer.layer == Layer::Depth ? 1 : 3;
   const FloatRow fill = [&](int y, std::span<float> values) {
@@ -77,7 +75,7 @@ std::optional<std::string> write_float_map(const LayerValues& layer, const std::
       values[i] = layer.at(x, area.y0 + y)[static_cast<int>(i % components)];
     }
   };
-  return write_pfm(area.width(), area.height(), static_cast<int>(components), fill, path);
+  return write_pfm(area.width(), area.height(), static_cast<int>(components), fill, file);
 }
 
 // Source: Ward, "Real Pixels", Graphics Gems II, 1991: 8 bits a colour and a common exponent.
@@ -103,9 +101,10 @@ std::optional<std::string> check_ending(const std::string& path) {
   return fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings());
 }
 
-std::optional<std::string> write_encoded(const std::vector<std::uint8_t>& bytes, const std::string& path) {
-  if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", path);
-  return write_file(bytes, path);
+std::optional<std::string> write_encoded(const std::vector<std::uint8_t>& bytes, AtomicFile& file) {
+  if (bytes.empty()) return fmt::format("cannot encode `{}`: too large for its format", file.name());
+  file.write(bytes);
+  return file.commit();
 }
 
 }  // namespace
@@ -137,19 +136,24 @@ std::optional<std::string> check_image_path(const std::string& path) {
 std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
                                        const std::string& path) {
   if (std::optional<std::string> problem = check_ending(path)) return problem;
-  const ImageFormat format = image_format_of(path)->format;
+  AtomicFile file(path);
+  return write_layer(layer, options, image_format_of(path)->format, file);
+}
+
+std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options, ImageFormat format,
+                                       AtomicFile& file) {
   switch (format) {
     case ImageFormat::Png: {
       const bool srgb = is_light(layer.layer) || layer.layer == Layer::Albedo;
-      return write_encoded(encode_shown(Shown(layer, options.tone), options.bits, srgb), path);
+      return write_encoded(encode_shown(Shown(layer, options.tone), options.bits, srgb), file);
     }
     case ImageFormat::Jpeg:
     case ImageFormat::Bmp:
-      return write_encoded(encode_image(to_picture(Shown(layer, options.tone)), format), path);
+      return write_encoded(encode_image(to_picture(Shown(layer, options.tone)), format), file);
     case ImageFormat::Pfm:
-      return write_float_map(layer, path);
+      return write_float_map(layer, file);
     case ImageFormat::Hdr:
-      return write_encoded(encode_hdr(layer), path);
+      return write_encoded(encode_hdr(layer), file);
     case ImageFormat::Exr:
       break;
   }
@@ -187,7 +191,12 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
 
 std::optional<std::string> write_image(const Picture& picture, const std::string& path) {
   if (std::optional<std::string> problem = check_ending(path)) return problem;
-  return write_encoded(encode_image(picture, image_format_of(path)->format), path);
+  AtomicFile file(path);
+  return write_image(picture, image_format_of(path)->format, file);
+}
+
+std::optional<std::string> write_image(const Picture& picture, ImageFormat format, AtomicFile& file) {
+  return write_encoded(encode_image(picture, format), file);
 }
 
 std::optional<std::string> write_float_map(std::span<const float> values, int width, int height,
@@ -198,7 +207,8 @@ std::optional<std::string> write_float_map(std::span<const float> values, int wi
     const auto from = values.subspan(static_cast<std::size_t>(y) * row, row);
     std::copy(from.begin(), from.end(), out.begin());
   };
-  return write_pfm(width, height, 1, fill, path);
+  AtomicFile file(path);
+  return write_pfm(width, height, 1, fill, file);
 }
 
 }  // namespace fathom::runtime

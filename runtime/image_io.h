@@ -59,11 +59,14 @@ struct PictureOptions {
 // negative numbers, n/2 + 1/2 where something was hit).
 [[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
                                                      const std::string& path);
+[[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
+                                                     ImageFormat format, AtomicFile& file);  // commits it
 
 // A picture of 8 bits in a format that is shown: as the bytes of a file, empty when the encoder fails; or written the
 // same way.
 std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat format);
 [[nodiscard]] std::optional<std::string> write_image(const Picture& picture, const std::string& path);
+[[nodiscard]] std::optional<std::string> write_image(const Picture& picture, ImageFormat format, AtomicFile& file);
 
 // Writes values [y][x], y downwards, the same way as a grey portable float map: 32 bits each, little endian, rows
 // from the bottom. Source: Debevec, "PFM Portable FloatMap Image Format", 2001.
