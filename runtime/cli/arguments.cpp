@@ -9,18 +9,13 @@
 #include <ostream>
 
 #include "compiler/diagnostics.h"
+#include "runtime/cli/help_text.h"
 
 namespace fathom::cli {
 namespace {
 
 std::string longest_name(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
-}
-
-// CLI11 leaves two blank lines between groups of options.
-std::string without_double_blanks(std::string text) {
-  for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
-  return text;
 }
 
 // What CLI11 says, in our words; it knows the option's name only as the start of its message.
@@ -32,54 +27,49 @@ std::string explain(const CLI::ParseError& error) {
   return what;
 }
 
-std::string indent(std::string_view lines) {
-  std::string indented = "  ";
-  for (char c : lines) {
-    indented += c;
-    if (c == '\n') indented += "  ";
-  }
-  return indented;
-}
-
 }  // namespace
 
 Arguments::Arguments(const std::string& verb, const std::string& description, const std::string& examples)
-    : app_(std::make_unique<CLI::App>(description, "fathom " + verb)), verb_(verb), group_("Options") {
+    : app_(std::make_unique<CLI::App>(description, "fathom " + verb)), table_{verb, description, examples, {}, {}} {
   app_->allow_extras();
-  app_->set_help_flag("-h,--help", "Print this help and exit");
-  app_->footer("Examples:\n" + indent(examples));
-  app_->get_formatter()->column_width(32);
-  app_->get_formatter()->label("REQUIRED", "");
+  app_->set_help_flag("-h,--help");
+  add_row("-h,--help", "", "Print this help and exit");
 }
 
 Arguments::~Arguments() = default;
 
+void Arguments::add_row(const std::string& names, const std::string& value, const std::string& doc,
+                        std::vector<std::string> words) {
+  table_.options.push_back({names, value, doc, group_, std::move(words)});
+}
+
 void Arguments::positional(const std::string& name, const std::string& doc, std::string& target, bool required,
-                           const std::string& value) {
-  app_->add_option(name, target, doc)->required(required)->type_name(value);
+                           const std::string& value, std::vector<std::string> words) {
+  app_->add_option(name, target)->required(required);
+  table_.positionals.push_back({name, value, doc, "", std::move(words), required, false});
 }
 
 void Arguments::positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
                             const std::string& value) {
-  app_->add_option(name, targets, doc)->required()->type_name(value);
+  app_->add_option(name, targets)->required();
+  table_.positionals.push_back({name, value, doc, "", {}, true, true});
 }
 
 void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {
-  app_->add_flag_callback(
-          names, [&target] { target = true; }, doc)
-      ->group(group_);
+  app_->add_flag_callback(names, [&target] { target = true; });
+  add_row(names, "", doc);
 }
 
 void Arguments::counter(const std::string& names, const std::string& doc, int& target) {
-  app_->add_flag_function(
-          names, [&target](std::int64_t count) { target = static_cast<int>(count); }, doc)
-      ->group(group_);
+  app_->add_flag_function(names, [&target](std::int64_t count) { target = static_cast<int>(count); });
+  add_row(names, "", doc);
 }
 
 void Arguments::option(const std::string& names, const std::string& value, const std::string& doc, Setter setter) {
+  add_row(names, value, doc, setter.words());
   Option& option = options_.emplace_back(Option{nullptr, {}, std::move(setter)});
-  option.option = app_->add_option(names, option.texts, doc);
-  option.option->type_name(value)->type_size(1)->expected(1)->group(group_);
+  option.option = app_->add_option(names, option.texts);
+  option.option->type_size(1)->expected(1);
   option.option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
 }
 
@@ -96,10 +86,14 @@ void Arguments::add_common(const Streams& streams) {
 
 std::optional<int> Arguments::parse(std::span<const std::string> args, const Streams& streams) {
   add_common(streams);
+  if (streams.options != nullptr) {
+    *streams.options = table_;
+    return kDone;
+  }
   try {
     app_->parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
   } catch (const CLI::CallForHelp&) {
-    streams.out << without_double_blanks(app_->help());
+    streams.out << help_text(table_, streams.columns);
     return kDone;
   } catch (const CLI::ParseError& error) {
     const auto remaining = app_->remaining();
@@ -138,7 +132,7 @@ int Arguments::report_unknown(const std::vector<std::string>& remaining, const S
 }
 
 int Arguments::report_usage(const Streams& streams, const std::string& message, Help help) const {
-  help.push_back(fmt::format("`fathom {} --help` lists the options", verb_));
+  help.push_back(fmt::format("`fathom {} --help` lists the options", table_.verb));
   return fail(streams, kUsage, message, help);
 }
 

@@ -1,4 +1,4 @@
-// A verb's command line: CLI11 splits it, the messages and exit codes are ours.
+// A verb's command line: CLI11 splits it; the help, the messages and the exit codes are ours.
 //
 //     Arguments arguments("eval", "Prints distances at points.", "fathom eval ball.json --at 0,1,0");
 //     arguments.positional("scene", "The scene file, - for stdin", scene);
@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/cli/option_table.h"
 #include "runtime/cli/streams.h"
 #include "runtime/cli/values.h"
 
@@ -37,7 +38,7 @@ class Arguments {
 
   // Names as CLI11 takes them: "-s,--spp".
   void positional(const std::string& name, const std::string& doc, std::string& target, bool required = true,
-                  const std::string& value = "FILE");
+                  const std::string& value = "FILE", std::vector<std::string> words = {});
   // One or more.
   void positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
                    const std::string& value = "FILE");
@@ -45,7 +46,8 @@ class Arguments {
   void counter(const std::string& names, const std::string& doc, int& target);  // how often the flag was given
   void option(const std::string& names, const std::string& value, const std::string& doc, Setter setter);
 
-  // nullopt to go on; otherwise help or an error was printed and the verb ends with that code.
+  // nullopt to go on; otherwise help or an error was printed, or the options were put where Streams::options says,
+  // and the verb ends with that code.
   std::optional<int> parse(std::span<const std::string> args, const Streams& streams);
 
  private:
@@ -55,11 +57,14 @@ class Arguments {
     Setter setter;
   };
   void add_common(const Streams& streams);
+  void add_row(const std::string& names, const std::string& value, const std::string& doc,
+               std::vector<std::string> words = {});
   int report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const;
   int report_usage(const Streams& streams, const std::string& message, Help help = {}) const;
 
   std::unique_ptr<CLI::App> app_;
-  std::string verb_, group_;
+  OptionTable table_;
+  std::string group_ = "Options";
   std::deque<Option> options_;  // addresses are stable
 };
 

@@ -8,9 +8,9 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kChartExamples =
-    "fathom chart -o charts                     # the project's own scenes; about five minutes\n"
-    "fathom chart scene.json -o charts          # index.html there shows all of it\n"
-    "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3   # a first look";
+    "fathom chart -o charts                     # the project's scenes\n"
+    "fathom chart scene.json -o charts          # charts/index.html shows it\n"
+    "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3";
 
 }  // namespace
 
@@ -20,24 +20,26 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
   std::optional<int> rays, rounds, spp, seeds, reference_spp;
   std::optional<PixelSize> size;
   std::optional<std::uint64_t> seed;
-  Arguments arguments(
-      "chart",
-      "Charts speed against accuracy: every way to follow rays, on rays of the scene and on its picture,\n"
-      "against a search in double. Needs no display; the page it writes needs no network.",
-      kChartExamples);
+  Arguments arguments("chart",
+                      "Charts speed against accuracy: every way to follow rays, compared with a search in double, on "
+                      "rays of the scene\n"
+                      "and on its picture. Needs no display. The page it writes needs no network.",
+                      kChartExamples);
   add_scene_arguments(arguments, request.scene, false);
-  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
-  arguments.option("-o,--output", "FOLDER", "Where index.html, *.csv, *.svg and *.png go (chart)", any_text(folder));
+  arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
+  arguments.option("-o,--output", "FOLDER", "Folder for index.html, *.csv, *.svg and *.png (chart)",
+                   any_text(folder));
   arguments.group("Rays");
-  arguments.option("--rays", "N", "Rays of each class: camera, bounce, grazing (10000)",
+  arguments.option("--rays", "N", "Number of rays of each class: camera, bounce and grazing (10000)",
                    whole(rays, 100, 10'000'000));
-  arguments.option("--rounds", "N", "Times each method is timed; the median counts (9)", whole(rounds, 1, 1001));
+  arguments.option("--rounds", "N", "Number of timings of each method, of which the median counts (9)",
+                   whole(rounds, 1, 1001));
   arguments.option("--seed", "N", "Seed of the rays (1)", into(read_seed, seed));
   arguments.group("Pictures");
-  arguments.flag("--no-images", "No chart of pictures", request.no_images);
-  arguments.option("--size", "WxH", "Width and height of the pictures compared (64x36)", into(read_size, size));
-  arguments.option("-s,--spp", "N", "Most samples per pixel (64)", whole(spp, 2, 1 << 14));
-  arguments.option("--seeds", "N", "Pictures for each point of the chart (16)", whole(seeds, 1, 4096));
+  arguments.flag("--no-images", "Chart no pictures", request.no_images);
+  arguments.option("--size", "WxH", "Width and height of the compared pictures (64x36)", into(read_size, size));
+  arguments.option("-s,--spp", "N", "Max samples per pixel (64)", whole(spp, 2, 1 << 14));
+  arguments.option("--seeds", "N", "Number of pictures per point of the chart (16)", whole(seeds, 1, 4096));
   arguments.option("--reference-spp", "N", "Samples per pixel of the reference (1024)",
                    whole(reference_spp, 2, 1 << 20));
   if (const auto code = arguments.parse(args, streams)) return *code;

@@ -7,9 +7,9 @@
 #include <string>
 #include <variant>
 
-#include "runtime/measure/measure_images.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/streams.h"
+#include "runtime/measure/measure_images.h"
 
 namespace fathom::cli {
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr const char* kCheckExamples =
     "fathom check scene.json\n"
-    "fathom check --error-format short scene.json   # one line an error, for editors\n"
-    "fathom check --error-format json scene.json    # errors and report as JSON lines\n"
-    "fathom check --probe 1000000 scene.json        # tries to refute the Lipschitz constants";
+    "fathom check --error-format short scene.json   # a line per error\n"
+    "fathom check --error-format json scene.json    # JSON lines\n"
+    "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
 
 constexpr int kMostProbes = 100'000'000;
 
@@ -30,13 +30,13 @@ struct CheckRequest {
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, CheckRequest& request) {
   Arguments arguments("check",
-                      "Prints every error and warning of a scene and how exact its distances are; renders nothing.",
+                      "Prints every error and warning of a scene and how exact its distances are. Renders nothing.",
                       kCheckExamples);
   add_scene_arguments(arguments, request.scene);
   arguments.option("--probe", "N",
-                   "Compare gradients and differences at N points with every constant the compiler proved",
+                   "Compare gradients and differences at N points with the constants that the compiler proved",
                    whole(request.probes, 1, kMostProbes));
-  arguments.option("--threads", "N", "Threads to probe with (default: one a processor)",
+  arguments.option("--threads", "N", "Number of threads of --probe (one per processor)",
                    whole(request.threads, 1, 1024));
   return arguments.parse(args, streams);
 }

@@ -18,10 +18,10 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kCompileExamples =
-    "fathom compile scene.json -o scene.fbc        # every verb that takes a scene takes it\n"
+    "fathom compile scene.json -o scene.fbc        # for every verb\n"
     "fathom compile scene.json -o scene.fbc --strip --no-text\n"
-    "fathom compile old.fbc -o new.fbc             # anew, from the scene's text in it\n"
-    "fathom render scene.fbc -o out.png -D r=0.3   # parameters can be set as of the scene itself";
+    "fathom compile old.fbc -o new.fbc             # compiled again from its text\n"
+    "fathom render scene.fbc -o out.png -D r=0.3   # with a parameter";
 constexpr const char* kAsmExamples =
     "fathom dump scene.fbc --stage file > scene.txt\n"
     "fathom asm scene.txt -o same.fbc              # the same bytes\n"
@@ -73,11 +73,11 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   SceneArguments scene_arguments;
   std::optional<std::string> output;
   bool strip = false, no_text = false;
-  Arguments arguments("compile", "Writes the compiled scene to a file: docs/BYTECODE.md.", kCompileExamples);
+  Arguments arguments("compile", "Compiles a scene to a file; see docs/BYTECODE.md.", kCompileExamples);
   add_scene_arguments(arguments, scene_arguments);
-  arguments.option("-o,--output", "FILE", "File to write, by custom .fbc; - is standard output", any_text(output));
-  arguments.flag("--strip", "Leave out where instructions come from, and their names", strip);
-  arguments.flag("--no-text", "Leave out the scene's text: no -D, and nothing is proved of the programs", no_text);
+  arguments.option("-o,--output", "FILE", "File to write, usually .fbc; - is standard output", any_text(output));
+  arguments.flag("--strip", "Leave out the names of instructions and their places in the scene", strip);
+  arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and no constant is proved", no_text);
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(scene_arguments.path, output.value_or(""), streams)) return *code;
   auto input = read_scene_text(scene_arguments, streams);
@@ -94,12 +94,12 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   std::optional<std::string> output;
   int error_format = 0;
   compiler::Limits limits;
-  Arguments arguments("asm", "Makes a compiled scene of its listing, or of that of one program.", kAsmExamples);
-  arguments.positional("listing", "What `fathom dump --stage file` printed, or a program; - reads standard input",
-                       path);
-  arguments.option("-o,--output", "FILE", "File to write, by custom .fbc; - is standard output", any_text(output));
+  Arguments arguments("asm", "Assembles a listing to a compiled scene.", kAsmExamples);
+  arguments.positional(
+      "listing", "Output of `fathom dump --stage file`, or the listing of one program; - is standard input", path);
+  arguments.option("-o,--output", "FILE", "File to write, usually .fbc; - is standard output", any_text(output));
   add_limit_option(arguments, limits);
-  arguments.option("--error-format", "FORMAT", "How to print what is wrong with the listing: text, short or json",
+  arguments.option("--error-format", "FORMAT", "Format of errors: text (default), short or json",
                    one_of({"text", "short", "json"}, error_format));
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(path, output.value_or(""), streams)) return *code;

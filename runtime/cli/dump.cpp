@@ -21,15 +21,15 @@ namespace {
 
 constexpr const char* kDumpExamples =
     "fathom dump scene.json                        # the distance program\n"
-    "fathom dump scene.json --program surface      # the one that knows the objects\n"
+    "fathom dump scene.json --program surface      # with the objects\n"
     "fathom dump scene.json --stage graph          # after all passes\n"
-    "fathom dump scene.json --after graph          # before the first\n"
-    "fathom dump scene.json --diff                 # what each pass changed\n"
-    "fathom dump --diff a.fbc b.fbc                # what two programs differ in\n"
-    "fathom dump scene.json --run --at 0,1,0       # the stacks at a point, after every instruction\n"
-    "fathom dump scene.json --stats                # what costs what\n"
-    "fathom dump scene.fbc --stage file            # everything, as text that `fathom asm` reads back\n"
-    "fathom dump scene.json --region 0,1,0         # what matters at a point, and the whole program\n"
+    "fathom dump scene.json --after graph          # before the first pass\n"
+    "fathom dump scene.json --diff                 # the changes of each pass\n"
+    "fathom dump --diff a.fbc b.fbc                # two programs compared\n"
+    "fathom dump scene.json --run --at 0,1,0       # the stacks at a point\n"
+    "fathom dump scene.json --stats                # the cost of each part\n"
+    "fathom dump scene.fbc --stage file            # all, for `fathom asm`\n"
+    "fathom dump scene.json --region 0,1,0         # the part for a point\n"
     "fathom dump scene.json --stage graph --format dot | dot -Tsvg > graph.svg";
 
 enum Stage { kSyntax, kGraph, kBytecode, kFile };
@@ -112,27 +112,26 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DumpRequest& request) {
   Arguments arguments("dump", "Prints what the compiler made of a scene.", kDumpExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.positional("other", "Of --diff: the scene to compare with", request.other, false);
+  arguments.positional("other", "With --diff: the scene to compare with", request.other, false);
   arguments.option("--stage", "STAGE",
-                   "syntax, graph, bytecode, or file: all that `fathom compile` writes (default: bytecode, or graph "
-                   "where other options are about it)",
+                   "Stage to print: syntax, graph, bytecode, or file, which is all that `fathom compile` writes "
+                   "(bytecode, or graph with options about graphs)",
                    one_of({"syntax", "graph", "bytecode", "file"}, request.stage));
   arguments.option("--after", "PASS", "Stop after this pass of the compiler; graph stops before the first",
                    pass_name(request.after));
-  arguments.option("--program", "PROGRAM", "distance (the default) or surface",
+  arguments.option("--program", "PROGRAM", "Program to print: distance (default) or surface",
                    one_of({"distance", "surface"}, request.program));
-  arguments.option("--format", "FORMAT", "text (the default) or json; for graphs also dot and mermaid",
+  arguments.option("--format", "FORMAT", "Format: text (default) or json; graphs also dot and mermaid",
                    one_of({"text", "json", "dot", "mermaid"}, request.format));
   arguments.flag("--diff",
-                 "Print what each pass changed in the distance's graph, and what that saved; of two scenes, what "
-                 "their programs differ in",
+                 "Print what each pass changed in the graph of the distance and what that saved; of two scenes, the "
+                 "differences between their programs",
                  request.diff);
-  arguments.option("--region", "X,Y,Z", "Print the part of the program that matters in the region at a point, too",
+  arguments.option("--region", "X,Y,Z", "Also print the part of the program that the region at this point runs",
                    into(read_point, request.region));
-  arguments.flag("--run", "Print the stacks after each instruction, in f32, at the point that --at gives",
-                 request.run);
-  arguments.option("--at", "X,Y,Z", "Of --run: the point", into(read_point, request.at));
-  arguments.flag("--stats", "Print what operations and nodes cost, in multiply-adds a point", request.stats);
+  arguments.flag("--run", "Print the stacks after each instruction, in f32, at the point of --at", request.run);
+  arguments.option("--at", "X,Y,Z", "Point of --run", into(read_point, request.at));
+  arguments.flag("--stats", "Print the cost of operations and nodes, in multiply-adds per point", request.stats);
   if (const auto code = arguments.parse(args, streams)) return code;
   fill_in(request);
   return check_request(request, streams);

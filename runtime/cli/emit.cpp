@@ -15,14 +15,15 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kEmitExamples =
-    "fathom emit cpp scene.json -o scene.h           # template <class T> T fathom_scene::distance(T x, T y, T z)\n"
-    "fathom emit cpp scene.json --namespace wall     # in a namespace of that name\n"
-    "fathom emit glsl scene.json > scene.glsl        # float scene_distance(vec3 p)\n"
-    "fathom emit glsl scene.json --name wall         # float wall_distance(vec3 p)\n"
+    "fathom emit cpp scene.json -o scene.h         # fathom_scene::distance(x, y, z)\n"
+    "fathom emit cpp scene.json --namespace wall   # wall::distance(x, y, z)\n"
+    "fathom emit glsl scene.json > scene.glsl      # scene_distance(p)\n"
+    "fathom emit glsl scene.json --name wall       # wall_distance(p)\n"
     "\n"
-    "The head of the C++ says what other types than float and double T can be. The text is as long as the listing "
-    "that\n"
-    "`fathom dump` prints: of ten thousand objects a compiler takes minutes, and a graphics driver may not take it.";
+    "The C++ function is a template; the head of the file lists what a type needs apart from float and double. The "
+    "text\n"
+    "is as long as the listing of `fathom dump`. For ten thousand objects a compiler takes minutes, and a graphics\n"
+    "driver may refuse it.";
 
 enum Language { kCpp, kGlsl };
 
@@ -44,14 +45,15 @@ Setter identifier(std::string (*problem_with)(std::string_view), std::optional<s
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EmitRequest& request) {
-  Arguments arguments("emit", "Writes the scene's distance function as source code of another language.", kEmitExamples);
+  Arguments arguments("emit", "Writes the scene's distance function as C++ or GLSL.", kEmitExamples);
   std::string language;
-  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language, true, "LANGUAGE");
+  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language, true, "LANGUAGE",
+                       {"cpp", "glsl"});
   add_scene_arguments(arguments, request.scene);
   arguments.option("-o,--output", "FILE", "File to write (standard output)", any_text(request.output));
-  arguments.option("--namespace", "NAME", "cpp: the namespace the function is in (fathom_scene)",
+  arguments.option("--namespace", "NAME", "cpp: namespace of the function (fathom_scene)",
                    identifier(compiler::problem_with_namespace, request.name_space));
-  arguments.option("--name", "NAME", "glsl: what all names begin with (scene)",
+  arguments.option("--name", "NAME", "glsl: prefix of all names (scene)",
                    identifier(compiler::problem_with_glsl_name, request.name));
   if (const auto code = arguments.parse(args, streams)) return code;
   if (const Verdict wrong = one_of({"cpp", "glsl"}, request.language)(language)) {

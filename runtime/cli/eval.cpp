@@ -19,9 +19,9 @@ namespace {
 
 constexpr const char* kEvalExamples =
     "fathom eval scene.json --at 0,1,0 --at -1,0.5,2\n"
-    "fathom eval scene.json --points points.txt --number f32   # a line of the file is: x y z\n"
-    "fathom eval scene.json --box -1,-1,-1,1,1,1               # bounds of the distance in a box\n"
-    "fathom eval scene.json --at 0,1,0 --after graph           # without the compiler's passes";
+    "fathom eval scene.json --points points.txt --number f32   # lines of x y z\n"
+    "fathom eval scene.json --box -1,-1,-1,1,1,1               # bounds in a box\n"
+    "fathom eval scene.json --at 0,1,0 --after graph           # without passes";
 
 enum Number { kF32, kF64, kRange };
 
@@ -36,18 +36,19 @@ struct EvalRequest {
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EvalRequest& request) {
-  Arguments arguments("eval",
-                      "Prints the field at points, a line each: distance, the gradient's x y z, the object's name.",
-                      kEvalExamples);
+  Arguments arguments(
+      "eval", "Prints the field at points, a line each: the distance, the gradient's x y z, the object's name.",
+      kEvalExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.option("--at", "X,Y,Z", "A point, scene units; may be repeated", append_to(read_point, request.points));
-  arguments.option("--points", "FILE", "Points from a file, a line each: x y z; - reads standard input",
+  arguments.option("--at", "X,Y,Z", "Point in scene units; may be repeated", append_to(read_point, request.points));
+  arguments.option("--points", "FILE", "File of points, with x y z on each line; - is standard input",
                    any_text(request.points_file));
-  arguments.option("--number", "TYPE", "Evaluate in f32, f64 (the default) or range, which prints: lo hi",
+  arguments.option("--number", "TYPE",
+                   "Number type: f64 (default), f32, or range, which prints a lower and an upper bound",
                    one_of({"f32", "f64", "range"}, request.number));
-  arguments.option("--box", "X0,...,Z1", "A box from x0,y0,z0 to x1,y1,z1 to bound the distance in; may be repeated",
+  arguments.option("--box", "X0,...,Z1", "Box to bound the distance in, from x0,y0,z0 to x1,y1,z1; may be repeated",
                    append_to(read_box, request.boxes));
-  arguments.option("--after", "PASS", "Stop optimising after this pass of the compiler; graph stops before the first",
+  arguments.option("--after", "PASS", "Stop after this pass of the compiler; graph stops before the first",
                    pass_name(request.after));
   arguments.option("--stage", "STAGE", "graph: the same as --after graph", one_of({"graph"}, request.stage));
   if (const auto code = arguments.parse(args, streams)) return code;

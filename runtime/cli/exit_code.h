@@ -28,7 +28,7 @@ inline constexpr std::array kExitCodes = {
     ExitCodeInfo{kFoundProblems,
                  "`check` found errors in the scene, or with --probe a broken constant (warnings do not count); "
                  "`diff` found more than --tol"},
-    ExitCodeInfo{kUsage, "the command line makes no sense"},
+    ExitCodeInfo{kUsage, "the command line is wrong"},
     ExitCodeInfo{kBadScene, "the scene, a list of points or a picture has errors; trying again will not help"},
     ExitCodeInfo{kInternal, "a defect of fathom, or not enough memory"},
     ExitCodeInfo{kIo, "a file could not be read or written; trying again may help"},

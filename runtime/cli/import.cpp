@@ -16,9 +16,9 @@ namespace {
 constexpr const char* kImportExamples =
     "fathom import prospero.vm -o prospero.json\n"
     "fathom import molecule.json | fathom check -\n"
-    "fathom import scene.fbc -o scene.json         # the text that a compiled scene carries\n"
+    "fathom import scene.fbc -o scene.json         # the text in a compiled scene\n"
     "\n"
-    "Every verb reads these formats itself; import is for who wants to change what is in them.";
+    "Every verb reads these formats itself. `fathom import` is for changing the model.";
 
 // For a comment of one line.
 std::string printable(std::string text) {

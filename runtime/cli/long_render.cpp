@@ -63,24 +63,26 @@ std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::C
 
 void add_long_render_options(Arguments& arguments, LongRender& request) {
   arguments.group("Long renders (docs/RENDERING.md)");
-  arguments.option(
-      "--checkpoint", "FILE",
-      "Where what is done is kept, now and then and when a signal or the time limit ends the render (the "
-      "first output's name with .checkpoint, removed when all is done; FILE stays)",
-      into(read_file_name, request.checkpoint));
-  arguments.option("--checkpoint-interval", "TIME", "How often: 30s, 5m, 1h (60s)",
+  arguments.option("--checkpoint", "FILE",
+                   "File that keeps the samples so far, written at intervals and when a signal or --time-limit ends "
+                   "the render (the first output's name with .checkpoint, which goes when the render is done)",
+                   into(read_file_name, request.checkpoint));
+  arguments.option("--checkpoint-interval", "TIME", "Time between checkpoints, as 30s, 5m or 1h (60s)",
                    into(read_duration, request.interval));
-  arguments.flag("--resume", "Go on from the checkpoint: the same bits as without the interruption", request.resume);
-  arguments.option("--time-limit", "TIME", "Stop after so long and write the picture so far: 30s, 10m, 1.5h",
+  arguments.flag("--resume",
+                 "Continue from the checkpoint; the picture has the same bits as without the interruption",
+                 request.resume);
+  arguments.option("--time-limit", "TIME",
+                   "End the render after this time, as 30s, 10m or 1.5h, and write the picture so far",
                    into(read_duration, request.time_limit));
   arguments.option(
       "--noise", "LIMIT",
-      "Take no more samples where the noise is below this, as 0.02: --spp is then the most of a pixel, by twos",
+      "Stop sampling a tile once its noise is below LIMIT, as 0.02; --spp is the max per pixel, rounded down to even",
       into(read_positive, request.noise));
-  arguments.option("--min-spp", "N", "Samples of a pixel before --noise may stop it (16)",
+  arguments.option("--min-spp", "N", "Min samples per pixel before --noise may stop a tile (16)",
                    whole(request.min_spp, runtime::kLeastNoiseSpp, compiler::kMaxSpp));
   arguments.option("--sample-range", "A:B",
-                   "Only samples A to B-1 of the --spp ones of each pixel: parts for `fathom merge`",
+                   "Take only samples A to B-1 of each pixel's --spp: a part for `fathom merge`",
                    into(read_sample_range, request.sample_range));
 }
 

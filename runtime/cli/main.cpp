@@ -14,6 +14,7 @@
 
 #include "compiler/diagnostics.h"
 #include "compiler/limits.h"
+#include "runtime/cli/help_text.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
 
@@ -25,27 +26,38 @@ const Verb* find_verb(std::string_view name) {
   return found == kVerbs.end() ? nullptr : &*found;
 }
 
-std::string overview() {
-  std::string text = "Fathom renders scenes made of signed distance fields.\n\nUsage:\n";
-  for (const Verb& verb : kVerbs) {
-    text += fmt::format("  {:41}{}\n", fmt::format("fathom {} {}", verb.name, verb.arguments), verb.summary);
-  }
-  text += "  fathom help VERB                         the options of a verb\n";
-  text += "  fathom help limits                       what a file may ask for\n";
-  text += "  fathom --version\n\nExit status:\n";
-  for (const ExitCodeInfo& row : kExitCodes) text += fmt::format("  {:<3} {}\n", int{row.code}, row.meaning);
+std::string overview(int columns) {
+  std::string text = paragraph("Fathom renders scenes made of signed distance fields.", 0, columns) + "\nUsage:\n";
+  const auto add = [&](std::string_view usage, std::string_view summary) {
+    text += hanging(usage, summary, 42, columns);
+  };
+  for (const Verb& verb : kVerbs) add(usage_of(verb), verb.summary);
+  add("fathom help VERB", "prints the options of a verb");
+  add("fathom help limits", "prints the limits on what a file may ask for");
+  add("fathom -V, --version", "prints the version and the commit");
+  text += "\nExit status:\n";
+  for (const ExitCodeInfo& row : kExitCodes) text += hanging(std::to_string(int{row.code}), row.meaning, 6, columns);
   return text;
 }
 
+std::string version() {
+  return fmt::format("fathom {}{}\n", kVersion, kCommit.empty() ? "" : fmt::format(" ({})", kCommit));
+}
+
 // `fathom help limits`: the table.
-std::string limits_text() {
-  std::string text = "What a file may ask for before it is refused; --limit NAME=VALUE sets one.\n\n";
-  text += fmt::format("  {:<17}{:>12} {:>12}  {}\n", "name", "default", "at most", "of what");
+std::string limits_text(int columns) {
+  std::string text =
+      paragraph("A file that asks for more than a limit is refused. --limit NAME=VALUE sets a limit.", 0, columns) +
+      '\n';
+  const auto add = [&](std::string_view name, std::string_view value, std::string_view largest,
+                       std::string_view doc) {
+    text += hanging(fmt::format("{:<17}{:>12} {:>12}", name, value, largest), doc, 46, columns);
+  };
+  add("name", "default", "largest", "what it counts");
   for (const compiler::LimitRow& row : compiler::kLimits) {
     const double value = compiler::Limits{}.*row.value;
-    text += fmt::format("  {:<17}{:>12} {:>12}  {}: {}\n", row.name,
-                        value > 0 ? fmt::format("{:.15g}", value) : "3/4 of all", fmt::format("{:.15g}", row.largest),
-                        row.unit, row.bounds);
+    add(row.name, value > 0 ? fmt::format("{:.15g}", value) : "3/4 of all", fmt::format("{:.15g}", row.largest),
+        fmt::format("{}: {}", row.unit, row.bounds));
   }
   return text;
 }
@@ -82,24 +94,24 @@ int unknown_verb(const std::string& word, const Streams& streams) {
 
 int run(std::span<const std::string> args, const Streams& streams) {
   if (args.empty()) {
-    streams.err << overview();
+    streams.err << overview(streams.columns);
     return kUsage;
   }
   const std::string& word = args.front();
-  if (word == "--version") {
-    streams.out << "fathom " << kVersion << '\n';
+  if (word == "--version" || word == "-V") {
+    streams.out << version();
     return kDone;
   }
   const std::set<std::string_view> help_words = {"help", "--help", "-h"};
   const bool help = help_words.contains(word);
   const bool of_help = args.size() == 2 && help_words.contains(args[1]);
   if (help && (args.size() == 1 || of_help)) {
-    streams.out << overview();
+    streams.out << overview(streams.columns);
     return kDone;
   }
   const std::string& name = help ? args[1] : word;
   if (help && name == "limits") {
-    streams.out << limits_text();
+    streams.out << limits_text(streams.columns);
     return kDone;
   }
   const Verb* verb = find_verb(name);
@@ -130,7 +142,8 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, not the end
   std::set_terminate(end_at_once);
   std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // how a failed CHECK ends, after its message
-  const Streams streams{std::cin, std::cout, std::cerr, terminal && !dumb, color};
+  const Streams streams{std::cin,          std::cout, std::cerr, terminal && !dumb, color, isatty(STDOUT_FILENO) != 0,
+                        terminal_columns()};
   try {
     return run_and_flush(std::vector<std::string>(argv + 1, argv + argc), streams);
   } catch (const std::bad_alloc&) {

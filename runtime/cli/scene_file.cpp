@@ -165,19 +165,21 @@ bool about_definitions(const compiler::Diagnostics& diagnostics) {
 }  // namespace
 
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required) {
-  arguments.positional("scene",
-                       "The scene: a JSON file, what `fathom compile` wrote, or another format it knows; - reads "
-                       "standard input",
-                       scene.path, required);
-  arguments.option("-D,--define", "NAME=VALUE", "A parameter's value: a number, or a formula such as pi/4",
+  arguments.positional(
+      "scene",
+      "Scene file: JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input",
+      scene.path, required);
+  arguments.option("-D,--define", "NAME=VALUE",
+                   "Set a parameter of the scene to a number or a formula, as r=0.5 or angle=pi/4",
                    append_to(read_definition, scene.definitions));
   add_limit_option(arguments, scene.limits);
-  arguments.option("--error-format", "FORMAT", "How to print what is wrong with the scene: text, short or json",
+  arguments.option("--error-format", "FORMAT", "Format of errors and warnings: text (default), short or json",
                    one_of({"text", "short", "json"}, scene.error_format));
 }
 
 void add_limit_option(Arguments& arguments, compiler::Limits& limits) {
-  arguments.option("--limit", "NAME=VALUE", "How much a file may ask for, as nodes=2000000; see `fathom help limits`",
+  arguments.option("--limit", "NAME=VALUE",
+                   "Change a limit on what files may ask for, as nodes=2000000; `fathom help limits` lists them",
                    [&limits](std::string_view text) { return read_limit(text, limits); });
 }
 
@@ -299,12 +301,13 @@ compiler::CompiledScene proved_or_claimed(const SceneInput& input) {
 Setter pass_name(std::optional<std::string>& target) {
   std::vector<std::string_view> names = {"graph"};
   for (const std::string_view name : compiler::pass_names()) names.push_back(name);
-  return [names, &target](std::string_view text) -> Verdict {
+  const auto set = [names, &target](std::string_view text) -> Verdict {
     int index = 0;
     Verdict verdict = one_of(names, index)(text);
     if (!verdict) target = text;
     return verdict;
   };
+  return {set, {names.begin(), names.end()}};
 }
 
 }  // namespace fathom::cli

@@ -11,8 +11,9 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kSchemaExamples =
-    "fathom schema > scene.schema.json   # a scene names it in its first property:\n"
-    "                                    # \"$schema\": \"./scene.schema.json\"";
+    "fathom schema > scene.schema.json\n"
+    "\n"
+    "A scene names it in its first property: \"$schema\": \"./scene.schema.json\"";
 
 }  // namespace
 

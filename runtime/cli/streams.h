@@ -17,12 +17,17 @@
 
 namespace fathom::cli {
 
+struct OptionTable;
+
 struct Streams {
   std::istream& in;
   std::ostream& out;
   std::ostream& err;
-  bool terminal = false;  // a person watches `err`: progress may redraw its line
-  bool color = false;     // `err` understands colours and NO_COLOR does not forbid them
+  bool terminal = false;           // a person watches `err`: progress may redraw its line
+  bool color = false;              // `err` understands colours and NO_COLOR does not forbid them
+  bool out_terminal = false;       // `out` is a terminal, which shows no pictures
+  int columns = 80;                // of the terminal that help is printed on
+  OptionTable* options = nullptr;  // when set, a verb puts its options there and does nothing else
   // What every verb knows, set by Arguments: -q, and how often -v was given to a verb that has no -v of its own.
   mutable bool quiet = false;
   mutable int verbosity = 0;

@@ -218,7 +218,8 @@ Setter whole(std::optional<int>& target, int lo, int hi) {
 }
 
 Setter one_of(std::vector<std::string_view> words, int& target) {
-  return [words = std::move(words), &target](std::string_view text) -> Verdict {
+  std::vector<std::string> all(words.begin(), words.end());
+  const auto set = [words = std::move(words), &target](std::string_view text) -> Verdict {
     const auto found = std::find(words.begin(), words.end(), text);
     if (found != words.end()) {
       target = static_cast<int>(found - words.begin());
@@ -228,6 +229,7 @@ Setter one_of(std::vector<std::string_view> words, int& target) {
     return complain(fmt::format("`{}` is not one of {}", text, fmt::join(words, ", ")),
                     near.empty() ? "" : fmt::format("did you mean `{}`?", near));
   };
+  return {set, std::move(all)};
 }
 
 Setter any_text(std::optional<std::string>& target) {

@@ -13,6 +13,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fathom::cli {
@@ -22,7 +24,20 @@ struct Complaint {
   std::string help;  // may be empty
 };
 using Verdict = std::optional<Complaint>;
-using Setter = std::function<Verdict(std::string_view text)>;
+
+class Setter {
+ public:
+  template <typename F>
+  requires(!std::is_same_v<std::remove_cvref_t<F>, Setter>) Setter(F set, std::vector<std::string> words = {})
+      : set_(std::move(set)), words_(std::move(words)) {}
+
+  Verdict operator()(std::string_view text) const { return set_(text); }
+  const std::vector<std::string>& words() const { return words_; }  // the only texts it takes; empty: others, too
+
+ private:
+  std::function<Verdict(std::string_view text)> set_;
+  std::vector<std::string> words_;
+};
 
 struct PixelSize {
   int width, height;

@@ -1,4 +1,4 @@
-// The verbs of the program: the one table that `fathom --help`, the dispatch and did-you-mean read.
+// The verbs of the program: the one table that `fathom --help`, the dispatch, did-you-mean, completion and man read.
 // Tested by: tests/runtime/cli_test.cpp
 #pragma once
 
@@ -26,6 +26,8 @@ int run_chart(std::span<const std::string> args, const Streams& streams);
 int run_emit(std::span<const std::string> args, const Streams& streams);
 int run_import(std::span<const std::string> args, const Streams& streams);
 int run_schema(std::span<const std::string> args, const Streams& streams);
+int run_completion(std::span<const std::string> args, const Streams& streams);
+int run_man(std::span<const std::string> args, const Streams& streams);
 
 struct Verb {
   std::string_view name;
@@ -35,19 +37,27 @@ struct Verb {
 
 inline constexpr std::array kVerbs = {
     Verb{"render", "scene.json -o out.png", "renders the scene to image files", run_render},
-    Verb{"check", "scene.json", "prints what is wrong with the scene and how exact it is", run_check},
-    Verb{"dump", "scene.json", "prints what the compiler made of the scene", run_dump},
-    Verb{"compile", "scene.json -o scene.fbc", "writes the compiled scene to a file", run_compile},
-    Verb{"asm", "listing.txt -o scene.fbc", "makes a compiled scene of its listing", run_asm},
+    Verb{"check", "scene.json", "prints errors, warnings and how exact the scene is", run_check},
+    Verb{"dump", "scene.json", "prints the compiled scene", run_dump},
+    Verb{"compile", "scene.json -o scene.fbc", "compiles the scene to a file", run_compile},
+    Verb{"asm", "listing.txt -o scene.fbc", "assembles a listing to a compiled scene", run_asm},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
-    Verb{"tonemap", "in.exr -o out.png", "makes a picture of a render's numbers", run_tonemap},
+    Verb{"tonemap", "in.exr -o out.png", "converts a render's numbers to a picture", run_tonemap},
     Verb{"merge", "a.film b.film -o out.png", "adds up renders of parts of a picture", run_merge},
     Verb{"diff", "out.png reference.png", "compares two pictures", run_diff},
     Verb{"chart", "[scene.json] -o folder", "charts speed against accuracy", run_chart},
     Verb{"emit", "cpp scene.json -o scene.h", "writes the field as C++ or GLSL", run_emit},
     Verb{"import", "model.vm -o scene.json", "writes a model of another format as a scene file", run_import},
     Verb{"schema", "", "prints the JSON Schema of scene files", run_schema},
+    Verb{"completion", "bash", "prints the completion script of a shell", run_completion},
+    Verb{"man", "", "prints the manual page", run_man},
 };
+
+// "fathom render scene.json -o out.png".
+inline std::string usage_of(const Verb& verb) {
+  std::string usage = "fathom " + std::string(verb.name);
+  return verb.arguments.empty() ? usage : usage + ' ' + std::string(verb.arguments);
+}
 
 }  // namespace fathom::cli

@@ -1,0 +1,80 @@
+// Help of every verb: as wide as the terminal, and of the options that there are.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::Result;
+
+// The second word of the lines "  fathom VERB ..." of the overview.
+std::set<std::string> verbs() {
+  std::set<std::string> names;
+  std::istringstream help(Folder().run("--help").out);
+  for (std::string line; std::getline(help, line);) {
+    std::istringstream words(line);
+    std::string program, verb;
+    if (line.starts_with("  fathom ") && words >> program >> verb && verb != "help" && !verb.starts_with('-')) {
+      names.insert(verb);
+    }
+  }
+  return names;
+}
+
+std::string longest_line(const std::string& text) {
+  std::string longest;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() > longest.size()) longest = line;  // help is ASCII
+  }
+  return longest;
+}
+
+}  // namespace
+
+// Lines of 200 characters and more were printed whatever the terminal.
+TEST_CASE("cli: help has no line wider than the terminal") {
+  const Folder folder;
+  std::string script;
+  const std::set<std::string> names = verbs();
+  REQUIRE(names.size() >= 14);
+  for (const char* columns : {"60", "80", "120"}) {
+    std::string all = "COLUMNS=" + std::string(columns) + "; export COLUMNS; $fathom --help; $fathom help limits\n";
+    for (const std::string& name : names) all += "$fathom help " + name + "\n";
+    const Result result = folder.run_script(all);
+    CHECK(result.code == 0);
+    CHECK_THAT(result.out, Contains("--sample-range"));
+    const std::string longest = longest_line(result.out);
+    INFO(columns << ": " << longest);
+    CHECK(longest.size() <= std::stoul(columns));
+    CHECK(longest.size() > std::stoul(columns) - 10);
+  }
+}
+
+TEST_CASE("cli: help is 80 columns wide without a terminal, and COLUMNS that is no number says nothing") {
+  const Folder folder;
+  for (const char* variable : {"unset COLUMNS", "COLUMNS=wide; export COLUMNS", "COLUMNS=0; export COLUMNS"}) {
+    INFO(variable);
+    const Result result = folder.run_script(std::string(variable) + "; $fathom help render");
+    CHECK(longest_line(result.out).size() <= 80);
+    CHECK(longest_line(result.out).size() > 76);
+  }
+}
+
+TEST_CASE("cli: an example that is too wide becomes lines that a shell joins") {
+  const Folder folder;
+  const std::string help = folder.run_script("COLUMNS=40; export COLUMNS; $fathom help render").out;
+  CHECK_THAT(help,
+             Contains("  # and out-albedo.png, ...\n  fathom render scene.json -o \\\n      out.png -a -d -n\n"));
+}
+
+TEST_CASE("cli: -V and --version print version and commit") {
+  const Folder folder;
+  const Result result = folder.run("-V");
+  CHECK(result.code == 0);
+  CHECK(result.out.starts_with("fathom "));
+  CHECK(folder.run("--version").out == result.out);
+}
