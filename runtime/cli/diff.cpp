@@ -31,12 +31,12 @@ namespace {
 
 constexpr const char* kDiffExamples =
     "fathom diff out.png reference.png\n"
-    "fathom diff out.exr reference.exr --metric relmse --tol 0.01   # exit status 1 when it is more\n"
-    "fathom diff out.png reference.png -o where.png                 # FLIP pixel by pixel, as colours\n"
+    "fathom diff out.exr reference.exr --metric relmse --tol 0.01   # status 1?\n"
+    "fathom diff out.png reference.png -o where.png   # FLIP of each pixel\n"
     "\n"
-    "mse, relmse, max, mean: of linear light; mean is the first picture less the second, relmse is over the square "
-    "of\n"
-    "the second. flip: what an eye sees of the difference, 0 to 1, with each picture as a screen shows it.";
+    "mse, relmse, max and mean compare linear light. mean is the first picture minus the second. relmse divides by "
+    "the\n"
+    "square of the second. flip is the difference that an eye sees on a screen, from 0 to 1.";
 
 // Of both pictures' colours and of FLIP's planes; measured.
 constexpr double kBytesPerPixel = 80;
@@ -61,12 +61,18 @@ constexpr Metric kMetrics[] = {
 
 struct DiffRequest {
   std::string first, second;
-  std::optional<std::string> map;
+  std::optional<Output> map;
+  int format = -1;  // of -o -, see put_formats()
   std::optional<double> tolerance;
   compiler::Limits limits;
   int metric = -1;  // an index into kMetrics; -1: not given
   bool json = false;
 };
+
+// The map, or nothing.
+std::span<Output> map_of(DiffRequest& request) {
+  return request.map ? std::span<Output>(&*request.map, 1) : std::span<Output>();
+}
 
 Verdict read_tolerance(std::string_view text, double& tolerance) {
   const std::optional<double> number = to_number(text);
@@ -81,21 +87,23 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
     if (metric.bounded) names.push_back(metric.name);
   }
   Arguments arguments("diff", "Compares a picture with a reference.", kDiffExamples);
-  arguments.positional("picture", "The picture", request.first);
-  arguments.positional("reference", "What it should be", request.second);
-  arguments.option("--tol", "X", "End with 1 when the metric is more than this",
+  arguments.positional("picture", "Picture to judge", request.first);
+  arguments.positional("reference", "Picture that it should equal", request.second);
+  arguments.option("--tol", "X", "Exit with status 1 when the metric is above X",
                    into(read_tolerance, request.tolerance));
-  arguments.option("--metric", "NAME", "What --tol is about: mse (default), relmse, max or flip",
+  arguments.option("--metric", "NAME", "Metric of --tol: mse (default), relmse, max or flip",
                    one_of(names, request.metric));
-  arguments.option("-o,--output", "FILE", "Write a map of FLIP: dark violet is alike, yellow is different",
+  arguments.option("-o,--output", "FILE",
+                   "Also write a map of FLIP: violet is equal, yellow is different; - is standard output",
                    into(read_shown_output, request.map));
+  add_format_option(arguments, true, request.format);
   arguments.flag("--json", "Print the numbers as JSON", request.json);
   add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (request.metric >= 0 && !request.tolerance) {
     return fail(streams, kUsage, "--metric says what --tol is about; there is no --tol");
   }
-  return std::nullopt;
+  return put_formats(map_of(request), request.format, streams);
 }
 
 // Colours of a file: red, green and blue or one channel for all.
@@ -170,9 +178,8 @@ ExitCode judge(const DiffRequest& request, const Measured& measured, const Strea
 int run_diff(std::span<const std::string> args, const Streams& streams) {
   DiffRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (request.map) {
-    if (const auto code = check_collisions(request.first, {request.second, *request.map}, streams)) return *code;
-    if (const auto problem = runtime::check_image_path(*request.map)) return fail(streams, kIo, *problem);
+  for (const std::string& read : {request.first, request.second}) {
+    if (const auto code = check_outputs(read, map_of(request), streams)) return *code;
   }
   const auto first = read_colors(request.first, request.limits, streams),
              second = read_colors(request.second, request.limits, streams);
@@ -194,11 +201,15 @@ int run_diff(std::span<const std::string> args, const Streams& streams) {
   }
   const Measured measured{runtime::compare(picture.view(), reference.view()),
                           runtime::flip(picture.view(), reference.view())};
-  streams.out << (request.json ? json(measured) : table(measured));
+  const bool taken = request.map && request.map->standard();
+  (taken ? streams.err : streams.out) << (request.json ? json(measured) : table(measured));
   if (request.map) {
     const runtime::Picture map = map_picture(measured.flip, picture.width, picture.height);
-    if (const auto problem = runtime::write_image(map, *request.map)) return fail(streams, kIo, *problem);
-    say(streams, fmt::format("wrote {} ({}x{})", *request.map, map.width, map.height));
+    const Fill fill = [&](runtime::AtomicFile& file) {
+      return runtime::write_image(map, request.map->format->format, file);
+    };
+    if (const auto problem = write_to(*request.map, fill, streams)) return fail(streams, kIo, *problem);
+    say(streams, wrote(*request.map, map.width, map.height));
   }
   return judge(request, measured, streams);
 }

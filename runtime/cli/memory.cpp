@@ -12,12 +12,14 @@
 namespace fathom::cli {
 namespace {
 
-// Of the film, of denoising it and of the picture written.
-double bytes_per_pixel(const runtime::Settings& settings, bool denoise) {
+// Of the film, of denoising it and of the picture written. A file of all layers is written row by row, but held whole
+// on its way to standard output.
+double bytes_per_pixel(const runtime::Settings& settings, const RenderRequest& request) {
   const auto film =
       static_cast<double>(runtime::Film::memory_per_pixel(settings.layers, runtime::stages_of(settings)));
   // SIGUSR1 denoises a copy, beside which the render goes on.
-  return film + kPictureBytes + (denoise ? film + kDenoiserBytes : 0);
+  return film + kPictureBytes + (request.denoise ? film + kDenoiserBytes : 0) +
+         (holds_whole(request.outputs) ? film : 0);
 }
 
 }  // namespace
@@ -39,8 +41,7 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
                                      const Streams& streams) {
   const runtime::Settings settings = runtime::resolve(scene, request.options);
   const double allowed = allowed_memory(request.scene.limits);
-  const double pixels = static_cast<double>(settings.crop.pixels()),
-               each = bytes_per_pixel(settings, request.denoise);
+  const double pixels = static_cast<double>(settings.crop.pixels()), each = bytes_per_pixel(settings, request);
   const double needed = pixels * each;
   if (needed <= allowed) return std::nullopt;
   const bool given = request.size || request.resolution || request.crop;
@@ -55,7 +56,7 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
 void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene) {
   const runtime::Settings settings = runtime::resolve(scene, request.options);
   const double left = allowed_memory(request.scene.limits) -
-                      static_cast<double>(settings.crop.pixels()) * bytes_per_pixel(settings, request.denoise);
+                      static_cast<double>(settings.crop.pixels()) * bytes_per_pixel(settings, request);
   const auto most = static_cast<double>(request.options.region_memory);
   request.options.region_memory = static_cast<std::size_t>(std::clamp(left, 0.0, most));
 }

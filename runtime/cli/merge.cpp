@@ -20,10 +20,10 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kMergeExamples =
-    "fathom render scene.json -s 64 --sample-range 0:32 -o a.film    # on one machine\n"
-    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # on another\n"
+    "fathom render scene.json -s 64 --sample-range 0:32 -o a.film    # here\n"
+    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # there\n"
     "fathom merge a.film b.film -o out.exr -o out.png\n"
-    "fathom merge left.film right.film -o whole.film                  # parts by --crop, to be merged again";
+    "fathom merge left.film right.film -o whole.film   # to be merged again";
 
 struct MergeRequest {
   std::vector<std::string> inputs;
@@ -32,28 +32,31 @@ struct MergeRequest {
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int bits = 0;   // an index into 8, 16
   bool denoise = false, quiet = false;
+  int format = -1;  // of -o -, see put_formats()
   compiler::Limits limits;
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MergeRequest& request) {
   Arguments arguments("merge", "Adds up the films of parts of a render.", kMergeExamples);
-  arguments.positionals("film", "The films to read, each of a part that no other has", request.inputs);
-  arguments.option("-o,--output", "FILE", "What to write: film, or a picture as of `fathom render`; may be repeated",
-                   append_to(read_output, request.pictures.outputs));
-  arguments.option("--exposure", "STOPS", "Brightness of pictures: 1 is twice as bright (what the films say)",
+  arguments.positionals("film", "Films to add up, each of another part", request.inputs);
+  arguments.option(
+      "-o,--output", "FILE",
+      "File to write: .film, or a picture as `fathom render` writes it; - is standard output; may be repeated",
+      append_to(read_output, request.pictures.outputs));
+  add_format_option(arguments, false, request.format);
+  arguments.option("--exposure", "STOPS", "Brightness of the picture in stops: 1 doubles it (that of the films)",
                    into(read_exposure, request.exposure));
-  arguments.option("--tone", "CURVE",
-                   "How light becomes a display's: none, filmic, aces, agx or neutral (what the films say)",
+  arguments.option("--tone", "CURVE", "Tone curve: none, filmic, aces, agx or neutral (that of the films)",
                    one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
-  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
-  arguments.flag("--denoise", "Take the noise out of the pictures; FILE-noisy beside each is without",
-                 request.denoise);
-  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
+  arguments.option("--bits", "N", "Bits per channel in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  arguments.flag("--denoise", "Denoise the pictures; the noisy ones go to FILE-noisy", request.denoise);
+  arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
   add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   request.pictures.deep = request.bits != 0;
   request.pictures.noisy = request.denoise;
   if (request.pictures.outputs.empty()) return fail(streams, kUsage, "no file to write", {"name it with -o FILE"});
+  if (const auto code = put_formats(request.pictures.outputs, request.format, streams)) return code;
   if (const auto code = check_bits(request.pictures, streams)) return code;
   std::vector<std::string> files = files_of(request.pictures);
   for (const std::string& input : request.inputs) {
@@ -147,7 +150,8 @@ runtime::FilmFile frame_of(const std::vector<Part>& parts) {
 std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vector<Part>& parts,
                                      const runtime::FilmShape& sum, const Streams& streams) {
   const auto film = static_cast<double>(runtime::Film::memory_per_pixel(sum.layers, sum.stages));
-  const double each = film + kPictureBytes + (request.denoise ? kDenoiserBytes : 0);
+  const double each = film + kPictureBytes + (request.denoise ? kDenoiserBytes : 0) +
+                      (holds_whole(request.pictures.outputs) ? film : 0);
   double needed = each * static_cast<double>(sum.area.pixels()), part = 0;
   for (const Part& other : parts) part = std::max(part, film * static_cast<double>(other.file.shape.area.pixels()));
   if (parts.size() > 1) needed += part;
@@ -227,7 +231,7 @@ int run_merge(std::span<const std::string> args, const Streams& streams) {
   put_tone(request, sum.header.attributes);
   if (request.denoise) runtime::denoise(sum.render.film, 1);
   std::vector<std::string> lines;
-  const auto problem = write_pictures(request.pictures, sum.header, sum.render, std::nullopt, lines);
+  const auto problem = write_pictures(request.pictures, sum.header, sum.render, std::nullopt, lines, streams);
   for (const std::string& line : lines) {
     if (!request.quiet) streams.err << line << '\n';
   }

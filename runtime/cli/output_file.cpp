@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <system_error>
 
 #include "compiler/compiled_scene.h"
@@ -25,32 +27,86 @@ std::filesystem::path canonical_name(const std::string& path) {
 
 }  // namespace
 
-Verdict read_output(std::string_view text, std::string& path) {
-  path = text;
-  if (runtime::image_format_of(path) || is_film(path)) return std::nullopt;
+Verdict read_output(std::string_view text, Output& output) {
+  output.path = text;
+  output.format = output.standard() ? &runtime::kImageFormats.front() : runtime::image_format_of(output.path);
+  if (output.format != nullptr || text.ends_with(kFilmEnding)) return std::nullopt;
   return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
                    fmt::format("valid endings: {}, {}", runtime::image_endings(), kFilmEnding)};
 }
 
-Verdict read_shown_output(std::string_view text, std::string& path) {
-  path = text;
-  const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
-  if (format && format->shown) return std::nullopt;
-  const char* problem = format ? "`{}`: this format holds numbers, not a picture to be shown"
-                               : "`{}` does not end in a picture format's name";
+Verdict read_shown_output(std::string_view text, Output& output) {
+  output.path = text;
+  output.format = output.standard() ? &runtime::kImageFormats.front() : runtime::image_format_of(output.path);
+  if (output.format != nullptr && output.format->shown) return std::nullopt;
+  const char* problem = output.format ? "`{}`: this format holds numbers, not a picture to be shown"
+                                      : "`{}` does not end in a picture format's name";
   return Complaint{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
 }
 
-bool is_film(const std::string& path) { return path.ends_with(kFilmEnding); }
-
-bool holds_layers(const std::string& output) {
-  const runtime::ImageFormatInfo* format = runtime::image_format_of(output);
-  return is_film(output) || (format != nullptr && format->format == runtime::ImageFormat::Exr);
+void add_format_option(Arguments& arguments, bool shown_only, int& format) {
+  std::vector<std::string_view> names;  // those that are shown come first
+  for (const runtime::ImageFormatInfo& known : runtime::kImageFormats) {
+    if (known.shown || !shown_only) names.push_back(known.ending);
+  }
+  if (!shown_only) names.push_back(kFilmEnding.substr(1));
+  arguments.option("--format", "FORMAT", fmt::format("Format of `-o -`: {} (png)", fmt::join(names, ", ")),
+                   one_of(names, format));
 }
 
-std::string default_output(const std::string& scene) {
+std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams) {
+  const auto standard = std::find_if(outputs.begin(), outputs.end(), [](const Output& o) { return o.standard(); });
+  if (standard == outputs.end()) {
+    if (format < 0) return std::nullopt;
+    return fail(streams, kUsage, "--format is for `-o -`; a file's name says its format by its ending");
+  }
+  if (std::any_of(standard + 1, outputs.end(), [](const Output& o) { return o.standard(); })) {
+    return fail(streams, kUsage, "`-o -` is given twice: standard output takes one picture");
+  }
+  if (streams.out_terminal) {
+    return fail(streams, kUsage, "`-o -`: standard output is a terminal, which shows no pictures",
+                {"add `> out.png`, or `| PROGRAM`"});
+  }
+  if (format < 0) return std::nullopt;
+  const auto index = static_cast<std::size_t>(format);
+  standard->format = index < runtime::kImageFormats.size() ? &runtime::kImageFormats[index] : nullptr;
+  return std::nullopt;
+}
+
+std::optional<std::string> write_to(const Output& output, const Fill& fill, const Streams& streams) {
+  if (!output.standard()) {
+    runtime::AtomicFile file(output.path);
+    return fill(file);
+  }
+  std::vector<std::uint8_t> bytes;
+  runtime::AtomicFile file("standard output", bytes);
+  if (auto problem = fill(file)) return problem;
+  streams.out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())).flush();
+  if (streams.out) return std::nullopt;
+  return "cannot write to standard output";
+}
+
+std::string wrote(const Output& output, int width, int height) {
+  if (!output.standard()) return fmt::format("wrote {} ({}x{})", output.path, width, height);
+  return fmt::format("wrote {} to standard output ({}x{})", output.film() ? "film" : output.format->ending, width,
+                     height);
+}
+
+bool holds_whole(std::span<const Output> outputs) {
+  return std::any_of(outputs.begin(), outputs.end(), [](const Output& o) { return o.standard() && o.layers(); });
+}
+
+std::vector<std::string> paths_of(std::span<const Output> outputs) {
+  std::vector<std::string> paths;
+  for (const Output& output : outputs) {
+    if (!output.standard()) paths.push_back(output.path);
+  }
+  return paths;
+}
+
+Output default_output(const std::string& scene) {
   const std::string stem = scene == "-" ? "" : std::filesystem::path(scene).stem().string();
-  return (stem.empty() ? "out" : stem) + ".png";
+  return {(stem.empty() ? "out" : stem) + ".png", &runtime::kImageFormats.front()};
 }
 
 std::string beside(const std::string& path, const std::string& suffix) {
@@ -99,6 +155,16 @@ std::optional<ExitCode> check_collisions(const std::string& scene, const std::ve
                   {"give each output a name of its own"});
     }
     taken.push_back(std::move(path));
+  }
+  return std::nullopt;
+}
+
+std::optional<ExitCode> check_outputs(const std::string& read, std::span<const Output> outputs,
+                                      const Streams& streams) {
+  const std::vector<std::string> paths = paths_of(outputs);
+  if (const auto code = check_collisions(read, paths, streams)) return code;
+  for (const std::string& path : paths) {
+    if (const auto problem = runtime::check_file_path(path)) return fail(streams, kIo, *problem);
   }
   return std::nullopt;
 }

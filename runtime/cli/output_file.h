@@ -2,30 +2,53 @@
 // Tested by: tests/runtime/cli_test.cpp
 #pragma once
 
-#include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compiler/limits.h"
+#include "runtime/cli/arguments.h"
 #include "runtime/cli/streams.h"
 #include "runtime/cli/values.h"
+#include "runtime/image_io.h"
 
 namespace fathom::cli {
 
-// A file name with the ending of a film or of a picture format; of one that holds what a display shows.
-Verdict read_output(std::string_view text, std::string& path);
-Verdict read_shown_output(std::string_view text, std::string& path);
+// Where a picture goes and in which format.
+struct Output {
+  std::string path;                                  // "-": standard output
+  const runtime::ImageFormatInfo* format = nullptr;  // nullptr: a film (runtime/film_file.h)
 
-// Whether the name is that of a film file (runtime/film_file.h).
-bool is_film(const std::string& path);
+  bool standard() const { return path == "-"; }
+  bool film() const { return format == nullptr; }
+  // Whether all layers are in one file, so that none is written beside it.
+  bool layers() const { return film() || format->format == runtime::ImageFormat::Exr; }
+};
 
-// Whether the output holds all layers in one file, so that none is written beside it.
-bool holds_layers(const std::string& output);
+// A file name with the ending of a film or of a picture format, or "-", which is a PNG until put_formats() says
+// otherwise. read_shown_output() takes only formats that hold what a display shows.
+Verdict read_output(std::string_view text, Output& output);
+Verdict read_shown_output(std::string_view text, Output& output);
+
+// The option --format, which says the format of -o -. `format` is an index into the names; -1: not given.
+void add_format_option(Arguments& arguments, bool shown_only, int& format);
+
+// Puts the format that --format said into the output that is standard output. An ExitCode, after a message, when
+// there is none or more than one, or when standard output is a terminal.
+std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams);
+
+// Has `fill` write the output and commit it. The reason when that cannot be done.
+using Fill = std::function<std::optional<std::string>(runtime::AtomicFile& file)>;
+std::optional<std::string> write_to(const Output& output, const Fill& fill, const Streams& streams);
+
+// "wrote out.png (640x360)", "wrote png to standard output (640x360)".
+std::string wrote(const Output& output, int width, int height);
 
 // "scenes/ball.json" -> "ball.png", in the current folder; "out.png" for standard input.
-std::string default_output(const std::string& scene);
+Output default_output(const std::string& scene);
 
 // "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
 std::string beside(const std::string& path, const std::string& suffix);
@@ -40,6 +63,17 @@ std::optional<std::string> check_text_path(const std::string& path);
 // An ExitCode, after a message, when a picture of that size would be too large.
 std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
                                            const Streams& streams);
+
+// An ExitCode, after a message, when an output that is a file cannot be written, as far as can be known before, or
+// would take the place of the file `read` or of another output.
+std::optional<ExitCode> check_outputs(const std::string& read, std::span<const Output> outputs,
+                                      const Streams& streams);
+
+// Whether a file of all layers goes to standard output.
+bool holds_whole(std::span<const Output> outputs);
+
+// The outputs that are files, by name.
+std::vector<std::string> paths_of(std::span<const Output> outputs);
 
 // An ExitCode, after a message, when one of `outputs` is the scene's file or another output.
 std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,

@@ -2,25 +2,24 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/film_channels.h"
 #include "runtime/image_exr.h"
-#include "runtime/image_io.h"
 
 namespace fathom::cli {
 namespace {
 
-// The layers that an output is of, and the file of each.
+// The layers that an output is of, and where each goes. Standard output has nothing beside it.
 struct LayerFile {
   runtime::Layer layer;
-  std::string path;
+  Output output;
 };
-std::vector<LayerFile> layer_files(const PictureFiles& pictures, const std::string& output) {
+std::vector<LayerFile> layer_files(const PictureFiles& pictures, const Output& output) {
   std::vector<LayerFile> files = {{runtime::Layer::Beauty, output}};
-  if (holds_layers(output)) return files;
+  if (output.layers() || output.standard()) return files;
   const auto add = [&](bool wanted, runtime::Layer layer) {
-    if (wanted) files.push_back({layer, beside(output, std::string(runtime::info(layer).name))});
+    if (!wanted) return;
+    files.push_back({layer, {beside(output.path, std::string(runtime::info(layer).name)), output.format}});
   };
   add(pictures.albedo, runtime::Layer::Albedo);
   add(pictures.depth, runtime::Layer::Depth);
@@ -29,32 +28,38 @@ std::vector<LayerFile> layer_files(const PictureFiles& pictures, const std::stri
   return files;
 }
 
-std::string written(const std::string& path, const runtime::Film& film) {
-  return fmt::format("wrote {} ({}x{})", path, film.width(), film.height());
-}
-
-std::optional<std::string> write_output(const PictureFiles& pictures, const std::string& path,
+std::optional<std::string> write_output(const PictureFiles& pictures, const Output& output,
                                         const runtime::FilmHeader& header, const runtime::PartialRender& render,
-                                        std::optional<double> seconds, std::vector<std::string>& lines) {
+                                        std::optional<double> seconds, std::vector<std::string>& lines,
+                                        const Streams& streams) {
   const runtime::Film& film = render.film;
-  if (is_film(path)) {
-    if (auto problem = runtime::write_film(header, render, path)) return problem;
-    lines.push_back(written(path, film) + ": sums, to be merged");
+  const int width = film.width(), height = film.height();
+  if (output.film()) {
+    const Fill fill = [&](runtime::AtomicFile& file) {
+      runtime::write_film(header, render, file);
+      return file.commit();
+    };
+    if (auto problem = write_to(output, fill, streams)) return problem;
+    lines.push_back(wrote(output, width, height) + ": sums, to be merged");
     return std::nullopt;
   }
-  if (holds_layers(path)) {
+  if (output.layers()) {
     runtime::Attributes attributes = header.attributes;
     describe_samples(render, attributes);
     if (seconds) attributes["renderTimeSeconds"] = static_cast<float>(*seconds);
     const auto rows = runtime::rows_of(film, header.width, header.height, header.origin, std::move(attributes));
-    if (auto problem = runtime::write_exr(rows, path)) return problem;
-    lines.push_back(written(path, film) + fmt::format(": {} channels", rows.channels.size()));
+    const Fill fill = [&](runtime::AtomicFile& file) { return runtime::write_exr(rows, file); };
+    if (auto problem = write_to(output, fill, streams)) return problem;
+    lines.push_back(wrote(output, width, height) + fmt::format(": {} channels", rows.channels.size()));
     return std::nullopt;
   }
   const runtime::PictureOptions options{tone_in(header.attributes), pictures.deep ? 16 : 8};
-  for (const LayerFile& file : layer_files(pictures, path)) {
-    if (auto problem = runtime::write_layer(runtime::layer_of(film, file.layer), options, file.path)) return problem;
-    lines.push_back(written(file.path, film));
+  for (const LayerFile& each : layer_files(pictures, output)) {
+    const Fill fill = [&](runtime::AtomicFile& file) {
+      return runtime::write_layer(runtime::layer_of(film, each.layer), options, output.format->format, file);
+    };
+    if (auto problem = write_to(each.output, fill, streams)) return problem;
+    lines.push_back(wrote(each.output, width, height));
   }
   return std::nullopt;
 }
@@ -63,8 +68,9 @@ std::optional<std::string> write_output(const PictureFiles& pictures, const std:
 
 std::vector<std::string> files_of(const PictureFiles& pictures) {
   std::vector<std::string> files;
-  for (const std::string& path : pictures.outputs) {
-    for (const LayerFile& file : layer_files(pictures, path)) files.push_back(file.path);
+  for (const Output& output : pictures.outputs) {
+    if (output.standard()) continue;
+    for (const LayerFile& file : layer_files(pictures, output)) files.push_back(file.output.path);
   }
   return files;
 }
@@ -79,27 +85,28 @@ std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams&
 // Of the formats that are shown only some have 16 bits.
 std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& streams) {
   if (!pictures.deep) return std::nullopt;
-  for (const std::string& path : pictures.outputs) {
-    const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
-    if (!format || !format->shown || format->deep) continue;
-    return fail(streams, kUsage, fmt::format("--bits 16: `{}` can have 8 bits a sample only", path),
-                {"16 bits go into .png; .exr, .pfm and .hdr hold the numbers themselves"});
+  for (const Output& output : pictures.outputs) {
+    if (output.film() || !output.format->shown || output.format->deep) continue;
+    return fail(streams, kUsage,
+                fmt::format("--bits 16: `{}` can have only 8 bits per channel",
+                            output.standard() ? output.format->ending : output.path),
+                {"16 bits go into png; exr, pfm and hdr hold the numbers themselves"});
   }
   return std::nullopt;
 }
 
 std::string lost_text(std::string_view what) {
   return fmt::format(
-      "{} lost: what a pixel's samples add up to, light, depths or places, ends at {:.2g}; where it is light, scale "
-      "the lights down, else the scene",
+      "{} lost: a pixel's sums of light, depths and places end at {:.2g}; scale the lights down where it is light, "
+      "else the scene",
       what, runtime::kFullPixel);
 }
 
 std::optional<std::string> write_pictures(const PictureFiles& pictures, const runtime::FilmHeader& header,
                                           const runtime::PartialRender& render, std::optional<double> seconds,
-                                          std::vector<std::string>& lines) {
-  for (const std::string& path : pictures.outputs) {
-    if (auto problem = write_output(pictures, path, header, render, seconds, lines)) return problem;
+                                          std::vector<std::string>& lines, const Streams& streams) {
+  for (const Output& output : pictures.outputs) {
+    if (auto problem = write_output(pictures, output, header, render, seconds, lines, streams)) return problem;
   }
   return std::nullopt;
 }

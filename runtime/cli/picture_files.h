@@ -7,18 +7,19 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/cli/output_file.h"
 #include "runtime/cli/streams.h"
 #include "runtime/film_file.h"
 
 namespace fathom::cli {
 
 struct PictureFiles {
-  std::vector<std::string> outputs;                                   // as read_output() takes them
+  std::vector<Output> outputs;
   bool albedo = false, depth = false, normal = false, noisy = false;  // beside formats that hold one layer
   bool deep = false;  // 16 bits a sample, where the format may have them
 };
 
-// Every file that would be written.
+// Every file that would be written; standard output is none.
 std::vector<std::string> files_of(const PictureFiles& pictures);
 
 // An ExitCode, after a message, when one of them cannot be written, as far as can be known before; or when 16 bits
@@ -33,6 +34,6 @@ std::string lost_text(std::string_view what);
 // not. `seconds` is the time the render took, for files that say so.
 std::optional<std::string> write_pictures(const PictureFiles& pictures, const runtime::FilmHeader& header,
                                           const runtime::PartialRender& render, std::optional<double> seconds,
-                                          std::vector<std::string>& lines);
+                                          std::vector<std::string>& lines, const Streams& streams);
 
 }  // namespace fathom::cli

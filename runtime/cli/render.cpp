@@ -39,9 +39,10 @@ PictureFiles pictures_of(const RenderRequest& request) {
 std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
   if (request.watch) return std::nullopt;
   const LongRender& asked = request.long_render;
-  return std::optional<Checkpoint>(
-      std::in_place, asked.checkpoint.value_or(request.outputs.front() + kCheckpointEnding),
-      asked.checkpoint.has_value(), asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
+  const auto path = asked.checkpoint ? asked.checkpoint : default_checkpoint(request);
+  if (!path) return std::nullopt;
+  return std::optional<Checkpoint>(std::in_place, *path, asked.checkpoint.has_value(),
+                                   asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
 }
 
 // Every file the run will write, but for streams.
@@ -171,8 +172,11 @@ class Job {
     std::optional<std::string> problem;
     std::vector<std::string> lines;
     runtime::PartialRender copy;
+    PictureFiles pictures = pictures_of(request_);
+    std::erase_if(pictures.outputs, [](const Output& output) { return output.standard(); });
+    if (pictures.outputs.empty()) return warn(streams_, "standard output gets its picture when the render ends");
     const auto write = [&](const runtime::PartialRender& render) {
-      problem = write_pictures(pictures_of(request_), header_, render, std::nullopt, lines);
+      problem = write_pictures(pictures, header_, render, std::nullopt, lines, streams_);
     };
     look([&](const runtime::PartialRender& render) {
       if (render.film.samples() == 0) {
@@ -262,7 +266,7 @@ class Job {
     std::optional<double> seconds;
     std::optional<std::string> problem;
     if (request_.options.profile) seconds = result.stats.seconds;
-    if (pictures) problem = write_pictures(pictures_of(request_), header_, result, seconds, lines);
+    if (pictures) problem = write_pictures(pictures_of(request_), header_, result, seconds, lines, streams_);
     if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
     result.stats.peak_memory = runtime::peak_memory();
     if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
@@ -316,7 +320,7 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
   if (request.default_output && !request.quiet) {
-    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front()));
+    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front().path));
   }
   if (request.options.clamp && !request.quiet) {
     note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "runtime/adaptive.h"
+#include "runtime/cli/checkpoint.h"
 #include "runtime/cli/cost_map.h"
-#include "runtime/cli/output_file.h"
+#include "runtime/cli/standard_output.h"
 #include "runtime/image_io.h"
 
 namespace fathom::cli {
@@ -16,51 +17,51 @@ namespace {
 constexpr const char* kRenderExamples =
     "fathom render scene.json -o out.png\n"
     "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
-    "fathom render scene.json -o out.png -o out.jpg -a -d -n   # and out-albedo.png, ...\n"
-    "fathom render scene.json -o out.exr -o out.png --tone agx --crop 25%,25%,75%,75%\n"
-    "fathom render scene.json -o out.png -s 64 --denoise         # and out-noisy.png\n"
-    "fathom render scene.json -o out.png --preview --watch       # draws again whenever the file is saved\n"
-    "fathom render scene.json -o out.png --profile --cost-map cost.png\n"
-    "fathom render scene.json -o out.png -s 4096 --resume        # goes on where it was interrupted\n"
-    "fathom render scene.json -o b.film -s 64 --sample-range 32:64   # a part for `fathom merge`";
+    "fathom render scene.json -o out.png -a -d -n          # and out-albedo.png, ...\n"
+    "fathom render scene.json -o out.exr -o out.png --tone agx\n"
+    "fathom render scene.json -o - --size 64x64 | display  # PNG to a program\n"
+    "fathom render scene.json -o out.png -s 64 --denoise   # and out-noisy.png\n"
+    "fathom render scene.json --preview --watch            # again when it is saved\n"
+    "fathom render scene.json --profile --cost-map cost.png\n"
+    "fathom render scene.json -s 4096 --resume             # continues a render\n"
+    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # a part";
 
-// Of --preview.
-constexpr int kPreviewShrink = 4;  // each side
+// --preview divides each side by this.
+constexpr int kPreviewShrink = 4;
 constexpr int kPreviewSpp = 4;
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
-  arguments.option(
-      "-o,--output", "FILE",
-      "Picture to write: png, jpg, jpeg or bmp; numbers: exr (all layers), pfm or hdr; sums to be merged: film; "
-      "may be repeated "
-      "(default: the scene's name with .png)",
-      append_to(read_output, request.outputs));
+  arguments.option("-o,--output", "FILE",
+                   "Picture to write: .png, .jpg, .jpeg, .bmp; numbers: .exr (all layers), .pfm, .hdr; sums for "
+                   "`fathom merge`: .film; - is standard output; may be repeated (the scene's name with .png)",
+                   append_to(read_output, request.outputs));
+  add_format_option(arguments, false, request.format);
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));
-  arguments.option("--aspect", "W:H", "Width to height, as 16:9 or 4x3; the width stays",
+  arguments.option("--aspect", "W:H", "Aspect ratio, width to height, as 16:9 or 4x3; the width stays",
                    into(read_aspect, request.aspect));
   arguments.option("--size", "WxH", "Width and height in pixels, as 1920x1080", into(read_size, request.size));
   arguments.option("--crop", "X0,Y0,X1,Y1",
-                   "The part of the picture to render, in pixels or percent, X1 and Y1 not in it: 25%,25%,75%,75%",
+                   "Render only this rectangle, in pixels or percent, X1 and Y1 exclusive: 25%,25%,75%,75%",
                    into(read_crop, request.crop));
-  arguments.option("--exposure", "STOPS", "Brightness of pictures: 1 is twice as bright (the scene's)",
+  arguments.option("--exposure", "STOPS", "Brightness of the picture in stops: 1 doubles it (the scene's)",
                    into(read_exposure, request.exposure));
-  arguments.option("--tone", "CURVE",
-                   "How light becomes a display's: none, filmic, aces, agx or neutral (the scene's)",
+  arguments.option("--tone", "CURVE", "Tone curve: none, filmic, aces, agx or neutral (the scene's)",
                    one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
-  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
-  arguments.flag("-a,--albedo", "Write FILE-albedo beside each picture: the surfaces' own colours", request.albedo);
-  arguments.flag("-d,--depth", "Write FILE-depth beside each picture: near is white, far is dark", request.depth);
-  arguments.flag("-n,--normal", "Write FILE-normal beside each picture: the surfaces' directions", request.normal);
+  arguments.option("--bits", "N", "Bits per channel in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  arguments.flag("-a,--albedo", "Also write FILE-albedo: the colours of the surfaces without light", request.albedo);
+  arguments.flag("-d,--depth", "Also write FILE-depth: the distances from the camera; near is white, far is dark",
+                 request.depth);
+  arguments.flag("-n,--normal", "Also write FILE-normal: the directions of the surfaces", request.normal);
   arguments.option("--cost-map", "FILE",
-                   "Write FILE-evaluations and FILE-instructions: what each pixel cost, in colours (png, jpg, jpeg, "
-                   "bmp) or numbers (pfm)",
+                   "Also write FILE-evaluations and FILE-instructions: the cost of each pixel, as colours (.png, "
+                   ".jpg, .jpeg, .bmp) or numbers (.pfm)",
                    into(read_map_name, request.cost_map));
-  arguments.option("--stats-json", "FILE", "Write the closing numbers as JSON; - is standard output",
+  arguments.option("--stats-json", "FILE", "Write the counts and times of the render as JSON; - is standard output",
                    any_text(request.stats_json));
   arguments.flag("--profile",
-                 "Add to the closing numbers where the time went: march, resolve, normals, shading, film",
+                 "Measure the time of each stage (march, resolve, normals, shading, film); print it with all counts",
                  request.options.profile);
 }
 
@@ -77,50 +78,46 @@ Verdict read_filter_width(std::string_view text, double& width) {
 
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   runtime::RenderOptions& options = request.options;
-  arguments.group("Renderer (what is not given comes from the scene file)");
-  arguments.option("-s,--spp", "N", "Samples per pixel (16 when the scene does not say)",
-                   whole(options.spp, 1, compiler::kMaxSpp));
-  arguments.option("-b,--bounces", "N", "Bounces before a path may end by chance (10)",
+  arguments.group("Renderer (the scene's values come before the defaults shown)");
+  arguments.option("-s,--spp", "N", "Samples per pixel (16)", whole(options.spp, 1, compiler::kMaxSpp));
+  arguments.option("-b,--bounces", "N", "Bounces before Russian roulette may end a path (10)",
                    whole(options.bounces, 0, compiler::kMaxBounces));
-  arguments.option("-f,--fov", "ANGLE", "Horizontal field of view: 0.785 (radians), 0.785rad or 45deg (45deg)",
+  arguments.option("-f,--fov", "ANGLE", "Horizontal field of view, as 45deg, 0.785rad or 0.785 (45deg)",
                    into(read_angle, request.fov));
-  arguments.option("-t,--tile", "SIZE", "Side of a tile in pixels, at most (16); never changes the picture",
+  arguments.option("-t,--tile", "SIZE", "Max side of a tile in pixels (16); never changes the picture",
                    whole(options.tile, 1, compiler::kMaxTile));
   arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
   arguments.option("--sampler", "KIND",
-                   "Where the random numbers come from: blue (default; errors of neighbours cancel), sobol or "
-                   "independent",
+                   "Sampler: blue (default), whose errors cancel between neighbouring pixels, sobol or independent",
                    one_of({compiler::kSamplerNames.begin(), compiler::kSamplerNames.end()}, request.sampler));
-  arguments.option(
-      "--filter", "NAME",
-      "How a pixel weighs the light around it: box (default), tent, gaussian, blackman-harris or mitchell",
-      one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
-  arguments.option("--filter-width", "PIXELS", "Of the filter's support (box 1, tent 2, mitchell 4, the others 3)",
+  arguments.option("--filter", "NAME", "Pixel filter: box (default), tent, gaussian, blackman-harris or mitchell",
+                   one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
+  arguments.option("--filter-width", "PIXELS", "Width of the pixel filter (box 1, tent 2, mitchell 4, others 3)",
                    into(read_filter_width, options.filter_width));
-  arguments.flag("--adaptive",
-                 "Noisy pixels get more of the samples, --spp on average: 8 or more, and the whole picture",
+  arguments.flag("--adaptive", "Give noisy pixels more samples; --spp, 8 or more, is the average; not with --crop",
                  request.adaptive);
-  arguments.flag("--no-adaptive", "All pixels get as many, whatever the scene says", request.no_adaptive);
-  arguments.option(
-      "--clamp", "RADIANCE",
-      "The most that light by two bounces or more may bring: fewer bright specks, but biased, for what is "
-      "above is lost (off)",
-      into(read_positive, options.clamp));
-  arguments.option("--far", "DISTANCE", "How far from the camera rays are followed, scene units",
+  arguments.flag("--no-adaptive", "Give all pixels the same number of samples, whatever the scene says",
+                 request.no_adaptive);
+  arguments.option("--clamp", "RADIANCE",
+                   "Max radiance of light that comes by two bounces or more: removes bright specks, and with them "
+                   "some light (no max)",
+                   into(read_positive, options.clamp));
+  arguments.option("--far", "DISTANCE", "End rays at this distance from the camera, in scene units",
                    into(read_positive, options.far));
 }
 
 // How the work is done; of the same group.
 void add_running_options(Arguments& arguments, RenderRequest& request, bool& no_denoise) {
-  arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
+  arguments.option("--threads", "N", "Number of threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
   arguments.flag("--denoise",
-                 "Take the noise out of the picture; FILE-noisy beside it, or in exr noisy.*, is without",
+                 "Denoise the picture; the noisy one goes to FILE-noisy, in .exr to the channels noisy.*",
                  request.denoise);
-  arguments.flag("--no-denoise", "Leave it in (the default, but for --preview)", no_denoise);
-  arguments.flag("--preview", "Quickly: a quarter of the width and height, 4 samples unless --spp says, denoised",
+  arguments.flag("--no-denoise", "Do not denoise; the default without --preview", no_denoise);
+  arguments.flag("--preview",
+                 "Render a quarter of the width and height, denoised, with 4 samples per pixel unless --spp is given",
                  request.preview);
-  arguments.flag("--watch", "Render again whenever the scene's file changes, until Ctrl-C (130) ends it",
+  arguments.flag("--watch", "Render again whenever the scene's file changes; Ctrl-C ends (status 130)",
                  request.watch);
 }
 
@@ -139,30 +136,32 @@ Verdict read_relaxation(std::string_view text, double& factor) {
 }
 
 void add_comparing_options(Arguments& arguments, RenderRequest& request) {
-  arguments.group("How light is found (to compare; the default is right for pictures)");
+  arguments.group("Light (for comparisons; the default is right for pictures)");
   arguments.option(
       "--light-sampling", "WAY",
-      "both (default): paths look for lights from where they are, and hit them; lights or hits: one alone",
+      "How paths find light: both (default), lights (by shadow rays alone) or hits (by meeting lamps alone)",
       one_of({runtime::kLightSamplingNames.begin(), runtime::kLightSamplingNames.end()}, request.light_sampling));
 }
 
 void add_marching_options(Arguments& arguments, RenderRequest& request) {
-  arguments.group("How rays are followed (to compare; the default is right for pictures)");
+  arguments.group("Ray marching (for comparisons; the defaults are right for pictures)");
   arguments.option("--march", "METHOD",
-                   "tiered (default), sphere, relaxed, automatic or certified: see docs/ACCURACY.md",
+                   "Method: tiered (default), sphere, relaxed, automatic or certified; see docs/ACCURACY.md",
                    one_of(method_names(), request.method));
-  arguments.flag("--reference", "Search every ray in double; the same as --march certified", request.reference);
-  arguments.option("--epsilon", "DISTANCE", "What counts as a hit, scene units (1e-4); sphere, relaxed, automatic",
+  arguments.flag("--reference", "Search every ray in double precision; the same as --march certified",
+                 request.reference);
+  arguments.option("--epsilon", "DISTANCE",
+                   "Distance that counts as a hit, in scene units (1e-4); for sphere, relaxed and automatic",
                    into(read_positive, request.epsilon));
-  arguments.flag("--no-regions", "Evaluate the whole program everywhere, however large the scene",
+  arguments.flag("--no-regions", "Build no regions: evaluate the whole program everywhere, however large the scene",
                  request.no_regions);
-  arguments.option("--region-memory", "MB", "The most memory regions may take (64)",
-                   whole(request.region_memory, 1, 1 << 20));
-  arguments.option("--max-steps", "N", "Evaluations before a ray is given up (512); sphere, relaxed, automatic",
+  arguments.option("--region-memory", "MB", "Max memory of regions (64)", whole(request.region_memory, 1, 1 << 20));
+  arguments.option("--max-steps", "N", "Max evaluations per ray (512); for sphere, relaxed and automatic",
                    whole(request.steps, 1, 1 << 20));
-  arguments.option("--relaxation", "FACTOR", "Steps of so many safe radii, in [1, 2) (1.6); relaxed",
+  arguments.option("--relaxation", "FACTOR", "Step length in safe radii, from 1 to below 2 (1.6); for relaxed",
                    into(read_relaxation, request.relaxation));
-  arguments.option("--precision", "NUMBER", "f32 (default) or f64; not for certified, which is in double",
+  arguments.option("--precision", "NUMBER",
+                   "Precision: f32 (default) or f64; not for certified, which computes in double",
                    one_of({"f32", "f64"}, request.precision));
 }
 
@@ -275,7 +274,7 @@ void settle(RenderRequest& request, bool no_denoise) {
   }
   options.layers = {.first_hit = request.albedo || request.depth || request.normal,
                     .cost = request.cost_map.has_value()};
-  if (std::any_of(request.outputs.begin(), request.outputs.end(), holds_layers)) {
+  if (std::any_of(request.outputs.begin(), request.outputs.end(), [](const Output& o) { return o.layers(); })) {
     options.layers = runtime::kAllLayers;
   }
   if (request.denoise) options.layers.first_hit = options.layers.halves = true;
@@ -327,12 +326,20 @@ std::optional<ExitCode> override_size(const RenderRequest& request, compiler::Fi
 
 }  // namespace
 
+std::optional<std::string> default_checkpoint(const RenderRequest& request) {
+  const std::vector<std::string> files = paths_of(request.outputs);
+  if (files.empty()) return std::nullopt;
+  return files.front() + kCheckpointEnding;
+}
+
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams) {
   RenderRequest request;
   Arguments arguments("render", "Renders a scene to image files.", kRenderExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.counter("-v,--verbose", "Say more; up to six times: -vvv", request.verbosity);
-  arguments.flag("-q,--quiet", "Print errors, warnings and notes only", request.quiet);
+  arguments.counter("-v,--verbose",
+                    "Print all counts of the render; more about the scene with each further v, up to -vvvvvv",
+                    request.verbosity);
+  arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
   add_output_options(arguments, request);
   bool no_denoise = false;
   add_renderer_options(arguments, request);
@@ -346,6 +353,8 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;
   }
+  if (const auto code = put_formats(request.outputs, request.format, streams)) return *code;
+  if (const auto code = check_standard_output(request, streams)) return *code;
   if (const auto code = check_together(request, no_denoise, streams)) return *code;
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/cli/long_render.h"
+#include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/options.h"
 
@@ -15,8 +16,9 @@ namespace fathom::cli {
 
 struct RenderRequest {
   SceneArguments scene;
-  std::vector<std::string> outputs;  // at least one, each with an ending we can write
-  bool default_output = false;       // the name was made from the scene's
+  std::vector<Output> outputs;  // at least one
+  int format = -1;              // of -o -, see put_formats()
+  bool default_output = false;  // the name was made from the scene's
   bool albedo = false, depth = false, normal = false;
   std::optional<double> aspect, fov;  // width over height; radians
   std::optional<int> resolution;      // width, pixels
@@ -44,6 +46,10 @@ struct RenderRequest {
   bool preview = false, watch = false;
   bool quiet = false;
 };
+
+// The name of the checkpoint when the command line does not say it: beside the first output that is a file. None
+// when standard output is the only one.
+std::optional<std::string> default_checkpoint(const RenderRequest& request);
 
 // The request, or the exit code after help or a message.
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);

@@ -22,18 +22,18 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kSliceExamples =
-    "fathom slice scene.json -o out.png                          # across z, as seen from the front\n"
-    "fathom slice scene.json -o out.png --axis y --at 0.5        # from above, at the height 0.5\n"
+    "fathom slice scene.json -o out.png                    # across z, from the front\n"
+    "fathom slice scene.json -o out.png --axis y --at 0.5  # from above, at height 0.5\n"
     "fathom slice scene.json -o out.png --show sign --box -1,-1,1,1 --size 1024x1024\n"
     "\n"
-    "Across z the picture's right is +x and up is +y, across y right is +x and up is -z, across x right is -z and\n"
-    "up is +y. --box takes x,y across z; x,z across y; z,y across x.";
+    "Across z the picture's right is +x and its up is +y. Across y right is +x and up is -z. Across x right is -z\n"
+    "and up is +y. --box takes x,y across z, x,z across y, z,y across x.";
 
 enum Show { kSign, kDistance };
 
 struct SliceRequest {
   SceneArguments scene;
-  std::string output;
+  Output output;
   int axis = static_cast<int>(runtime::Axis::Z);
   int show = kDistance;
   std::optional<double> at;
@@ -43,30 +43,35 @@ struct SliceRequest {
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, SliceRequest& request) {
-  std::optional<std::string> output;
+  std::optional<Output> output;
+  int format = -1;
   Arguments arguments("slice", "Draws the field on a plane across one of the axes.", kSliceExamples);
   add_scene_arguments(arguments, request.scene);
-  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp", into(read_shown_output, output));
-  arguments.option("--axis", "AXIS", "The axis the plane lies across: x, y or z (z)",
+  arguments.option(
+      "-o,--output", "FILE",
+      "Picture to write: .png, .jpg, .jpeg or .bmp; - is standard output (the scene's name with -slice.png)",
+      into(read_shown_output, output));
+  add_format_option(arguments, true, format);
+  arguments.option("--axis", "AXIS", "Axis perpendicular to the plane: x, y or z (z)",
                    one_of({"x", "y", "z"}, request.axis));
-  arguments.option("--at", "OFFSET", "Where on that axis the plane is, scene units (0)",
+  arguments.option("--at", "OFFSET", "Position of the plane on that axis, in scene units (0)",
                    into(read_finite, request.at));
   arguments.option("--size", "WxH", "Width and height in pixels (512x512)", into(read_size, request.size));
-  arguments.option("--box", "X0,Y0,X1,Y1", "The part of the plane to show (the scene's bound and a tenth more)",
+  arguments.option("--box", "X0,Y0,X1,Y1", "Rectangle of the plane to show (the scene's bound, enlarged by a tenth)",
                    into(read_rectangle, request.box));
-  arguments.option("--show", "WHAT", "sign: white inside, black outside; distance: coloured bands (the default)",
+  arguments.option("--show", "WHAT", "distance (default): coloured bands; sign: white inside, black outside",
                    one_of({"sign", "distance"}, request.show));
-  arguments.option("--threads", "N", "Threads (one per processor); never changes the picture",
+  arguments.option("--threads", "N", "Number of threads (one per processor); never changes the picture",
                    whole(request.threads, 1, 4096));
   if (const auto code = arguments.parse(args, streams)) return code;
 
   if (!request.size) request.size = PixelSize{512, 512};
   if (const auto code = check_picture_size(request.size->width, request.size->height, request.scene.limits, streams))
     return code;
-  request.output = output.value_or(beside(default_output(request.scene.path), "slice"));
-  if (!output) {
-    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output));
-  }
+  request.output = output.value_or(default_output(request.scene.path));
+  if (output) return put_formats({&request.output, 1}, format, streams);
+  request.output.path = beside(request.output.path, "slice");
+  note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output.path));
   return std::nullopt;
 }
 
@@ -82,13 +87,13 @@ runtime::Slice place_slice(const SliceRequest& request, const compiler::Compiled
   return slice;
 }
 
-// The line on standard output for a picture of the signs.
+// The line that is printed for a picture of the signs.
 std::string count_inside(const std::vector<float>& field) {
   const auto inside = std::count_if(field.begin(), field.end(), [](float value) { return value < 0; });
   return fmt::format("inside {} of {} pixels\n", inside, field.size());
 }
 
-// The line on standard output for a picture of the distances.
+// The line that is printed for a picture of the distances.
 std::string describe_bands(const std::vector<float>& field, double step) {
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float value : field) {
@@ -98,7 +103,7 @@ std::string describe_bands(const std::vector<float>& field, double step) {
   return fmt::format("a line every {:.6g} scene units, distances from {} to {}\n", step, least, most);
 }
 
-// A picture and what standard output says of it.
+// A picture and the line that is printed of it: on standard output, unless the picture goes there.
 struct Drawing {
   runtime::Picture picture;
   std::string line;
@@ -120,8 +125,7 @@ void note_invalid(const std::vector<float>& field, const Streams& streams) {
 int run_slice(std::span<const std::string> args, const Streams& streams) {
   SliceRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (const auto code = check_collisions(request.scene.path, {request.output}, streams)) return *code;
-  if (const auto problem = runtime::check_image_path(request.output)) return fail(streams, kIo, *problem);
+  if (const auto code = check_outputs(request.scene.path, {&request.output, 1}, streams)) return *code;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
@@ -135,9 +139,16 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
       runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors), wanted);
   note_invalid(field, streams);
   const Drawing drawing = draw(request, slice, field);
-  if (const auto problem = runtime::write_image(drawing.picture, request.output)) return fail(streams, kIo, *problem);
-  print(streams, drawing.line);
-  say(streams, fmt::format("wrote {} ({}x{})", request.output, slice.width, slice.height));
+  const Fill fill = [&](runtime::AtomicFile& file) {
+    return runtime::write_image(drawing.picture, request.output.format->format, file);
+  };
+  if (const auto problem = write_to(request.output, fill, streams)) return fail(streams, kIo, *problem);
+  if (request.output.standard()) {
+    streams.err << vm::printable(drawing.line);
+  } else {
+    print(streams, drawing.line);
+  }
+  say(streams, wrote(request.output, slice.width, slice.height));
   return kDone;
 }
 

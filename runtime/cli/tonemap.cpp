@@ -24,7 +24,8 @@ constexpr const char* kTonemapExamples =
 
 struct TonemapRequest {
   std::string input;
-  std::optional<std::string> output;
+  std::optional<Output> output;
+  int format = -1;  // of -o -, see put_formats()
   std::optional<double> exposure;
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int layer = 0;  // a runtime::Layer
@@ -39,28 +40,30 @@ std::vector<std::string_view> layer_names() {
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, TonemapRequest& request) {
-  Arguments arguments("tonemap", "Makes a picture of a render's numbers.", kTonemapExamples);
-  arguments.positional("picture", "The file to read: " + runtime::image_endings(), request.input);
-  arguments.option("-o,--output", "FILE", "Picture to write: png, jpg, jpeg or bmp",
+  Arguments arguments("tonemap", "Converts the numbers of a render to a picture.", kTonemapExamples);
+  arguments.positional("picture", "File to read: " + runtime::image_endings(), request.input);
+  arguments.option("-o,--output", "FILE", "Picture to write: .png, .jpg, .jpeg or .bmp; - is standard output",
                    into(read_shown_output, request.output));
-  arguments.option("--exposure", "STOPS", "Brightness: 1 is twice as bright (what the file says, or 0)",
+  add_format_option(arguments, true, request.format);
+  arguments.option("--exposure", "STOPS", "Brightness of the picture in stops: 1 doubles it (the file's, or 0)",
                    into(read_exposure, request.exposure));
-  arguments.option("--tone", "CURVE",
-                   "How light becomes a display's: none, filmic, aces, agx or neutral (what the file says, or none)",
+  arguments.option("--tone", "CURVE", "Tone curve: none, filmic, aces, agx or neutral (the file's, or none)",
                    one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
-  arguments.option("--layer", "LAYER", "beauty (default), albedo, depth, normal or noisy",
+  arguments.option("--layer", "LAYER", "Layer to show: beauty (default), albedo, depth, normal or noisy",
                    one_of(layer_names(), request.layer));
-  arguments.option("--bits", "N", "Bits a sample in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
+  arguments.option("--bits", "N", "Bits per channel in png: 8 or 16 (8)", one_of({"8", "16"}, request.bits));
   add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (!request.output) return fail(streams, kUsage, "no picture to write", {"name it with -o FILE"});
+  if (const auto code = put_formats({&*request.output, 1}, request.format, streams)) return code;
   const bool light = runtime::is_light(runtime::kLayers[static_cast<std::size_t>(request.layer)].layer);
   if (!light && (request.exposure || request.tone >= 0)) {
     return fail(streams, kUsage, "--exposure and --tone are about light: they do not go with another --layer");
   }
-  if (request.bits != 0 && !runtime::image_format_of(*request.output)->deep) {
-    return fail(streams, kUsage, fmt::format("--bits 16: `{}` can have 8 bits a sample only", *request.output),
-                {"16 bits go into .png"});
+  if (request.bits != 0 && !request.output->format->deep) {
+    return fail(streams, kUsage,
+                fmt::format("--bits 16: {} can have only 8 bits per channel", request.output->format->ending),
+                {"16 bits go into png"});
   }
   return std::nullopt;
 }
@@ -85,8 +88,7 @@ std::string channel_names(const runtime::FloatImage& image) {
 int run_tonemap(std::span<const std::string> args, const Streams& streams) {
   TonemapRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (const auto code = check_collisions(request.input, {*request.output}, streams)) return *code;
-  if (const auto problem = runtime::check_image_path(*request.output)) return fail(streams, kIo, *problem);
+  if (const auto code = check_outputs(request.input, {&*request.output, 1}, streams)) return *code;
   const auto read = runtime::read_image(request.input, read_limits(request.limits));
   if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
     return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
@@ -100,10 +102,11 @@ int run_tonemap(std::span<const std::string> args, const Streams& streams) {
                             fmt::join(layer.channels, ", ")),
                 {"its channels: " + channel_names(image)});
   }
-  if (const auto problem = runtime::write_layer(*values, options_of(request, image), *request.output)) {
-    return fail(streams, kIo, *problem);
-  }
-  say(streams, fmt::format("wrote {} ({}x{})", *request.output, image.area.width(), image.area.height()));
+  const Fill fill = [&](runtime::AtomicFile& file) {
+    return runtime::write_layer(*values, options_of(request, image), request.output->format->format, file);
+  };
+  if (const auto problem = write_to(*request.output, fill, streams)) return fail(streams, kIo, *problem);
+  say(streams, wrote(*request.output, image.area.width(), image.area.height()));
   return kDone;
 }
 
