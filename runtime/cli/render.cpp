@@ -13,8 +13,10 @@
 #include <ostream>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "runtime/cli/checkpoint.h"
+#include "runtime/cli/closing_lines.h"
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/interruption.h"
 #include "runtime/cli/memory.h"
@@ -95,6 +97,7 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
 struct Watching {
   runtime::FileWatch files;
   std::atomic<bool> changed = false;
+  bool begun = false;  // a picture was drawn, so what is always so has been said
 };
 
 std::optional<std::string> write_stats(const std::string& path, const runtime::Stats& stats, const Streams& streams) {
@@ -270,11 +273,20 @@ class Job {
     if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
     result.stats.peak_memory = runtime::peak_memory();
     if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
-    if (!request_.quiet) {
-      streams_.err << runtime::to_table(result.stats);
-      for (const std::string& line : lines) streams_.err << line << '\n';
-    }
+    if (!request_.quiet) print_closing(result, lines);
     return problem;
+  }
+
+  void print_closing(const runtime::RenderResult& result, const std::vector<std::string>& lines) {
+    std::ostream& err = streams_.err;
+    const bool all = request_.verbosity > 0 || request_.options.profile;
+    if (all) err << runtime::to_table(result.stats);
+    if (watching_ && !all) {
+      err << closing_line(scene_.source.name(), result, lines);
+      return;
+    }
+    err << closing_lines(scene_.source.name(), result);
+    for (const std::string& line : lines) err << line << '\n';
   }
 
   // What was rendered is not lost with the picture.
@@ -319,10 +331,11 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   fit_regions(request, scene);
   if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
   verbosity.describe(scene, runtime::resolve(scene, request.options));
-  if (request.default_output && !request.quiet) {
+  const bool first = !watching || !std::exchange(watching->begun, true);
+  if (request.default_output && first && !request.quiet) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front().path));
   }
-  if (request.options.clamp && !request.quiet) {
+  if (request.options.clamp && first && !request.quiet) {
     note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
   }
   return Job(request, scene, streams, watching, interruption).run();
@@ -332,11 +345,11 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
 [[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
   Watching watching{runtime::FileWatch({request.scene.path})};
   std::optional<Interruption> none;
-  while (true) {
+  for (bool first = true;; first = false) {
     watching.changed = false;
     render_once(request, streams, &watching, none);
-    if (!watching.changed && !request.quiet) {
-      note(streams, fmt::format("waiting for {} to change; Ctrl-C ends", request.scene.path));
+    if (first && !request.quiet) {
+      note(streams, fmt::format("drawing again whenever {} changes; Ctrl-C ends", request.scene.path));
     }
     streams.err.flush();
     streams.out.flush();

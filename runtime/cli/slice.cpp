@@ -17,6 +17,7 @@
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image_io.h"
+#include "vm/printable.h"
 
 namespace fathom::cli {
 namespace {

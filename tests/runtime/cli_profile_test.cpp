@@ -29,7 +29,7 @@ TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves 
   REQUIRE(plain.code == 0);
   REQUIRE(profiled.code == 0);
   CHECK(folder.read("a.png") == folder.read("b.png"));
-  CHECK_THAT(plain.err, !Contains("seconds of") && Contains("lanes that held a ray") && Contains("peak memory"));
+  CHECK_THAT(plain.err, !Contains("seconds of") && !Contains("lanes that held a ray") && Contains("peak memory"));
   CHECK_THAT(profiled.err, Contains("seconds of march") && Contains("seconds of waiting") &&
                                Contains("instructions an evaluation"));
   const auto a = nlohmann::json::parse(folder.read("a.json")), b = nlohmann::json::parse(folder.read("b.json"));
@@ -80,7 +80,7 @@ TEST_CASE("cli: a cost map that cannot be written is refused before the first ra
     INFO(arguments);
     const Result result = folder.run("render ball.json " + arguments);
     CHECK(result.code == code);
-    CHECK_THAT(result.err, Contains(message) && !Contains("camera rays"));
+    CHECK_THAT(result.err, Contains(message) && !Contains("drew"));
   };
   expect("--cost-map cost", 2, "`cost` does not end in the name of a format for maps");
   expect("--cost-map cost.exr", 2, ".pfm for numbers");

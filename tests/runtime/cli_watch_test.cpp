@@ -73,21 +73,19 @@ TEST_CASE("cli: --watch draws again when the file changes, and outlives errors")
   folder.write("flat.json",
                R"({"version": 1, "film": {"width": 16, "height": 8}, "render": {"spp": 2}, "background": [1, 1, 1],
                                 "objects": [{"type": "box", "half_size": [1, 0.2, 1]}]})");
-  // Waits until the condition holds; for minutes, for the machine may be busy. A line of `waiting` may come of a file
-  // found half written by who is that slow.
+  // Waits until the condition holds; for minutes, for the machine may be busy.
   const Result result = folder.run_script(R"(
     wait_for() { for i in $(seq 2400); do if eval "$1"; then return 0; fi; sleep 0.05; done; exit 9; }
     "$fathom" render ball.json -o a.png --watch 2>log & watcher=$!
     trap 'kill $watcher' EXIT
-    wait_for 'grep -q waiting log'
+    wait_for 'grep -q drawing log'
     test -f a.png || exit 3
     echo '{ broken' > ball.json
     wait_for 'grep -q error log'
-    wait_for 'test $(grep -c waiting log) -ge 2'
     rm a.png
     cat flat.json > ball.json
     wait_for 'test -f a.png'
-    wait_for 'test $(grep -c waiting log) -ge 3'
+    wait_for 'test $(grep -c drew log) -ge 2'
     trap - EXIT
     kill -TERM $watcher
     wait $watcher
