@@ -1,0 +1,33 @@
+// What `cmake --install` installs works where it is installed.
+#include <catch2/catch.hpp>
+
+#include "tests/support/program.h"
+
+namespace {
+
+using Catch::Contains;
+using fathom::tests::Folder;
+using fathom::tests::png_size;
+using fathom::tests::Result;
+
+}  // namespace
+
+TEST_CASE("cli: cmake --install installs a program that renders an installed scene from another folder") {
+  const Folder folder;
+  const Result result =
+      folder.run_script(R"(
+    unset DESTDIR
+    cmake --install "$(dirname "$fathom")" --prefix "$PWD/prefix" > log ||
+                        exit 3 mkdir elsewhere && cd elsewhere../ prefix / bin / fathom render../ prefix / share /
+                                                          fathom / scenes / primitives.json-- size 16x9 -
+                                                      s 1 - q - o../ out.png) ");
+      INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(png_size(folder.read("out.png")) == std::pair(16, 9));
+  const std::string share = "prefix/share/";
+  CHECK(folder.read(share + "bash-completion/completions/fathom") == folder.run("completion bash").out);
+  CHECK(folder.read(share + "zsh/site-functions/_fathom") == folder.run("completion zsh").out);
+  CHECK(folder.read(share + "fish/vendor_completions.d/fathom.fish") == folder.run("completion fish").out);
+  CHECK(folder.read(share + "man/man1/fathom.1") == folder.run("man").out);
+  for (const char* file : {"README.md", "LICENSE", "docs/SCENES.md"}) CHECK(folder.has(share + "doc/fathom/" + file));
+}
