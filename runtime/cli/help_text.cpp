@@ -38,7 +38,7 @@ std::string usage(const OptionTable& table) {
 std::string example(std::string_view line, int columns) {
   constexpr int kIndent = 2;
   if (kIndent + width_of(line) <= columns) return blanks(kIndent) + std::string(line) + '\n';
-  const std::size_t mark = line.find("   # ");
+  const std::size_t mark = line.find("  # ");
   std::string text;
   if (mark != std::string_view::npos) {
     std::string_view comment = line.substr(line.find('#', mark) + 2);

@@ -227,6 +227,7 @@ class Job {
     note(streams_, (limit ? "the time limit ended the render: " : "interrupted: ") + samples_in(result.film));
     if (checkpoint_ && checkpoint_->problem()) return fail_to_keep();
     if (checkpoint_) note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
+    if (!checkpoint_ && !watching_) note(streams_, "what is done is not kept: --checkpoint FILE would keep it");
     return limit ? kDone : kInterrupted;
   }
 

@@ -23,9 +23,9 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kSliceExamples =
-    "fathom slice scene.json -o out.png                    # across z, from the front\n"
-    "fathom slice scene.json -o out.png --axis y --at 0.5  # from above, at height 0.5\n"
-    "fathom slice scene.json -o out.png --show sign --box -1,-1,1,1 --size 1024x1024\n"
+    "fathom slice scene.json -o out.png                    # from the front\n"
+    "fathom slice scene.json -o out.png --axis y --at 0.5  # from above\n"
+    "fathom slice scene.json --show sign --box -1,-1,1,1 --size 1024x1024\n"
     "\n"
     "Across z the picture's right is +x and its up is +y. Across y right is +x and up is -z. Across x right is -z\n"
     "and up is +y. --box takes x,y across z, x,z across y, z,y across x.";
@@ -70,7 +70,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (const auto code = check_picture_size(request.size->width, request.size->height, request.scene.limits, streams))
     return code;
   request.output = output.value_or(default_output(request.scene.path));
-  if (output) return put_formats({&request.output, 1}, format, streams);
+  const std::span<Output> named(&request.output, output ? 1 : 0);
+  if (const auto code = put_formats(named, format, streams)) return *code;
+  if (output) return std::nullopt;
   request.output.path = beside(request.output.path, "slice");
   note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output.path));
   return std::nullopt;

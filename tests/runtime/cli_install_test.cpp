@@ -5,7 +5,6 @@
 
 namespace {
 
-using Catch::Contains;
 using fathom::tests::Folder;
 using fathom::tests::png_size;
 using fathom::tests::Result;
@@ -14,14 +13,13 @@ using fathom::tests::Result;
 
 TEST_CASE("cli: cmake --install installs a program that renders an installed scene from another folder") {
   const Folder folder;
-  const Result result =
-      folder.run_script(R"(
+  const Result result = folder.run_script(R"sh(
     unset DESTDIR
-    cmake --install "$(dirname "$fathom")" --prefix "$PWD/prefix" > log ||
-                        exit 3 mkdir elsewhere && cd elsewhere../ prefix / bin / fathom render../ prefix / share /
-                                                          fathom / scenes / primitives.json-- size 16x9 -
-                                                      s 1 - q - o../ out.png) ");
-      INFO(result.err);
+    cmake --install "$(dirname "$fathom")" --prefix "$PWD/prefix" >log || exit 3
+    mkdir elsewhere && cd elsewhere
+    "$OLDPWD/prefix/bin/fathom" render ../prefix/share/fathom/scenes/primitives.json --size 16x9 -s 1 -q -o ../out.png
+  )sh");
+  INFO(result.err);
   REQUIRE(result.code == 0);
   CHECK(png_size(folder.read("out.png")) == std::pair(16, 9));
   const std::string share = "prefix/share/";

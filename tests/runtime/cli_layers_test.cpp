@@ -56,7 +56,7 @@ TEST_CASE("cli layers: wrong flags are exit code 2 and say what is wrong") {
       {"render ball.json --exposure 101", "--exposure: `101`"},
       {"render ball.json --bits 12", "--bits: `12` is not one of 8, 16"},
       {"render ball.json -o a.png -o b.jpg --bits 16", "--bits 16: `b.jpg` can have only 8 bits per channel"},
-      {"render ball.json -o a.bmp --bits 16", "16 bits go into .png"},
+      {"render ball.json -o a.bmp --bits 16", "16 bits go into png"},
       {"render ball.json --cost-map a.exr", "valid endings: .png, .jpg, .jpeg, .bmp for colours, .pfm for numbers"},
       {"slice ball.json -o a.exr", "this format holds numbers"},
       {"tonemap", "the picture is missing"},
@@ -65,7 +65,7 @@ TEST_CASE("cli layers: wrong flags are exit code 2 and say what is wrong") {
       {"tonemap a.exr -o b.gif", "valid endings: .png, .jpg, .jpeg, .bmp"},
       {"tonemap a.exr -o b.png --layer nromal", "did you mean `normal`?"},
       {"tonemap a.exr -o b.png --layer normal --tone agx", "they do not go with another --layer"},
-      {"tonemap a.exr -o b.bmp --bits 16", "`b.bmp` can have 8 bits"},
+      {"tonemap a.exr -o b.bmp --bits 16", "bmp can have only 8 bits per channel"},
       {"tonemap a.png -o ./a.png", "would be overwritten"},
   };
   const Folder folder;
