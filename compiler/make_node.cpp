@@ -4,7 +4,9 @@ namespace fathom::compiler {
 
 NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin) {
   const NodeSpec& row = spec(kind);
-  if (row.build) return row.build(*this, params, children, origin);
+  // What `build` of a row with code makes over other children has its derived numbers.
+  const bool is_built = row.code && params.size() > row.params.size();
+  if (row.build && !is_built) return row.build(*this, params, children, origin);
   if (row.expand) return row.expand(graph_, params, origin);
   if (!row.derive) return graph_.add(kind, params, children, origin);
   return graph_.add(kind, row.with_derived(params, known_of(children)), children, origin);

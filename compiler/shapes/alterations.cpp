@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/affine.h"
+#include "compiler/shapes/revolve.h"
 #include "compiler/shapes/rows.h"
 
 namespace fathom::compiler {
@@ -109,9 +110,8 @@ Knowledge know_revolve(Params params, std::span<const Knowledge> children) {
   k.box.lo.x = k.box.lo.z = -radius;
   k.box.hi.x = k.box.hi.z = radius;
   k.symmetric = {true, child.symmetric[1], true};
-  // What lies beyond the axis is measured but not there, unless it is the mirror image of what is.
-  const bool whole = child.box.lo.x + params[0] >= 0 || (child.symmetric[0] && params[0] == 0);
-  return whole ? k : only_bound(k);
+  const bool exact = params[1] != 0;
+  return exact ? k : only_bound(k);
 }
 
 Code round_code(Params params) { return {.after = {{Opcode::Offset, {params[0]}}}}; }
@@ -203,7 +203,8 @@ std::vector<NodeSpec> alteration_rows() {
        .doc = "an outline turned about the y axis",
        .operand = Sort::Outline,
        .code = revolve_code,
-       .know = know_revolve},
+       .know = know_revolve,
+       .build = build_revolve},
       {.kind = Kind::Transform,
        .name = "transform",
        .category = Category::Internal,

@@ -37,11 +37,11 @@ NodeId prism(Graph& graph, double sides, Params p, const Origin& origin) {
 NodeId hexagonal_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 6, p, origin); }
 NodeId triangular_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 3, p, origin); }
 
-// An outline with the same parameters, turned about the y axis.
+// An outline with the same parameters, which the y axis divides into mirror images, turned about that.
 template <Kind Outline>
 NodeId revolved(Graph& graph, Params p, const Origin& origin) {
   const NodeId outline = graph.add(Outline, p, {}, origin);
-  return graph.add(Kind::Revolve, std::array{0.0}, std::array{outline}, origin);
+  return graph.add(Kind::Revolve, std::array{0.0, 1.0}, std::array{outline}, origin);
 }
 template <Kind Outline>
 Complaint check_outline(Params p) {
@@ -55,7 +55,7 @@ NodeId cut_hollow_sphere(Graph& graph, Params p, const Origin& origin) {
   const double degrees = vm::real::acos(-p[1] / p[0]) * 180 / std::numbers::pi;
   const NodeId arc = graph.add(Kind::Arc, std::array{p[0], degrees, p[2]}, {}, origin);
   const NodeId turned = place(graph, arc, {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 1}, origin);
-  return graph.add(Kind::Revolve, std::array{0.0}, std::array{turned}, origin);
+  return graph.add(Kind::Revolve, std::array{0.0, 1.0}, std::array{turned}, origin);
 }
 Complaint check_cut_hollow_sphere(Params p) {
   if (std::abs(p[1]) < p[0] && p[2] < p[0]) return std::nullopt;

@@ -295,6 +295,11 @@ Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
 Verdict alteration(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
   const Kind kind = graph.kind(node);
   const Params k = graph.params(node);
+  const NodeId child = graph.children(node)[0];
+  if (kind == Kind::Revolve && k[1] != 0 &&
+      compiler::spec(graph.kind(child)).category == compiler::Category::Primitive) {
+    return {judge_turned_outline(graph.kind(child), graph.params(child), k[0], half_plane(p)), paint, kInfinity};
+  }
   Verdict least{kInfinity, paint, kInfinity};
   for (const dvec3& q : child_points(kind, k, p)) {
     Verdict next = visit(graph, graph.children(node)[0], q, paint);

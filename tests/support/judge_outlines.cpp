@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "vm/check.h"
 
@@ -336,6 +337,29 @@ double judge_outline(Kind kind, Params k, dvec2 p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Piece& piece : outline_boundary(kind, k)) nearest = std::min(nearest, distance_to(piece, p));
   return inside(kind, k, p) ? -nearest : nearest;
+}
+
+std::optional<Piece> beside_axis(const Piece& edge) {
+  constexpr double kOnAxis = 1e-9;  // scene units
+  dvec2 a = edge.a, b = edge.b;
+  if (a.x > b.x) std::swap(a, b);
+  if (b.x <= kOnAxis) return std::nullopt;
+  if (a.x < 0) a += (b - a) * (-a.x / (b.x - a.x));
+  return line(a, b);
+}
+
+double judge_turned_outline(Kind kind, Params k, double offset, dvec2 p) {
+  const dvec2 own(p.x - offset, p.y);
+  if (kind == Kind::Arc) return judge_outline(kind, k, own);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Piece& piece : outline_boundary(kind, k)) {
+    if (!piece.straight) {
+      nearest = std::min(nearest, distance_to(piece, own));
+    } else if (const auto edge = beside_axis(line(piece.a + dvec2(offset, 0), piece.b + dvec2(offset, 0)))) {
+      nearest = std::min(nearest, distance_to(*edge, p));
+    }
+  }
+  return inside(kind, k, own) ? -nearest : nearest;
 }
 
 }  // namespace fathom::test

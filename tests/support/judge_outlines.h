@@ -4,6 +4,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,5 +28,12 @@ std::vector<Piece> outline_boundary(compiler::Kind kind, std::span<const double>
 double distance_to(const Piece& piece, glm::dvec2 p);
 
 double judge_outline(compiler::Kind kind, std::span<const double> params, glm::dvec2 p);
+
+// The outline moved by `offset` along x and turned about the y axis, at a point of the half-plane x >= 0. Straight
+// edges on the axis or beyond are no surface; curved pieces count as a whole.
+double judge_turned_outline(compiler::Kind kind, std::span<const double> params, double offset, glm::dvec2 p);
+
+// The part of a straight edge at x > 0; nullopt when there is none.
+std::optional<Piece> beside_axis(const Piece& edge);
 
 }  // namespace fathom::test

@@ -1,0 +1,248 @@
+// The outline that a revolve turns about the y axis. The part of it at x >= 0 becomes the solid. An edge on the axis
+// becomes no surface, nor does an edge beyond the axis, yet the outline's own distance counts both. An outline of
+// straight edges is therefore made anew without them: a polygon leaves the axis for a rectangle half as deep as it is
+// high, which no point at x >= 0 has nearer than one of the two points where the outline meets the axis.
+#include "compiler/shapes/revolve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <utility>
+#include <vector>
+
+#include "compiler/affine.h"
+#include "compiler/shapes/rows.h"
+#include "compiler/shapes/vec2.h"
+#include "compiler/sine_cosine.h"
+
+namespace fathom::compiler {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr double kRounding = 1e-12;  // of places after transforms, as a part of the largest coordinate
+constexpr int kMostNodes = 256;      // of an outline that are made anew; shared ones count once a use
+constexpr std::size_t kMostCorners = 4096;
+
+const Affine kIdentity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
+
+dvec2 polar(double radius, double degrees) {
+  const SineCosine at = sine_cosine(degrees);
+  return {radius * at.sine, radius * at.cosine};
+}
+
+std::vector<dvec2> cross_corners(Params p) {
+  const double l = p[0], w = p[1];
+  return {{w, l}, {w, w}, {l, w}, {l, -w}, {w, -w}, {w, -l}, {-w, -l}, {-w, -w}, {-l, -w}, {-l, w}, {-w, w}, {-w, l}};
+}
+
+// Of an outline that has straight edges alone; empty for every other node.
+std::vector<dvec2> corners_of(Kind kind, Params p) {
+  std::vector<dvec2> corners;
+  switch (kind) {
+    case Kind::Rectangle:
+      return {{p[0], p[1]}, {-p[0], p[1]}, {-p[0], -p[1]}, {p[0], -p[1]}};
+    case Kind::Polygon:
+      for (std::size_t i = 0; i + 1 < p.size(); i += 2) corners.push_back(vec2_at(p, i));
+      return corners;
+    case Kind::RegularPolygon:
+      for (int i = 0; i < static_cast<int>(p[0]); ++i) corners.push_back(polar(p[1], 360 * i / p[0]));
+      return corners;
+    case Kind::Star:
+      for (int i = 0; i < 2 * static_cast<int>(p[0]); ++i) corners.push_back(polar(p[i % 2 ? 2 : 1], 180 * i / p[0]));
+      return corners;
+    case Kind::Trapezoid:
+      return {{p[0], -p[2]}, {p[1], p[2]}, {-p[1], p[2]}, {-p[0], -p[2]}};
+    case Kind::Parallelogram:
+      return {{p[0] + p[2], p[1]}, {-p[0] + p[2], p[1]}, {-p[0] - p[2], -p[1]}, {p[0] - p[2], -p[1]}};
+    case Kind::RhombusOutline:
+      return {{p[0], 0}, {0, p[1]}, {-p[0], 0}, {0, -p[1]}};
+    case Kind::IsoscelesTriangle:
+      return {{0, 0}, {p[0], p[1]}, {-p[0], p[1]}};
+    case Kind::Cross:
+      return cross_corners(p);
+    default:
+      return corners;
+  }
+}
+
+// The corners of a polygon without its edges on the axis and beyond. One corner at least is at x > rounding.
+class PolygonTrimmer {
+ public:
+  explicit PolygonTrimmer(double rounding) : rounding_(rounding) {}
+
+  std::vector<dvec2> trim(const std::vector<dvec2>& corners) {
+    const auto kept = [this](dvec2 q) { return q.x > rounding_; };
+    const std::size_t n = corners.size();
+    const auto first = static_cast<std::size_t>(std::find_if(corners.begin(), corners.end(), kept) - corners.begin());
+    dvec2 leaves(0);
+    for (std::size_t i = first; i < first + n; ++i) {
+      const dvec2 q = corners[i % n], next = corners[(i + 1) % n];
+      if (kept(q)) push(q);
+      if (kept(q) && !kept(next)) leaves = on_axis(q, next);
+      if (!kept(q) && kept(next)) bridge(leaves, on_axis(next, q));
+    }
+    if (out_.size() > 1 && glm::distance(out_.front(), out_.back()) <= rounding_) out_.pop_back();
+    return std::move(out_);
+  }
+
+ private:
+  dvec2 on_axis(dvec2 kept, dvec2 other) const {
+    if (std::abs(other.x) <= rounding_) return {0, other.y};
+    return {0, kept.y + kept.x / (kept.x - other.x) * (other.y - kept.y)};
+  }
+
+  void bridge(dvec2 from, dvec2 to) {
+    const double height = std::abs(to.y - from.y);
+    push(from);
+    if (height > rounding_) {
+      push({-height / 2, from.y});
+      push({-height / 2, to.y});
+    }
+    push(to);
+  }
+
+  void push(dvec2 q) {
+    if (out_.empty() || glm::distance(out_.back(), q) > rounding_) out_.push_back(q);
+  }
+
+  const double rounding_;
+  std::vector<dvec2> out_;
+};
+
+// The node under a transform with these parameters. A transform that it begins with is taken off where the two undo
+// each other.
+NodeId placed(NodeMaker& maker, NodeId node, Params params, const Origin& origin) {
+  const Graph& graph = maker.graph();
+  if (graph.kind(node) == Kind::Transform && graph.params(node)[12] * params[12] == 1 &&
+      compose(Affine::from_params(graph.params(node)), Affine::from_params(params)) == kIdentity) {
+    return graph.children(node)[0];
+  }
+  return maker.make(Kind::Transform, params, std::array{node}, origin);
+}
+
+NodeId moved(NodeMaker& maker, NodeId node, double x, double y, const Origin& origin) {
+  if (x == 0 && y == 0) return node;
+  const double params[] = {1, 0, 0, -x, 0, 1, 0, -y, 0, 0, 1, 0, 1};
+  return placed(maker, node, params, origin);
+}
+
+// An outline as revolve turns it.
+struct Trimmed {
+  NodeId node;
+  bool exact;  // whether its distance at x >= 0 is that to edges at x > 0 alone, where it is exact by itself
+};
+
+class OutlineTrimmer {
+ public:
+  explicit OutlineTrimmer(NodeMaker& maker) : maker_(maker) {}
+
+  // `place` maps the node's plane to the one whose y axis is turned about.
+  Trimmed trim(NodeId id, const Affine& place) {
+    if (is_clear(id, place)) return {id, true};
+    if (++visited_ > kMostNodes) return {id, false};
+    switch (maker_.graph().kind(id)) {
+      case Kind::Transform: {
+        const Affine up = inverse(Affine::from_params(maker_.graph().params(id)));
+        const Stretch s = stretch(up);
+        if (s.most - s.least > kRounding * s.most) return {id, false};
+        return trim_children(id, compose(place, up));
+      }
+      case Kind::Paint:
+      case Kind::Union:
+      case Kind::Intersection:
+      case Kind::Subtraction:
+        return trim_children(id, place);
+      default:
+        return trim_corners(id, place);
+    }
+  }
+
+ private:
+  // Whether all of the node is at x > 0, or the axis is one of its mirror lines.
+  bool is_clear(NodeId id, const Affine& place) {
+    const Knowledge& known = maker_.known(id);
+    const Box there = image(place, known.box);
+    if (there.lo.x > kRounding * std::abs(place.translation.x)) return true;
+    const dvec3 row = place.rows[0];
+    const bool symmetric = (row.y == 0 && known.symmetric[0]) || (row.x == 0 && known.symmetric[1]);
+    return symmetric && place.translation.x == 0;
+  }
+
+  Trimmed trim_children(NodeId id, const Affine& place) {
+    const Graph& graph = maker_.graph();
+    const std::vector<NodeId> children(graph.children(id).begin(), graph.children(id).end());
+    std::vector<NodeId> trimmed;
+    bool exact = true;
+    for (const NodeId child : children) {
+      const Trimmed made = trim(child, place);
+      trimmed.push_back(made.node);
+      exact = exact && made.exact;
+    }
+    if (trimmed == children) return {id, exact};
+    const std::vector<double> params(graph.params(id).begin(), graph.params(id).end());
+    const Origin origin = graph.origin(id);
+    if (graph.kind(id) == Kind::Transform) return {placed(maker_, trimmed[0], params, origin), exact};
+    return {maker_.make(graph.kind(id), params, trimmed, origin), exact};
+  }
+
+  Trimmed trim_corners(NodeId id, const Affine& place) {
+    std::vector<dvec2> corners = corners_of(maker_.graph().kind(id), maker_.graph().params(id));
+    double largest = std::abs(place.translation.x), least_x = largest, most_x = -largest;
+    for (dvec2& q : corners) {
+      q = dvec2(place(dvec3(q, 0)));
+      largest = std::max({largest, std::abs(q.x), std::abs(q.y)});
+      least_x = std::min(least_x, q.x), most_x = std::max(most_x, q.x);
+    }
+    const double rounding = kRounding * largest;
+    if (corners.empty() || most_x <= rounding) return {id, false};
+    if (least_x > rounding) return {id, true};
+    if (maker_.graph().kind(id) == Kind::Rectangle && (place.rows[0].x == 0 || place.rows[0].y == 0)) {
+      return {mirrored_rectangle(id, place), true};
+    }
+    return polygon(id, place, PolygonTrimmer(rounding).trim(corners));
+  }
+
+  Trimmed polygon(NodeId id, const Affine& place, const std::vector<dvec2>& corners) {
+    if (corners.size() < 3 || corners.size() > kMostCorners) return {id, false};
+    const Affine back = inverse(place);
+    std::vector<double> points;
+    for (const dvec2 q : corners) {
+      const dvec3 p = back(dvec3(q, 0));
+      points.insert(points.end(), {p.x, p.y});
+    }
+    return {maker_.make(Kind::Polygon, points, {}, Origin(maker_.graph().origin(id))), true};
+  }
+
+  // With sides along the axis and across it: the part at x >= 0, and its mirror image.
+  NodeId mirrored_rectangle(NodeId id, const Affine& place) {
+    const std::size_t across = place.rows[0].y == 0 ? 0 : 1;
+    const double slope = place.rows[0][static_cast<int>(across)], axis = -place.translation.x / slope;
+    std::vector<double> half(maker_.graph().params(id).begin(), maker_.graph().params(id).end());
+    half[across] = std::abs((slope > 0 ? half[across] : -half[across]) - axis);
+    const Origin origin = maker_.graph().origin(id);
+    const NodeId rectangle = maker_.make(Kind::Rectangle, half, {}, origin);
+    return across == 0 ? moved(maker_, rectangle, axis, 0, origin) : moved(maker_, rectangle, 0, axis, origin);
+  }
+
+  NodeMaker& maker_;
+  int visited_ = 0;
+};
+
+}  // namespace
+
+NodeId build_revolve(NodeMaker& maker, Params p, std::span<const NodeId> children, const Origin& origin) {
+  const NodeId outline = children[0];
+  const double offset = p[0];
+  const Affine place{kIdentity.rows, dvec3(offset, 0, 0)};
+  const Trimmed trimmed = OutlineTrimmer(maker).trim(outline, place);
+  const double exact = trimmed.exact ? 1 : 0;
+  if (trimmed.node == outline) return maker.make(Kind::Revolve, std::array{offset, exact}, children, origin);
+  const NodeId at_axis = moved(maker, trimmed.node, offset, 0, origin);
+  return maker.make(Kind::Revolve, std::array{0.0, exact}, std::array{at_axis}, origin);
+}
+
+}  // namespace fathom::compiler

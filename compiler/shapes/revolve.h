@@ -1,0 +1,12 @@
+// Revolve over the outline that it turns (compiler/shapes/revolve.cpp).
+// Tested by: tests/compiler/outlines_test.cpp
+#pragma once
+
+#include "compiler/make_node.h"
+
+namespace fathom::compiler {
+
+// As NodeSpec::build. The node's derived number is 1 when it is as exact as its outline, else 0.
+NodeId build_revolve(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin);
+
+}  // namespace fathom::compiler
