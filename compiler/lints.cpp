@@ -107,9 +107,13 @@ class Linter {
         case Kind::Subtraction:
           vanishes_[id] = gone(children[0]) || check_cuts(id, children);
           break;
+        case Kind::Revolve:
+          vanishes_[id] = gone(children[0]) || check_beyond_axis(id);
+          break;
         default:
-          vanishes_[id] =
-              (rearranges(kind(id)) || kind(id) == Kind::Taper || kind(id) == Kind::Bend) && gone(children[0]);
+          vanishes_[id] = (rearranges(kind(id)) || kind(id) == Kind::Taper || kind(id) == Kind::Bend ||
+                           kind(id) == Kind::Extrude) &&
+                          gone(children[0]);
           break;
       }
     }
@@ -121,6 +125,15 @@ class Linter {
     if (operands.size() < 2 || !(common.empty() || containment_.avoids(graph_, id, common))) return false;
     warn("W0502", id, "this intersection holds nothing", "its operands never meet",
          "move them together, or leave the node out; what is in any of them is a \"union\"");
+    return true;
+  }
+
+  bool check_beyond_axis(NodeId id) {
+    const double farthest = box(graph_.children(id)[0]).hi.x + graph_.params(id)[0];
+    if (farthest > 0) return false;
+    warn("W0502", id, "this revolve holds nothing",
+         fmt::format("its outline ends at x = {:.4g}, and only what is at x > 0 turns", farthest),
+         "move the outline to the other side of the y axis by `translate` or `offset`");
     return true;
   }
 
