@@ -60,12 +60,16 @@ class Bisection {
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
     FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
+    double smallest = kInfinity;
     for (; !cells_.empty(); cells_.pop()) {
       const vm::SlopeBound& b = cells_.top().bound;
       result.least = std::min(result.least, b.value.lo);
       result.most = std::max(result.most, b.value.hi);
       result.lipschitz = std::max(result.lipschitz, b.lipschitz);
       result.float_error = std::max(result.float_error, b.float_error);
+      if (std::isfinite(b.lipschitz) || cells_.top().longest_side() > smallest) continue;
+      smallest = cells_.top().longest_side();
+      result.unbounded = cells_.top().box;
     }
     return result;
   }
@@ -205,6 +209,24 @@ FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
   if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity};
   return Bisection(*program, box, coordinates_of(graph, formula)).run();
+}
+
+NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {
+  const Box cell = bound_formula(graph, formula, box).unbounded;
+  if (cell.empty()) return formula;
+  vm::Workspace workspace;
+  double left = 4e6;  // instructions that may still be evaluated: seconds
+  const auto unbounded = [&](NodeId id) {
+    const std::optional<vm::VerifiedProgram> program = program_of(graph, id);
+    if (!program || (left -= program->instructions()) < 0) return false;
+    return !std::isfinite(vm::evaluate_slope(*program, cell.lo, cell.hi, workspace).lipschitz);
+  };
+  for (NodeId at = formula;;) {
+    const std::span<const NodeId> operands = graph.children(at);
+    const auto next = std::find_if(operands.begin(), operands.end(), unbounded);
+    if (next == operands.end()) return at;
+    at = *next;
+  }
 }
 
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {

@@ -16,10 +16,15 @@ struct FormulaBound {
   double lipschitz;    // of the formula within the box; infinite when none was found
   double seen;         // the steepest gradient met while looking
   double float_error;  // of an evaluation in float, scene units; may be infinite
+  Box unbounded = {};  // the smallest cell met for which none was found; empty when there is none
 };
 
 // `box` may have infinite sides. `formula` is a node that is a number.
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box);
+
+// The operation that leaves a formula without a bound: in the smallest cell that has none, each of its operands has
+// one. Of a formula of more than some thousands of operations it may be one further up.
+NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box);
 
 // Rows of the node table (Kind::Expression, Kind::Displacement). Parameters: the box's half size; none. Children: the
 // formula; the displaced node and the formula.

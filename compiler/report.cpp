@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compiler/bounds.h"
+#include "compiler/formula_field.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
@@ -67,6 +68,16 @@ bool FieldGraph::estimates(NodeId id) const {
   return std::all_of(below.begin(), below.end(), [&](NodeId child) { return known_[child].certified; });
 }
 
+std::optional<Span> FieldGraph::unbounded_operation(NodeId id) const {
+  if (graph().kind(id) != Kind::Bounded) return std::nullopt;
+  const std::span<const double> params = graph().params(id);
+  const Box box{{params[0], params[1], params[2]}, {params[3], params[4], params[5]}};
+  const NodeId field = graph().children(id)[0];
+  const NodeId formula = is_displacement(graph(), id) ? graph().children(field)[1] : field;
+  const Span span = graph().origin(find_unbounded(graph(), formula, box)).span;
+  return span.end > 0 ? std::optional(span) : std::nullopt;
+}
+
 Place FieldGraph::place(NodeId id) const {
   Place place{"", graph().origin(id).name, graph().origin(id).span};
   while (graph().kind(id) == Kind::Paint || graph().kind(id) == Kind::Scaled || graph().kind(id) == Kind::Transform) {
@@ -117,7 +128,9 @@ Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
     if (field.cost(worst) > kCheap) row.costliest = {field.place(worst), field.cost(worst)};
   }
   for (NodeId id = 0; id <= scene.root; ++id) {
-    if (field.reached(id) && field.estimates(id)) report.estimates.push_back(field.place(id));
+    if (!field.reached(id) || !field.estimates(id)) continue;
+    Estimate& estimate = report.estimates.emplace_back(Estimate{field.place(id), std::nullopt});
+    if (report.estimates.size() <= Report::kMostSearched) estimate.operation = field.unbounded_operation(id);
   }
   return report;
 }

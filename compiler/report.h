@@ -38,10 +38,17 @@ struct ObjectReport {
   std::optional<CostlyNode> costliest;  // none when every node leaves steps as long as they were
 };
 
+// A node whose constant is not proved, though the constants of its children are.
+struct Estimate : Place {
+  std::optional<Span> operation;  // of a formula, the operation whose slope has no bound; of the first kMostSearched
+};
+
 struct Report {
+  static constexpr std::size_t kMostSearched = 20;
+
   std::vector<ObjectReport> objects;
-  bool certified = true;         // whether every constant is proved
-  std::vector<Place> estimates;  // the nodes whose constant is not, though those of what they are made of are
+  bool certified = true;  // whether every constant is proved
+  std::vector<Estimate> estimates;
 };
 
 // `scene` is the graph before the first pass; `surfaces` are those its Paint nodes number.
@@ -66,6 +73,8 @@ class FieldGraph {
   double steepness(NodeId id) const { return steepness_[id]; }
   // Whether nothing is proved of the node though all of what it is made of is.
   bool estimates(NodeId id) const;
+  // Of such a node that is a formula within its box: where the operation stands that leaves it without a bound.
+  std::optional<Span> unbounded_operation(NodeId id) const;
   // Of the node and what lies below it, the one with the largest cost.
   NodeId costliest(NodeId id) const { return costliest_[id]; }
   // Of what only paints or places a node, that node, at the place of what does.

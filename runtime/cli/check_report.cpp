@@ -100,15 +100,33 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
   return table(rows);
 }
 
+// The text at a span, its beginning when it is long.
+std::string excerpt(compiler::Span span, const compiler::Source& source) {
+  constexpr std::size_t kMost = 60;
+  std::string written = source.text().substr(span.begin, span.end - span.begin);
+  return written.size() > kMost ? written.substr(0, kMost) + "..." : written;
+}
+
+// `  no bound on the slope of `floor(x)` at scene.json:4:70`.
+std::string describe_operation(compiler::Span span, const compiler::Source& source) {
+  const compiler::Position at = source.locate(span.begin);
+  return fmt::format("  no bound on the slope of `{}` at {}:{}:{}\n", excerpt(span, source), source.name(), at.line,
+                     at.column);
+}
+
 std::string certificate(const compiler::Report& report, const compiler::Source& source) {
   if (report.certified) return "certified: every step length is proved\n";
-  constexpr std::size_t kMost = 20;
-  std::vector<std::string> places;
-  for (const Place& place : report.estimates) {
-    if (places.size() < kMost) places.push_back(text(place, source));
+  std::string nodes, operations;
+  std::size_t listed = 0;
+  for (const compiler::Estimate& estimate : report.estimates) {
+    if (++listed > compiler::Report::kMostSearched) continue;
+    nodes += fmt::format("{}the {}", listed > 1 ? ", " : "", text(estimate, source));
+    if (estimate.operation) operations += describe_operation(*estimate.operation, source);
   }
-  if (report.estimates.size() > kMost) places.push_back(fmt::format("and {} more", report.estimates.size() - kMost));
-  return fmt::format("not certified: nothing is proved of the {}\n", fmt::join(places, ", the "));
+  if (listed > compiler::Report::kMostSearched) {
+    nodes += fmt::format(", and {} more", listed - compiler::Report::kMostSearched);
+  }
+  return fmt::format("not certified: nothing is proved of {}\n{}", nodes, operations);
 }
 
 std::string_view word(ProbeRow::What what) {
@@ -146,7 +164,14 @@ std::string report_json(const compiler::CompiledScene& scene, const compiler::Re
                  {"costliest", costliest}});
   }
   ReportJson estimates = ReportJson::array();
-  for (const Place& place : report.estimates) estimates.push_back(json(place, scene.source));
+  for (const compiler::Estimate& estimate : report.estimates) {
+    estimates.push_back(json(static_cast<const Place&>(estimate), scene.source));
+    if (estimate.operation) {
+      const compiler::Position at = scene.source.locate(estimate.operation->begin);
+      estimates.back()["operation"] = {
+          {"text", excerpt(*estimate.operation, scene.source)}, {"line", at.line}, {"column", at.column}};
+    }
+  }
   ReportJson parameters = ReportJson::object();
   for (const compiler::Parameter& parameter : scene.parameters) parameters[parameter.name] = parameter.value;
   out += line({{"scene", scene.source.name()},

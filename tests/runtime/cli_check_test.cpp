@@ -52,6 +52,22 @@ TEST_CASE("cli: check says how exact each object is and what costs the most") {
              Contains("\nnot certified: nothing is proved of the mandelbulb at bulb.json:4:5\n"));
 }
 
+// Once, the place was the whole formula's, which is the first line of an expression list.
+TEST_CASE("cli: check names the operation that has no bound, and its line") {
+  const Folder folder;
+  folder.write("jump.vm", "# steps\n_0 var-x\n_1 var-y\n_2 floor _0\n_3 sub _1 _2\n_4 const 0.1\n_5 add _3 _4\n");
+  const Result list = folder.run("check jump.vm");
+  CHECK_THAT(list.out, Contains("\n  no bound on the slope of `_2 floor _0` at jump.vm:4:1\n"));
+  CHECK_THAT(list.err, Contains("--> jump.vm:4:1"));
+  folder.write("jump.json", R"_({"version": 1, "objects": [
+    {"type": "displacement", "of": {"type": "sphere", "radius": 2}, "formula": "0.1*sin(x) + 0.1*sqrt(y)"}]})_");
+  CHECK_THAT(folder.run("check jump.json").out,
+             Contains("not certified: nothing is proved of the displacement at jump.json:2:5\n"
+                      "  no bound on the slope of `sqrt(y)` at jump.json:2:98\n"));
+  const auto scene = json_lines(folder.run("check jump.json --error-format json").out).back();
+  CHECK(scene["estimates"][0]["operation"] == nlohmann::json({{"text", "sqrt(y)"}, {"line", 2}, {"column", 98}}));
+}
+
 TEST_CASE("cli: check prints the report as JSON lines") {
   const Folder folder;
   folder.write("rope.json", kRope);
