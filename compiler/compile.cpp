@@ -257,6 +257,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
   if (options.lint) {
     lint(elaborated->scene, *elaborated, whole->surface, diagnostics);
+    lint_offsets(elaborated->scene, diagnostics);
     lint_places(elaborated->scene, origin, diagnostics);
   }
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);

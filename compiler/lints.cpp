@@ -72,7 +72,6 @@ class Linter {
       check_lamp(id);
       check_steepness(id);
     }
-    check_offsets_of_scaled();
     check_thinness();
     check_camera(surface);
   }
@@ -271,31 +270,6 @@ class Linter {
     warn("W0508", id,
          fmt::format("this {} makes steps {:.3g} times shorter{}", word(id), field_.steepness(id), below),
          "rays take that many times longer here", help);
-  }
-
-  // Offsets and blends of distances that a scale has made too small: they move the surface further than they say.
-  void check_offsets_of_scaled() {
-    constexpr NodeId kEven = std::numeric_limits<NodeId>::max();
-    std::vector<NodeId> uneven(graph_.size(), kEven);  // [node] the transform that makes it so
-    for (NodeId id = 0; id <= scene_.root; ++id) {
-      if (!field_.reached(id)) continue;
-      if (kind(id) == Kind::Transform) {
-        const Stretch s = stretch(Affine::from_params(graph_.params(id)));
-        if (s.most - s.least > 1e-9 * s.most) uneven[id] = id;
-      }
-      for (const NodeId child : field_.children(id)) {
-        if (uneven[id] == kEven) uneven[id] = uneven[child];
-      }
-      const bool measures = (kind(id) == Kind::Round || kind(id) == Kind::Onion || is_blend(kind(id))) &&
-                            graph_.params(id)[0] > kLeastBlend;
-      if (!measures || uneven[id] == kEven) continue;
-      const Stretch s = stretch(Affine::from_params(graph_.params(uneven[id])));
-      warn("W0511", id,
-           fmt::format("the {} moves the surface up to {:.3g} times as far as it says", word(id), s.most / s.least),
-           "a part of it is scaled by different amounts, which keeps no distances",
-           "give the shape its size by its own parameters, or scale this node instead, which scales the offset too");
-      uneven[id] = kEven;  // said once
-    }
   }
 
   // Whether what is thin below is as thin above.

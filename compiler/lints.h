@@ -20,6 +20,9 @@ void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgr
 // is at `origin`.
 void lint_places(const Scene& scene, glm::dvec3 origin, Diagnostics& diagnostics);
 
+// Offsets and blends of values that are smaller than the distance near the surface (W0511).
+void lint_offsets(const Scene& scene, Diagnostics& diagnostics);
+
 // Twice the thickness of a wall, or the smallest side of a primitive's box; infinite when it has neither. `box` is
 // the node's; the result is in the node's own space.
 double thickness(const Graph& graph, NodeId id, const Box& box);
