@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -189,6 +190,26 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
                       "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
 }
 
+// Warns when all there is to see, and the camera, lie so close together that double, which decides what float cannot,
+// knows places less well than a thousandth of a pixel.
+void warn_of_smallness(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
+                       Diagnostics& diagnostics) {
+  constexpr double kLeast = 1e-7;
+  const Box box = contents(scene.graph, scene.root, known);
+  if (box.empty()) return;
+  const double size = std::max(glm::length(box.hi - box.lo), glm::length((box.lo + box.hi) * 0.5 - camera.position));
+  if (!(size < kLeast)) return;
+  Span span = scene.graph.origin(scene.root).span;
+  if (span.end == 0 && !scene.graph.children(scene.root).empty()) {
+    span = scene.graph.origin(scene.graph.children(scene.root)[0]).span;
+  }
+  diagnostics.warning("W0513", span,
+                      fmt::format("the scene is too small: {:.2g} from end to end, camera and all", size),
+                      "errors shrink with places down to those around 1, and no further",
+                      {fmt::format("multiply every length by {:.0e}, those of the camera too; pictures stay the same",
+                                   std::pow(10.0, std::round(-std::log10(std::max(size, 1e-300)))))});
+}
+
 }  // namespace
 
 std::span<const Pass> passes() {
@@ -254,6 +275,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
 
   const std::vector<Knowledge> known = analyse(field.graph);
   warn_of_cancellation(field, known, elaborated->camera, diagnostics);
+  warn_of_smallness(field, known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
   if (options.lint) {
     lint(elaborated->scene, *elaborated, whole->surface, diagnostics);

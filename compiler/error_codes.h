@@ -95,6 +95,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0510", "the camera is inside a solid"},
     {"W0511", "an offset of what is no distance"},
     {"W0512", "a part too small for where it stands"},
+    {"W0513", "a scene too small for numbers"},
 };
 
 }  // namespace fathom::compiler

@@ -304,7 +304,9 @@ class Linter {
         warn("W0506", id, fmt::format("the {} is thinner than floats tell apart", word(id)),
              fmt::format("{:.2g} thick, {:.3g} from the camera or the origin, where {:.2g} is the least to rely on",
                          thin, away[id], resolution),
-             "make it thicker, or bring camera and scene closer to the origin");
+             away[id] > 1
+                 ? "make it thicker, or bring camera and scene closer to the origin"
+                 : "make it thicker, or the whole scene larger: errors shrink no further below a distance of 1");
       }
       if (!keeps_thinness(kind(id))) continue;
       double factor = scale[id];
