@@ -149,6 +149,37 @@ std::vector<NamedParam> named_params(Kind kind, std::span<const double> params) 
   return named;
 }
 
+namespace {
+
+// How many of the first operands have a place of their own. Those after them may come in any order, which a pass may
+// change (compiler/passes/share.cpp).
+std::size_t ordered_operands(Kind kind, std::size_t operands) {
+  switch (kind) {
+    case Kind::Add:
+    case Kind::Multiply:
+    case Kind::Minimum:
+    case Kind::Maximum:
+    case Kind::Union:
+    case Kind::Intersection:
+      return 0;
+    case Kind::Subtraction:
+      return 1;
+    default:
+      return operands;
+  }
+}
+
+// The operands as they are printed: a graph to be compared with another has those of any order in the order of lines.
+std::vector<NodeId> printed_operands(const Graph& graph, NodeId id, NodeNames names) {
+  std::vector<NodeId> operands(graph.children(id).begin(), graph.children(id).end());
+  if (names == NodeNames::Numbers) return operands;
+  const std::size_t ordered = ordered_operands(graph.kind(id), operands.size());
+  std::sort(operands.begin() + static_cast<std::ptrdiff_t>(ordered), operands.end());
+  return operands;
+}
+
+}  // namespace
+
 std::string print_graph(const Scene& scene, const Source& source, NodeNames names) {
   constexpr std::size_t kCommentColumn = 36;
   const Graph& graph = scene.graph;
@@ -164,7 +195,7 @@ std::string print_graph(const Scene& scene, const Source& source, NodeNames name
     const bool numbers = names == NodeNames::Numbers;
     called[id] = numbers ? fmt::format("{}", next++) : places.name(kind, graph.origin(id));
     std::string line = fmt::format("%{} = {}{}", called[id], spec(kind).name, print_params(kind, graph.params(id)));
-    for (const NodeId child : graph.children(id)) line += fmt::format(" %{}", called[child]);
+    for (const NodeId child : printed_operands(graph, id, names)) line += fmt::format(" %{}", called[child]);
     const std::string origin = print_origin(graph.origin(id), source, numbers);
     if (!origin.empty())
       line = fmt::format("{:<{}}{}{}", line, kCommentColumn, line.size() < kCommentColumn ? "" : " ", origin);
