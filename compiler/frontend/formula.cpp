@@ -65,8 +65,10 @@ std::optional<Formula> read_formula(const syntax::Value& value, const Scope& sco
   return std::nullopt;
 }
 
-std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
+std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics,
+                                  bool may_vary) {
   FormulaContext context{scope, formula_functions(constant_functions()), false, diagnostics};
+  context.may_have_point = may_vary;
   const FormulaText text{std::get<std::string>(value.data), value.span};
   const std::optional<Formula> formula = finish(context, FormulaParser(text, context).expression_to_end());
   return formula ? std::optional(evaluate(*formula)) : std::nullopt;

@@ -51,7 +51,9 @@ std::optional<Formula> read_formula(const syntax::Value& value, const Scope& sco
                                     std::span<const FunctionSpec> functions, Diagnostics& diagnostics);
 
 // The value of a formula in a string, without x, y and z; nullopt as above. It may be infinite or not a number.
-std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+// `may_vary`: whether a formula with x, y and z could stand in its place, which messages then say.
+std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics,
+                                  bool may_vary = false);
 
 // The value of a formula that has no x, y and z in it.
 double evaluate(const Formula& formula);

@@ -46,7 +46,7 @@ std::vector<std::string_view> known_names(const FormulaContext& context) {
   for (const auto& [name, node] : context.definitions) names.push_back(name);
   std::sort(names.begin() + scope, names.end());  // the same on every machine
   for (const NamedConstant& row : kConstants) names.push_back(row.name);
-  if (context.has_point) names.insert(names.end(), {"x", "y", "z"});
+  if (context.has_point || context.may_have_point) names.insert(names.end(), {"x", "y", "z"});
   return names;
 }
 

@@ -29,7 +29,8 @@ struct FormulaContext {
   Diagnostics& diagnostics;
   FormulaBuilder builder = {};
   std::unordered_map<std::string, FormulaId, NameHash, std::equal_to<>> definitions = {};
-  bool good = true;  // whether the result can be used
+  bool may_have_point = false;  // whether x, y and z could have been used
+  bool good = true;             // whether the result can be used
 };
 
 // Where a line's characters are in the scene's text.

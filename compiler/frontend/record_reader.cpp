@@ -289,7 +289,7 @@ void RecordReader::check(const syntax::Property& property) {
     fit_.push_back({own_name(*row), property.value.get()});
   } else if (!has_formulas(*property.value, row->type)) {
     check_value(*property.value, *property.value, *row);
-  } else if (auto numbers = evaluated(*property.value, scope_, diagnostics_)) {
+  } else if (auto numbers = evaluated(*property.value, scope_, diagnostics_, row->varies)) {
     evaluated_.push_back(std::make_unique<const Value>(std::move(*numbers)));
     check_value(*evaluated_.back(), *property.value, *row);
   } else {

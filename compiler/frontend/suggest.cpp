@@ -271,11 +271,12 @@ std::string_view suggest(std::string_view word, const std::vector<std::string_vi
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-  constexpr std::size_t kMostListed = 30;  // a scene may name thousands of nodes
+  // A scene may name thousands of nodes. "and 1 more" would take the room of the name.
+  constexpr std::size_t kMostListed = 30;
   if (known.empty()) return "";
   std::vector<std::string_view> sorted = known;
   std::sort(sorted.begin(), sorted.end());
-  const std::size_t listed = std::min(sorted.size(), kMostListed);
+  const std::size_t listed = sorted.size() == kMostListed + 1 ? sorted.size() : std::min(sorted.size(), kMostListed);
   const std::string_view meant = suggest(word, known);
   // Among many the list would bury the answer.
   if (!meant.empty() && known.size() > kMostListed) return fmt::format("did you mean `{}`?", meant);

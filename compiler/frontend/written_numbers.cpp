@@ -55,16 +55,16 @@ bool has_formulas(const Value& value, ValueType type) {
   return may_be_numbers(type) && has_text(value) && is_arithmetic(value);
 }
 
-std::optional<Value> evaluated(const Value& value, const Scope& scope, Diagnostics& diagnostics) {
+std::optional<Value> evaluated(const Value& value, const Scope& scope, Diagnostics& diagnostics, bool may_vary) {
   if (const double* number = std::get_if<double>(&value.data)) return Value{value.span, *number};
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) {
-    const std::optional<double> number = read_number(value, scope, diagnostics);
+    const std::optional<double> number = read_number(value, scope, diagnostics, may_vary);
     return number ? std::optional(Value{value.span, *number}) : std::nullopt;
   }
   syntax::List numbers;
   for (const Value& item : *list) {
-    if (auto number = evaluated(item, scope, diagnostics)) numbers.push_back(std::move(*number));
+    if (auto number = evaluated(item, scope, diagnostics, may_vary)) numbers.push_back(std::move(*number));
   }
   if (numbers.size() != list->size()) return std::nullopt;
   return Value{value.span, std::move(numbers)};

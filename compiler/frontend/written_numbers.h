@@ -19,7 +19,9 @@ bool has_formulas(const syntax::Value& value, ValueType type);
 bool varies(const syntax::Value& value);
 
 // The value, for which has_formulas(), with numbers only; nullopt after a report. Every formula is looked at.
-std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+// `may_vary`: whether the property is one that may vary over space.
+std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics,
+                                       bool may_vary);
 
 // "; `r - 2` is -1": the formula in `written` that came to this part of evaluated(written); "" when it was no
 // formula.
