@@ -20,6 +20,8 @@ struct Affine {
   bool operator==(const Affine& other) const = default;
 };
 
+inline const Affine kIdentity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
+
 // a after b: p -> a(b(p)).
 Affine compose(const Affine& a, const Affine& b);
 // The linear part must be invertible.

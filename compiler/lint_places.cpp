@@ -20,7 +20,6 @@ constexpr double kMost = 0x1p20;
 // Of a node that is used in more places, the first are looked at.
 constexpr std::size_t kMostPlaces = 256;
 
-const Affine kIdentity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
 
 
 // Where nodes stand: [node] the maps from its own space to the scene's. Below what folds, bends or repeats space a

@@ -27,9 +27,8 @@ constexpr double kRounding = 1e-12;  // of places after transforms, as a part of
 constexpr int kMostNodes = 256;      // of an outline that are made anew; shared ones count once a use
 constexpr std::size_t kMostCorners = 4096;
 
-const Affine kIdentity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
 
-dvec2 polar(double radius, double degrees) {
+dvec2 at_polar(double radius, double degrees) {
   const SineCosine at = sine_cosine(degrees);
   return {radius * at.sine, radius * at.cosine};
 }
@@ -49,10 +48,10 @@ std::vector<dvec2> corners_of(Kind kind, Params p) {
       for (std::size_t i = 0; i + 1 < p.size(); i += 2) corners.push_back(vec2_at(p, i));
       return corners;
     case Kind::RegularPolygon:
-      for (int i = 0; i < static_cast<int>(p[0]); ++i) corners.push_back(polar(p[1], 360 * i / p[0]));
+      for (int i = 0; i < static_cast<int>(p[0]); ++i) corners.push_back(at_polar(p[1], 360 * i / p[0]));
       return corners;
     case Kind::Star:
-      for (int i = 0; i < 2 * static_cast<int>(p[0]); ++i) corners.push_back(polar(p[i % 2 ? 2 : 1], 180 * i / p[0]));
+      for (int i = 0; i < 2 * static_cast<int>(p[0]); ++i) corners.push_back(at_polar(p[i % 2 ? 2 : 1], 180 * i / p[0]));
       return corners;
     case Kind::Trapezoid:
       return {{p[0], -p[2]}, {p[1], p[2]}, {-p[1], p[2]}, {-p[0], -p[2]}};

@@ -11,7 +11,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kCompletionExamples =
     "eval \"$(fathom completion bash)\"   # in ~/.bashrc\n"
     "fathom completion bash > ~/.local/share/bash-completion/completions/fathom\n"
     "fathom completion zsh > ~/.zfunc/_fathom   # a folder of $fpath\n"
@@ -250,7 +250,7 @@ int run_completion(std::span<const std::string> args, const Streams& streams) {
   const std::vector<std::string_view> shells = {"bash", "zsh", "fish"};
   std::string name;
   Arguments arguments("completion", "Prints the script by which a shell completes verbs, options and their values.",
-                      kExamples);
+                      kCompletionExamples);
   arguments.positional("shell", "bash, zsh or fish", name, true, "SHELL", {shells.begin(), shells.end()});
   if (const auto code = arguments.parse(args, streams)) return *code;
   int shell = 0;

@@ -12,7 +12,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kManExamples =
     "fathom man | man -l -\n"
     "fathom man > ~/.local/share/man/man1/fathom.1";
 
@@ -102,7 +102,7 @@ std::string manual() {
 }  // namespace
 
 int run_man(std::span<const std::string> args, const Streams& streams) {
-  Arguments arguments("man", "Prints the manual page of all verbs, for `man`.", kExamples);
+  Arguments arguments("man", "Prints the manual page of all verbs, for `man`.", kManExamples);
   if (const auto code = arguments.parse(args, streams)) return *code;
   streams.out << manual();
   return kDone;
