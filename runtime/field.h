@@ -38,6 +38,13 @@ struct Field {
   // same scene. May read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
+  // How far a distance near 0 that double computes at p may be from the true one, scene units. A place is solid where
+  // the field is below 0 by more than this: 0 over a volume is empty, whichever way its values are rounded.
+  double rounding(glm::dvec3 p) const {
+    const double place = std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return vm::kFloatError * 0x1p-29 * (place + static_cast<double>(magnitude));
+  }
+
   bool knows_convex() const { return convex && evaluator == nullptr; }
 
   // Distances of many points in float, or of one or many in double; in a large scene rounded where nothing is near.

@@ -22,7 +22,7 @@ std::optional<std::uint32_t> Media::at(glm::dvec3 place, RealScratch& scratch) c
   std::uint64_t instructions = 0;
   for (std::uint32_t i = 0; i < media_.size(); ++i) {
     const Field& field = media_[i].field;
-    if (field.bound.contains(place) && field.evaluate(place, scratch, instructions) < 0) return i;
+    if (field.bound.contains(place) && field.evaluate(place, scratch, instructions) < -field.rounding(place)) return i;
   }
   return std::nullopt;
 }

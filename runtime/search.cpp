@@ -34,6 +34,9 @@ constexpr double kReach = 0.995, kLargestSlope = 0.9;
 // Near a root a step is aimed beyond it by this share of the way.
 constexpr double kOvershoot = 1.1;
 constexpr int kMostRounds = 200;  // of a bracket
+// Within a solid a field of 0, give or take so many roundings, is a surface where it goes on for longer than this
+// times max(1, |p|). Where it does not, two parts of the solid touch there.
+constexpr double kLevelRoundings = 4, kLeastLevel = 0x1p-20;
 
 }  // namespace
 
@@ -61,9 +64,11 @@ void Search::ask(double t, Purpose purpose) {
 void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
   ++result_.evaluations;
   result_.instructions += instructions;
-  if (side_ == 0) side_ = f < 0 ? -1 : 1;
+  rounding_ = field_->rounding(point());
+  if (side_ == 0) side_ = f < -rounding_ ? -1 : 1;
   if (!std::isfinite(f)) return end(Arrival::Status::Invalid);
-  const double g = side_ < 0 ? -f : f;
+  // Raised by what may be rounding, so that g is nowhere below 0 where the field is 0.
+  const double g = (side_ < 0 ? -f : f) + rounding_;
   switch (purpose_) {
     case Purpose::Begin:
       return begin(g);
@@ -72,10 +77,10 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
       if (!pending_.empty() && pending_.back().a == now_.b) pending_.back().ga = g;
       return go_on(scratch);
     case Purpose::Cut:
-      cut(g);
-      return go_on(scratch);
+      if (cut(g)) go_on(scratch);
+      return;
     case Purpose::Root:
-      return narrow_bracket(g);
+      return narrow_bracket(g - root_level_);
   }
 }
 
@@ -98,15 +103,16 @@ void Search::begin(double g) {
 }
 
 // Goes on with the near part, or with the far one where nothing is to be done but that: then no segment is kept.
-void Search::cut(double g) {
+// False when the search is done, or the near part the root's.
+bool Search::cut(double g) {
   const Segment nearer{now_.a, now_.ga, wanted_, g, now_.fall, now_.rise};
   if (is_free(nearer, gap_of(nearer))) {
-    leave_behind(nearer);
     now_.a = wanted_, now_.ga = g;
-    return;
+    return leave_behind(nearer);
   }
   if (g >= 0) pending_.push_back({wanted_, g, now_.b, now_.gb, now_.fall, now_.rise});
   now_ = nearer;
+  return true;
 }
 
 // Settles the nearest segment, again and again, until a value is wanted.
@@ -138,6 +144,8 @@ bool Search::settle(RealScratch& scratch) {
   const double open = gap.hi - gap.lo, middle = (gap.lo + gap.hi) / 2;
   if (open <= coarsened(s.gb < 0 ? kRootResolution : kResolution, middle) || !(middle > s.a && middle < s.b)) {
     contact_ = contact_ || s.gb >= 0;
+    // Beyond what nothing is told of, as where a field comes down to a plateau, longer segments are asked of again.
+    if (s.gb >= 0) hopeless_ = std::max(hopeless_, kShorter * (s.b - s.a));
     if (s.gb < 0) find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
     return s.gb >= 0;
   }
@@ -145,9 +153,33 @@ bool Search::settle(RealScratch& scratch) {
   return false;
 }
 
+// False when it turns out that the solid ended before.
 bool Search::leave_behind(const Segment& s) {
   slope_ = (s.gb - s.ga) / (s.b - s.a);
+  if (side_ > 0) return true;
+  const double level = kLevelRoundings * rounding_;
+  if (s.gb > level) {
+    above_ = s.b, g_above_ = s.gb;
+  } else if (s.ga > level) {
+    above_ = s.a, g_above_ = s.ga;
+  } else if (is_level(s)) {
+    leave_solid(s, level);
+    return false;
+  }
   return true;
+}
+
+// Whether the field is 0 all over the segment, which is free, and its ends are level with 0.
+bool Search::is_level(const Segment& s) const {
+  const double length = s.b - s.a;
+  return length > kLeastLevel * scale(s.a) && std::min(s.fall, s.rise) * length <= kLevelRoundings * rounding_;
+}
+
+// The solid ended where g came down to the level of s.
+void Search::leave_solid(const Segment& s, double level) {
+  if (g_above_ == 0) return hit(s.a, s.a);
+  root_level_ = 2 * level;
+  find_root({above_, g_above_ - root_level_, s.a, s.ga - root_level_, 0, 0}, 0);
 }
 
 // Where intervals may tell something of the near part; else where the balls of the near end and of the sample should

@@ -68,10 +68,12 @@ class Search {
 
   void ask(double t, Purpose purpose);
   void begin(double g);
-  void cut(double g);
+  bool cut(double g);
   void go_on(RealScratch& scratch);
   bool settle(RealScratch& scratch);
   bool leave_behind(const Segment& s);
+  bool is_level(const Segment& s) const;
+  void leave_solid(const Segment& s, double level);
   double place_to_cut(const Segment& s, const Gap& gap) const;
   static Gap gap_of(const Segment& s);
   static bool is_free(const Segment& s, const Gap& gap);
@@ -95,8 +97,11 @@ class Search {
   std::vector<Segment> pending_;  // in order along the ray, the nearest last
   Segment now_{};                 // the nearest of all
   Bracket bracket_{};
-  double slope_ = 0;  // of g, over the segment that was left behind last
-  double width_ = 0;  // of what may hold the first root, where that is more than its bracket
+  double slope_ = 0;                // of g, over the segment that was left behind last
+  double rounding_ = 0;             // of the field, at the last place that was asked for
+  double above_ = 0, g_above_ = 0;  // the last end of a segment left behind where g was not level with 0, and g there
+  double root_level_ = 0;           // the value that is looked for within the bracket
+  double width_ = 0;                // of what may hold the first root, where that is more than its bracket
   double wanted_ = 0;
   Purpose purpose_ = Purpose::Begin;
   bool contact_ = false, done_ = true;

@@ -74,11 +74,13 @@ class Tiered {
     const Mask retreating = phase == code(LanePhase::Retreat), walking = !(beginning | refining);
     // An exact 0 is a touch, as where a solid is cut from its like.
     const Mask inside = g_ < k(0), outside = g_ >= k(0);
+    // What may be 0 and is rounded below it is no crossing, for where the field is 0 over a volume nothing is solid.
+    const Mask deep = g_ < -error_;
     const Mask crossing = phase == code(LanePhase::Cross);
     const N gap = t_ - last_t_ - last_r_ - r_;  // what neither ball covers
 
     const Mask accepted = outside & (beginning | (walking & (retreating | (gap <= k(0)))));
-    const Mask crossed = inside & walking & (crossing | retreating | (gap <= unseen_));
+    const Mask crossed = deep & walking & (crossing | retreating | (gap <= unseen_));
     const Mask failed = walking & (!(accepted | crossed)), bracketed = refining | crossed;
     phase_ = select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase));
     new_t_ = select(accepted, t_, last_t_);
@@ -87,7 +89,7 @@ class Tiered {
     ahead_ = r_;
     if constexpr (kConvex) look_ahead(convex, stepped, rules);
     learn(stepped, failed);
-    const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing);
+    const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing, failed & retreating);
     next_ = select(accepted, onwards, back);
     new_r_ = select(accepted, ahead_, last_r_);
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
@@ -168,12 +170,12 @@ class Tiered {
   }
 
   // The plain step from the last accepted sample.
-  HWY_INLINE N retreat(Mask failed, Mask from_crossing) {
+  HWY_INLINE N retreat(Mask failed, Mask from_crossing, Mask again) {
     const N penalty = a_.get(kPenalty);
     const Mask near = from_crossing & (last_g_ < band_), grazes = near & (penalty > k(kMostPenalty));
     patience_ = select(near, penalty, select(from_crossing, k(kFarPenalty), patience_));
     penalty_ = select(near, penalty + penalty, penalty);
-    undecided_ = undecided_ | grazes | (failed & is_stuck(last_t_, last_r_));
+    undecided_ = undecided_ | grazes | again | (failed & is_stuck(last_t_, last_r_));
     return last_t_ + last_r_;
   }
 
@@ -181,9 +183,10 @@ class Tiered {
   HWY_INLINE void begin_inside(Mask inside, N phase) {
     const Mask starting = inside & (phase == code(LanePhase::Start)), emerging = inside & (!starting);
     const Mask coarse = error_ > k(kCoarse) * field_band_;
-    undecided_ = undecided_ | (starting & coarse & (-g_ < error_));
+    const Mask shallow = -g_ < error_;
+    undecided_ = undecided_ | (shallow & (emerging | (starting & coarse)));
     phase_ = select(starting, code(LanePhase::Emerge), phase_);
-    hits_ = hits_ | emerging;
+    hits_ = hits_ | (emerging & (!shallow));
     new_t_ = select(emerging, k(0), new_t_);  // kRoot
     new_r_ = select(emerging, t_, new_r_);    // kWidth
     next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
@@ -235,7 +238,8 @@ class Tiered {
     const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
     N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
     verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
-    return a_.finish(next_, select(finite, verdict, code(LaneVerdict::Invalid)));
+    // A lane that is invalid stays where it is.
+    return a_.finish(select(finite, next_, t_), select(finite, verdict, code(LaneVerdict::Invalid)));
   }
 
   LaneView<N, Lanes<S>> a_;
