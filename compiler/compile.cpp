@@ -18,6 +18,7 @@
 #include "compiler/lints.h"
 #include "compiler/lower.h"
 #include "compiler/media.h"
+#include "compiler/nan_regions.h"
 #include "compiler/origin.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
@@ -281,6 +282,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     lint(elaborated->scene, *elaborated, whole->surface, diagnostics);
     lint_offsets(elaborated->scene, diagnostics);
     lint_places(elaborated->scene, origin, diagnostics);
+    warn_of_nan(elaborated->scene, *whole, *elaborated, origin, source, diagnostics);
   }
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
   std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);

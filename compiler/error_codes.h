@@ -96,6 +96,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0511", "an offset of what is no distance"},
     {"W0512", "a part too small for where it stands"},
     {"W0513", "a scene too small for numbers"},
+    {"W0514", "a field that is not a number somewhere"},
 };
 
 }  // namespace fathom::compiler

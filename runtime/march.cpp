@@ -89,6 +89,7 @@ void Marcher::search_once() {
 void Marcher::end_search(std::size_t i) {
   const Searched& ray = searched_[i];
   const Certified& found = ray.search.result();
+  if (found.status == Arrival::Status::Invalid) counters_.note_invalid(ray.search.point());
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;

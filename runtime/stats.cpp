@@ -88,7 +88,13 @@ std::string stage_json(const StageSeconds& stages) {
 
 }  // namespace
 
+void MarchCounters::note_invalid(glm::dvec3 at) {
+  const auto key = [](const glm::dvec3& p) { return std::array{p.x, p.y, p.z}; };
+  if (!invalid_at || key(at) < key(*invalid_at)) invalid_at = at;
+}
+
 void MarchCounters::merge(const MarchCounters& other) {
+  if (other.invalid_at) note_invalid(*other.invalid_at);
   for (const Row& row : kRows) {
     if (row.march_count) this->*row.march_count += other.*row.march_count;
   }
@@ -96,6 +102,7 @@ void MarchCounters::merge(const MarchCounters& other) {
 
 void Stats::merge(const Stats& other) {
   for (const Row& row : kRows) count_of(*this, row) += count_of(other, row);
+  if (other.march.invalid_at) march.note_invalid(*other.march.invalid_at);
   if (!other.stages) return;
   if (!stages) stages.emplace();
   for (std::size_t i = 0; i < stages->size(); ++i) (*stages)[i] += (*other.stages)[i];

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,11 @@ struct MarchCounters {
   // Of the evaluations in float, those in each kind of region (runtime/regions.h).
   std::uint64_t region_far = 0, region_programs = 0;
 
+  // Of the places where the distance was not finite, in the programs' coordinates, the least in the order of x, y, z:
+  // the same for any number of threads.
+  std::optional<glm::dvec3> invalid_at;
+
+  void note_invalid(glm::dvec3 at);
   void merge(const MarchCounters& other);
 };
 

@@ -159,6 +159,7 @@ void Stream<S>::finish(std::size_t i) {
     case LaneVerdict::Miss:
       return arrive_as(Arrival::Status::Miss, 0, 0);
     default:
+      counters_.note_invalid({number(kX), number(kY), number(kZ)});
       return arrive_as(Arrival::Status::Invalid, 0, 0);
   }
 }

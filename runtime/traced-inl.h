@@ -81,7 +81,7 @@ HWY_INLINE MaskOf<N> trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S
   const N next = min(select(accepted, t + step, a.get(kT) + a.get(kR)), a.get(kTMax));
   a.put(kT, accepted, t);
   a.put(kR, accepted, r);
-  return a.finish(next, select(finite, verdict, code<N>(LaneVerdict::Invalid)));
+  return a.finish(select(finite, next, t), select(finite, verdict, code<N>(LaneVerdict::Invalid)));
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE

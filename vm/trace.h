@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "vm/verify.h"
@@ -23,5 +24,9 @@ struct TraceStep {
 };
 
 void trace(const Code& program, glm::dvec3 point, const std::function<void(const TraceStep&)>& each);
+
+// Where the program's value at the point, in f32, is not a finite number: an instruction before which all on the
+// stacks was finite, and after it no longer; the offset of its opcode word. Nothing where the value is finite.
+std::optional<std::size_t> first_not_finite(const Code& program, glm::dvec3 point);
 
 }  // namespace fathom::vm

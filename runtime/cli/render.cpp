@@ -19,6 +19,7 @@
 #include "runtime/cli/closing_lines.h"
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/interruption.h"
+#include "runtime/cli/invalid_rays.h"
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_files.h"
@@ -205,6 +206,7 @@ class Job {
     using End = runtime::RenderEnd;
     const End ended = result.stats.end;
     warn_of_lost(result.stats);
+    warn_of_invalid(result.stats);
     const bool undone = ended == End::Cancelled || ended == End::TimeLimit;
     const bool keep = checkpoint_ && (undone || checkpoint_->named());
     if (keep) checkpoint_->write(header_, result, streams_);
@@ -239,6 +241,12 @@ class Job {
 
   std::string earlier_state() const {
     return fmt::format("an earlier state of it is in {}; --resume goes on from that", checkpoint_->path());
+  }
+
+  // Rays that were lost where the field is not a number.
+  void warn_of_invalid(const runtime::Stats& stats) {
+    const std::optional<glm::dvec3>& at = stats.march.invalid_at;
+    if (at) warn(streams_, invalid_text(scene_, stats.march.invalid, stats.march.rays, *at));
   }
 
   void warn_of_lost(const runtime::Stats& stats) {
