@@ -5,10 +5,12 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "tests/support/effort.h"
+#include "tests/support/plain_lowering.h"
 #include "tests/support/random_program.h"
 #include "vm/evaluate.h"
 
@@ -57,6 +59,19 @@ TEST_CASE("a trace shows what each instruction leaves", "[trace]") {
   CHECK(std::isnan(steps[2].values[0]));
   CHECK(steps[2].offset == 5);
   CHECK(steps[3].points.size() == 1);
+}
+
+// y + sqrt(x): of an operand below 0 the root is at fault, not what takes it.
+TEST_CASE("a trace finds the first instruction without a finite value", "[trace]") {
+  vm::Program code;
+  code.append(vm::Opcode::Y, 0, {}, {});
+  code.append(vm::Opcode::X, 0, {}, {});
+  const std::size_t root = code.words.size();
+  code.append(vm::Opcode::Sqrt, 0, {}, {});
+  code.append(vm::Opcode::Add, 0, {}, {});
+  const vm::VerifiedProgram program = verified(std::move(code));
+  CHECK(vm::first_not_finite(program, {-1, 0, 0}) == root);
+  CHECK_FALSE(vm::first_not_finite(program, {4, 1, 0}));
 }
 
 }  // namespace fathom::test
