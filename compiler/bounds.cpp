@@ -44,11 +44,10 @@ std::vector<Knowledge> analyse(const Graph& graph) {
 
 Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
   Box result;
-  std::vector<NodeId> pending = {id};
-  while (!pending.empty()) {
-    const NodeId node = pending.back();
-    pending.pop_back();
-    if (known[node].box.empty()) continue;
+  std::vector<bool> wanted(id + 1, false);
+  wanted[id] = true;
+  for (NodeId node = id + 1; node-- > 0;) {  // parents come after their children
+    if (!wanted[node] || known[node].box.empty()) continue;
     if (known[node].box.finite()) {
       result = unite(result, known[node].box);
       continue;
@@ -61,7 +60,7 @@ Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known)
       case Kind::StairsUnion:
       case Kind::Paint:
       case Kind::Scaled:
-        pending.insert(pending.end(), graph.children(node).begin(), graph.children(node).end());
+        for (const NodeId child : graph.children(node)) wanted[child] = true;
         break;
       default:  // a ground alone, or something cut from it
         if (!graph.children(node).empty() && known[graph.children(node)[0]].box.finite()) {

@@ -151,6 +151,43 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       known.lipschitz,      known.magnitude,     known.certified};
 }
 
+// `what` of the solids of transparent materials are more than the limit at the scene's `node`.
+void report_media(const Graph& graph, NodeId node, std::string_view what, const Limits& limits,
+                  Diagnostics& diagnostics) {
+  diagnostics.error(
+      "E0312", graph.origin(node).span,
+      fmt::format("the solids of the transparent materials have more than {} {} here", limits.media, what), "",
+      {"each transparent material has a solid, its bodies without what outranks them in their box: use fewer of these "
+       "materials, or move their bodies apart",
+       raise(&Limits::media, 2 * limits.media)});
+}
+
+// The insides of the transparent materials (compiler/media.h).
+std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool painted, const Source& source,
+                                                 Diagnostics& diagnostics, const CompileOptions& options) {
+  const auto most = static_cast<std::size_t>(options.limits.media);
+  MediaMaker maker(scene.scene, scene.surfaces, scene.materials, most);
+  if (maker.excess()) {
+    report_media(maker.graph(), *maker.excess(), "nodes", options.limits, diagnostics);
+    return std::nullopt;
+  }
+  std::vector<Medium> media;
+  std::size_t instructions = 0;
+  for (std::size_t i = 0; i < maker.count(); ++i) {
+    const MediumScene medium = maker.make(i);
+    const Scene inside = optimise(medium.scene, false, options, nullptr);
+    if (has_more_values(inside, most - instructions)) {
+      report_media(maker.graph(), maker.first_body(i), "instructions", options.limits, diagnostics);
+      return std::nullopt;
+    }
+    auto compiled = compile_field(medium.scene, inside, painted, source, diagnostics, options);
+    if (!compiled) return std::nullopt;
+    instructions = std::min(most, instructions + compiled->distance.instructions());
+    media.push_back({std::move(*compiled), medium.material});
+  }
+  return media;
+}
+
 // The programs of textures. nullopt when one is too long.
 std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
                                                              const Limits& limits, Diagnostics& diagnostics) {
@@ -262,14 +299,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const bool several = elaborated->surfaces.size() > 1;
   std::optional<CompiledField> whole = compile_field(elaborated->scene, field, several, source, diagnostics, options);
   if (!whole) return std::nullopt;
-  std::vector<Medium> media;
-  for (const MediumScene& medium : media_of(elaborated->scene, elaborated->surfaces, elaborated->materials)) {
-    const Scene inside = optimise(medium.scene, false, options, nullptr);
-    auto compiled = compile_field(medium.scene, inside, several, source, diagnostics, options);
-    if (!compiled) return std::nullopt;
-    media.push_back({std::move(*compiled), medium.material});
-  }
-
+  std::optional<std::vector<Medium>> media = compile_media(*elaborated, several, source, diagnostics, options);
+  if (!media) return std::nullopt;
   std::optional<std::vector<vm::VerifiedProgram>> formulas =
       assemble_all(elaborated->formulas, source, options.limits, diagnostics);
   if (!formulas) return std::nullopt;
@@ -290,7 +321,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(*whole),
                        std::move(source),
                        origin,
-                       std::move(media),
+                       std::move(*media),
                        std::move(lamps),
                        std::move(*formulas),
                        count_nodes(field),

@@ -93,6 +93,9 @@ std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& 
   return lamp;
 }
 
+// Visits beyond one of each node. Of a node under an uneven scale there can be any number and no lamp.
+constexpr std::size_t kMaxVisits = 8 * kMaxLamps;
+
 // Tells lamps in the same place apart from others; the same shape under another transform is rare enough to pass.
 using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
 
@@ -101,9 +104,11 @@ class Finder {
   Finder(const Scene& scene, std::span<const Surface> surfaces, std::span<const Material> materials)
       : graph_(scene.graph), surfaces_(surfaces), materials_(materials) {
     mark();
+    count_uses(scene);
     const Affine identity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
     tasks_.push_back({scene.root, identity, std::nullopt});
-    while (!tasks_.empty() && lamps_.size() < kMaxLamps) {
+    const std::size_t most_visits = graph_.size() + kMaxVisits;
+    for (std::size_t i = 0; i < most_visits && !tasks_.empty() && lamps_.size() < kMaxLamps; ++i) {
       const Task task = tasks_.back();
       tasks_.pop_back();
       visit(task);
@@ -117,6 +122,9 @@ class Finder {
     Affine to_local;
     std::optional<std::uint32_t> surface;  // of what is not painted further in
   };
+
+  // A node that several use is visited once under each map and surface.
+  using Visited = std::tuple<NodeId, std::optional<std::uint32_t>, std::array<double, 12>>;
 
   bool glows(std::uint32_t surface) const {
     const Material& material = materials_[surfaces_[surface].material];
@@ -140,9 +148,21 @@ class Finder {
     }
   }
 
+  void count_uses(const Scene& scene) {
+    shared_.resize(graph_.size());
+    std::vector<bool> used(graph_.size());
+    for (NodeId id = 0; id <= scene.root; ++id) {
+      for (const NodeId child : graph_.children(id)) {
+        shared_[child] = shared_[child] || used[child];
+        used[child] = true;
+      }
+    }
+  }
+
   void visit(const Task& task) {
     const Kind kind = graph_.kind(task.node);
     if (!holds_[task.node][task.surface && glows(*task.surface)]) return;
+    if (shared_[task.node] && !visited_.insert({task.node, task.surface, task.to_local.params()}).second) return;
     if (is_shape(kind)) return add(task);
     Task inner = task;
     if (kind == Kind::Paint) inner.surface = painted(task.node);
@@ -170,7 +190,9 @@ class Finder {
   const std::span<const Surface> surfaces_;
   const std::span<const Material> materials_;
   std::vector<std::array<bool, 2>> holds_;  // [node][whether a glowing surface is around it]
+  std::vector<bool> shared_;                // [node] whether several nodes use it
   std::vector<Task> tasks_;
+  std::set<Visited> visited_;
   std::set<LampPlace> taken_;
   std::vector<Lamp> lamps_;
 };

@@ -26,6 +26,7 @@ struct Limits {
   double copies = 512;
   double iterations = 256;
   double instructions = 1e6;
+  double media = 1e6;
   double stack = 4096;
   double locals = 65536;
   double coordinate = 1e18;
@@ -46,7 +47,7 @@ struct LimitRow {
 
 inline constexpr double kAnySize = 1e15;
 
-inline constexpr std::array<LimitRow, 15> kLimits = {{
+inline constexpr std::array<LimitRow, 16> kLimits = {{
     {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",
      "places in a text have 32 bits"},
     {"tokens", &Limits::tokens, 1 << 30, "values and names", "a scene's text", "places in a text have 32 bits"},
@@ -61,6 +62,8 @@ inline constexpr std::array<LimitRow, 15> kLimits = {{
     {"iterations", &Limits::iterations, 256, "iterations", "a fractal's loop, and its power",
      "the opcodes that loop"},
     {"instructions", &Limits::instructions, 16e6, "instructions", "a program", "places in a program have 24 bits"},
+    {"media", &Limits::media, 1e9, "nodes", "the solids of all transparent materials together, and their programs",
+     "nodes are numbered in 32 bits"},
     {"stack", &Limits::stack, 65536, "values", "either stack of the machine", "the machine's scratch memory"},
     {"locals", &Limits::locals, 262143, "values", "what a program remembers for later uses",
      "operands that name one have 18 bits"},

@@ -19,6 +19,8 @@ namespace {
 constexpr double kMost = 0x1p20;
 // Of a node that is used in more places, the first are looked at.
 constexpr std::size_t kMostPlaces = 256;
+// Places of all nodes beyond the first of each.
+constexpr std::size_t kMostInAll = 1 << 18;
 
 
 
@@ -28,15 +30,19 @@ std::vector<std::vector<Affine>> places_of(const FieldGraph& field) {
   const Graph& graph = field.graph();
   std::vector<std::vector<Affine>> places(graph.size());
   places[field.root()] = {kIdentity};
+  std::size_t more = kMostInAll;
   for (NodeId id = field.root() + 1; id-- > 0;) {
     const bool transform = graph.kind(id) == Kind::Transform;
     if (places[id].empty() || (!transform && !takes_own_point(graph, id))) continue;
     const Affine up = transform ? inverse(Affine::from_params(graph.params(id))) : kIdentity;
     for (const NodeId child : field.children(id)) {
       for (const Affine& place : places[id]) {
-        if (places[child].size() < kMostPlaces) places[child].push_back(compose(place, up));
+        if (!places[child].empty() && (places[child].size() == kMostPlaces || more == 0)) break;
+        if (!places[child].empty()) --more;
+        places[child].push_back(compose(place, up));
       }
     }
+    places[id] = {};  // only the primitives' are asked for, which have no children
   }
   return places;
 }

@@ -63,7 +63,7 @@ class Linter {
 
   void run(const vm::VerifiedProgram& surface) {
     find_vanishing();
-    find_clear();
+    find_light();
     find_hidden();
     for (NodeId id = 0; id <= scene_.root; ++id) {
       if (!field_.reached(id)) continue;
@@ -161,7 +161,7 @@ class Linter {
       if (arms.size() > Containment::kLongestList) continue;
       for (const auto [arm, within] : containment_.hidden_arms(graph_, arms)) {
         if (holds_clear_[within]) continue;
-        if (lamp_in(arm)) {
+        if (is_lamp_[arm]) {
           warn("W0507", arm, fmt::format("the lamp {} sends out no light", word(arm)),
                fmt::format("it is wholly inside the {}", word(within)),
                "move it out, or cut room for it out of what it is in");
@@ -178,14 +178,18 @@ class Linter {
     return transmits(tables_.materials[tables_.surfaces[surface].material]);
   }
 
-  void find_clear() {
-    holds_clear_.resize(graph_.size());
+  void find_light() {
+    holds_clear_.resize(graph_.size()), is_lamp_.resize(graph_.size());
     for (NodeId id = 0; id <= scene_.root; ++id) {
       const std::span<const NodeId> children = graph_.children(id);
       const auto surface = kind(id) == Kind::Paint ? static_cast<std::size_t>(graph_.params(id)[0]) : 0;
       holds_clear_[id] =
           (kind(id) == Kind::Paint && surface < tables_.surfaces.size() && is_clear(surface)) ||
           std::any_of(children.begin(), children.end(), [&](NodeId child) { return holds_clear_[child]; });
+      const bool joins = kind(id) == Kind::Scaled || kind(id) == Kind::Transform || kind(id) == Kind::Union;
+      is_lamp_[id] = kind(id) == Kind::Paint ? emits(id)
+                                             : joins && std::all_of(children.begin(), children.end(),
+                                                                    [&](NodeId child) { return is_lamp_[child]; });
     }
   }
 
@@ -194,15 +198,6 @@ class Linter {
     if (number >= tables_.surfaces.size()) return false;
     return compiler::emits(tables_.materials[tables_.surfaces[number].material]);
   }
-  // Whether all of it is lamps, by the outermost paint.
-  bool lamp_in(NodeId id) const {
-    while (kind(id) == Kind::Scaled || kind(id) == Kind::Transform) id = graph_.children(id)[0];
-    if (kind(id) == Kind::Paint) return emits(id);
-    const std::span<const NodeId> arms = graph_.children(id);
-    return kind(id) == Kind::Union &&
-           std::all_of(arms.begin(), arms.end(), [this](NodeId arm) { return lamp_in(arm); });
-  }
-
   void check_lamp(NodeId id) {
     if (kind(id) != Kind::Paint || !emits(id)) return;
     const glm::dvec3 size = box(id).hi - box(id).lo;
@@ -344,6 +339,7 @@ class Linter {
   Containment containment_;
   std::vector<bool> vanishes_;     // [node]
   std::vector<bool> holds_clear_;  // [node] whether light passes some of it, which then shows what it holds
+  std::vector<bool> is_lamp_;      // [node] whether all of it is lamps, by the outermost paint
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 

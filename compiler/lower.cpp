@@ -363,6 +363,8 @@ class Lowering {
 
 }  // namespace
 
+bool has_more_values(const Scene& scene, std::size_t most) { return ValueCounter(scene.graph, most).more(scene.root); }
+
 std::optional<vm::Program> lower(const Graph& graph, NodeId root, const Source& source,
                                  std::size_t max_instructions) {
   if (ValueCounter(graph, max_instructions).more(root)) return std::nullopt;

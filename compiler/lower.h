@@ -17,4 +17,8 @@ inline std::optional<vm::Program> lower(const Scene& scene, const Source& source
   return lower(scene.graph, scene.root, source, max_instructions);
 }
 
+// Whether the scene's program computes more than `most` values, each of which takes an instruction or more: told in a
+// tenth of the time and the memory that lower() takes.
+bool has_more_values(const Scene& scene, std::size_t most);
+
 }  // namespace fathom::compiler

@@ -8,9 +8,12 @@
 // Tested by: tests/compiler/media_test.cpp
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "compiler/bodies.h"
 #include "compiler/compiled_scene.h"
 #include "compiler/graph.h"
 
@@ -21,10 +24,44 @@ struct MediumScene {
   Scene scene;             // negative inside; its Paint nodes are those of the whole
 };
 
-// In the materials' order; of those that some body has. A body blended or cut of several materials is inside as the
-// first transparent one of them.
-std::vector<MediumScene> media_of(const Scene& scene, std::span<const Surface> surfaces,
-                                  std::span<const Material> materials);
+// The solids of all transparent materials that some body has, in the materials' order. A body blended or cut of
+// several materials is inside as the first transparent one of them.
+//
+// Together they can have the square of the scene's nodes, so they are counted first and made one at a time.
+class MediaMaker {
+ public:
+  // The arguments stay as they are while the maker is used. `most`: nodes of all solids together.
+  MediaMaker(const Scene& scene, std::span<const Surface> surfaces, std::span<const Material> materials,
+             std::size_t most);
+
+  // The node at which the solids have more than the limit; then none can be made.
+  std::optional<NodeId> excess() const { return excess_; }
+
+  const Graph& graph() const { return graph_; }  // of that node and of bodies
+
+  std::size_t count() const { return media_.size(); }
+  NodeId first_body(std::size_t i) const { return media_[i].own[0]; }
+  MediumScene make(std::size_t i);
+
+ private:
+  struct Medium {
+    std::uint32_t material;
+    std::vector<NodeId> own, cuts;  // bodies
+  };
+  struct Places;
+  Medium medium(std::span<const std::uint32_t> own, const Places& places);
+  const std::vector<NodeId>& reached(const Medium& medium);
+
+  std::span<const Material> materials_;
+  Graph graph_;  // the scene's, and nodes around its bodies
+  std::vector<Body> bodies_;
+  std::vector<Medium> media_;
+  std::optional<NodeId> excess_;
+  std::size_t looks_ = 0;              // at boxes
+  std::vector<std::uint32_t> walk_of_;  // [node] the last walk that reached it
+  std::uint32_t walk_ = 0;
+  std::vector<NodeId> reached_;
+};
 
 // Sets Surface::mixed.
 void mark_mixed(const Scene& scene, std::span<const Material> materials, std::span<Surface> surfaces);

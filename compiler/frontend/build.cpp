@@ -38,7 +38,8 @@ SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vec
 
 // Reports it once; what is not built then is not missed.
 bool SceneBuilder::too_many_nodes(const CheckedNode& node) {
-  if (full_ || static_cast<double>(scene_.graph.size()) <= limits_.nodes) return full_;
+  const auto nodes = static_cast<double>(std::max(scene_.graph.size(), built_nodes_));
+  if (full_ || nodes <= limits_.nodes) return full_;
   full_ = true;
   diagnostics_.error("E0312", node.span, fmt::format("the scene has more than {} nodes here", limits_.nodes), "",
                      {"a named node with materials in it is another in each object that uses it",
@@ -127,6 +128,7 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& root, Context context
   };
   return fold_nodes<Built>(root, context, enter,
                            [this](const CheckedNode& node, Context here, std::span<const Built> children) {
+                             ++built_nodes_;
                              Built built = node.use ? built_.at(key(*node.use, here)) : make(node, children);
                              const Origin origin{node.span, node.name};
                              if (node.between) built.id = transform(built.id, *node.between, origin);

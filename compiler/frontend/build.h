@@ -65,6 +65,7 @@ class SceneBuilder {
   const std::vector<std::vector<Use>>& uses_;
   std::vector<Material>& materials_;
   const Limits& limits_;
+  std::size_t built_nodes_ = 0;  // those of equal nodes, too: what is used in many objects is built anew in each
   bool full_ = false;            // there are more nodes than the limit, which was reported
   std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
   Diagnostics& diagnostics_;
