@@ -61,7 +61,7 @@ class BodyFinder {
     NodeId node = 0;
     std::uint32_t outer = 0;
     std::uint32_t length = 0;
-    std::uint32_t place = 0;     // the same for the same transforms
+    std::uint32_t place = 0;      // the same for the same transforms
     std::uint32_t paint = kNone;  // the innermost Paint's surface
   };
   const std::vector<Part>& parts() const { return parts_; }

@@ -6,7 +6,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::uint32_t kLeaf = 8;   // boxes that are looked at one by one
+constexpr std::uint32_t kLeaf = 8;  // boxes that are looked at one by one
 constexpr double kEndless = 1e100;  // stands for an infinite side
 
 double middle(const Box& box, int axis) {

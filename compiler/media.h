@@ -57,7 +57,7 @@ class MediaMaker {
   std::vector<Body> bodies_;
   std::vector<Medium> media_;
   std::optional<NodeId> excess_;
-  std::size_t looks_ = 0;              // at boxes
+  std::size_t looks_ = 0;               // at boxes
   std::vector<std::uint32_t> walk_of_;  // [node] the last walk that reached it
   std::uint32_t walk_ = 0;
   std::vector<NodeId> reached_;

@@ -77,6 +77,16 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
              "E0301");
 }
 
+// Each of three glass balls is cut by those before it: 2 + 4 + 6 nodes, of which a place and a paint are one each.
+TEST_CASE("limits: the solids of transparent materials", "[limits]") {
+  std::string materials, balls;
+  for (int i = 0; i < 3; ++i) {
+    materials += fmt::format(R"({}"g{}": {{"type": "transparent"}})", i == 0 ? "" : ", ", i);
+    balls += fmt::format(R"({}{{"type": "sphere", "radius": {}, "material": "g{}"}})", i == 0 ? "" : ", ", i + 1, i);
+  }
+  check_edge(objects(balls, R"("materials": {)" + materials + "}, "), &Limits::media, 12, "E0312");
+}
+
 TEST_CASE("limits: the length of a program and its stack", "[limits]") {
   const std::string three = objects(kBall + R"(, {"type": "sphere", "radius": 2, "translate": [4, 0, 0]},
       {"type": "box", "half_size": [1, 2, 3], "translate": [0, 9, 0]})");
