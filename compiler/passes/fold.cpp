@@ -8,7 +8,7 @@
 namespace fathom::compiler {
 namespace {
 
-bool is_identity(std::span<const double> transform) {
+bool is_identity_transform(std::span<const double> transform) {
   constexpr std::array<double, 13> kIdentityParams = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1};
   return std::equal(kIdentityParams.begin(), kIdentityParams.end(), transform.begin());
 }
@@ -41,7 +41,7 @@ Scene fold(const Scene& scene) {
       case Kind::Round:
         return fold_round(scene, out, id, params[0], children[0]);
       case Kind::Transform:
-        if (is_identity(params)) return children[0];
+        if (is_identity_transform(params)) return children[0];
         break;
       case Kind::Complement:
         if (out.kind(children[0]) == Kind::Complement) return out.children(children[0])[0];
