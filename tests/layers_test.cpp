@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 
+namespace fathom::layers_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,3 +69,5 @@ TEST_CASE("charts know numbers and pictures, not scenes and rays", "[layers]") {
     }
   }
 }
+
+}  // namespace fathom::layers_test

@@ -10,7 +10,7 @@
 #include "tests/catalogue/naive.h"
 #include "tests/support/effort.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::bodies_test {
 namespace {
 
 void expect_right(const Judgement& found) {
@@ -317,4 +317,4 @@ TEST_CASE("I15: a wire of a ten thousandth, left by a difference", "[catalogue][
   }
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::bodies_test

@@ -10,7 +10,7 @@
 #include "tests/support/compiled.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::combinators_test {
 namespace {
 
 using tests::compiled_objects;
@@ -152,4 +152,4 @@ TEST_CASE("F6: rounding inwards is refused, cuts that leave nothing are empty", 
   CHECK(result.counters.invalid + result.counters.exhausted == 0);
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::combinators_test

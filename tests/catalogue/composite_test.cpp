@@ -9,7 +9,7 @@
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::composite_test {
 namespace {
 
 // The ground, a torus, a box, two balls (one small) and a thin plate: accuracy's usual mixture.
@@ -148,4 +148,4 @@ TEST_CASE("I16: a million rays at a composite scene, by certified bisection", "[
   CHECK(tally(1300000, true).judgement.rays >= 1000000);
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::composite_test

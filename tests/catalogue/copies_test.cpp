@@ -7,7 +7,7 @@
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/naive.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::copies_test {
 namespace {
 
 // Balls at every whole number from -reach to reach along each axis.
@@ -81,4 +81,4 @@ TEST_CASE("F4: copies without end", "[catalogue]") {
   expect_copies(repeated("[0, 0, 0]", "0.125"), rays, balls(8, 0.125));
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::copies_test

@@ -16,7 +16,7 @@
 #include <immintrin.h>
 #endif
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::extremes_test {
 namespace {
 
 using tests::compiled_objects;
@@ -255,4 +255,4 @@ TEST_CASE("F14: rays through what has no value are invalid, their neighbours are
   CHECK(result.counters.invalid == 2);
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::extremes_test

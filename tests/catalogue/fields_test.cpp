@@ -12,7 +12,7 @@
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::fields_test {
 namespace {
 
 using tests::compiled_objects;
@@ -229,4 +229,4 @@ TEST_CASE("F12: normals of any length make the same plane, one of none makes non
   CHECK(codes_of(plane("[0, 1e30, 0]")) == "E0301");  // larger than any number of a scene
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::fields_test

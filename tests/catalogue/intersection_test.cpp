@@ -10,7 +10,7 @@
 #include "tests/catalogue/naive.h"
 #include "tests/support/effort.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::intersection_test {
 namespace {
 
 const Naive kThousandth{.eps = 1e-3}, kTenThousandth{.eps = 1e-4}, kMillionth{.eps = 1e-6};
@@ -239,4 +239,4 @@ TEST_CASE("I8: a sphere from a hundred thousand units away", "[catalogue]") {
   CHECK(judge_naive(scene, far, sphere_distance, {.eps = 1e-4, .t_max = 1e6}).p50() > 1e-3);
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::intersection_test

@@ -11,7 +11,7 @@
 #include "tests/catalogue/solids.h"
 #include "tests/support/compiled.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::normals_test {
 namespace {
 
 using tests::compiled_objects;
@@ -314,4 +314,4 @@ TEST_CASE("N5: the normal where the hit is said to be, against that where it is"
   CHECK(naive[naive.size() * 99 / 100] > 1e-4);
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::normals_test

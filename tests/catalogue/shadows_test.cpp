@@ -12,7 +12,7 @@
 #include "tests/runtime/estimate.h"
 #include "tests/support/effort.h"
 
-namespace fathom::catalogue {
+namespace fathom::catalogue::shadows_test {
 namespace {
 
 RenderResult picture(const std::string& scene_text, int width, int height, int spp) {
@@ -239,4 +239,4 @@ TEST_CASE("S4: the view factors of grooves of 90 and 10 degrees", "[catalogue][h
   }
 }
 
-}  // namespace fathom::catalogue
+}  // namespace fathom::catalogue::shadows_test

@@ -18,7 +18,7 @@
 #include "tests/support/compiled.h"
 #include "tests/support/random_scene.h"
 
-namespace fathom::test {
+namespace fathom::test::warps_test {
 namespace {
 
 using glm::dvec3;
@@ -257,4 +257,4 @@ TEST_CASE("F3 and F4: a hundred thousand rays at each", "[nightly][.]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::warps_test

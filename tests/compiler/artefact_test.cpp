@@ -18,7 +18,7 @@
 #include "vm/evaluate.h"
 #include "vm/expression.h"
 
-namespace fathom::test {
+namespace fathom::test::artefact_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -341,4 +341,4 @@ TEST_CASE("a program alone has as many surfaces as its tags name", "[artefact]")
   CHECK(reread("sphere 1\ntag 0\nsphere 1 at 3 0 0\ntag 2\nmin\n", contents).surfaces.size() == 3);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::artefact_test

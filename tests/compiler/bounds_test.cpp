@@ -10,6 +10,8 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
+namespace fathom::bounds_test {
+
 namespace {
 
 using namespace fathom;
@@ -87,3 +89,5 @@ TEST_CASE("stretches of nested scales", "[bounds]") {
     CHECK(s.least == Approx(1 / b).epsilon(1e-9));
   }
 }
+
+}  // namespace fathom::bounds_test

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+namespace fathom::box_tree_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -30,3 +32,5 @@ TEST_CASE("box tree: finds what is not apart, in order, with fewer looks than bo
 }
 
 }  // namespace
+
+}  // namespace fathom::box_tree_test

@@ -13,7 +13,7 @@
 #include "tests/support/golden.h"
 #include "vm/opcode.h"
 
-namespace fathom::test {
+namespace fathom::test::bytecode_document_test {
 namespace {
 
 using namespace fathom::compiler;
@@ -152,4 +152,4 @@ TEST_CASE("docs/BYTECODE.md has the table of opcodes and the list of fields", "[
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::bytecode_document_test

@@ -18,6 +18,8 @@
 #include "compiler/error_codes.h"
 #include "tests/support/golden.h"
 
+namespace fathom::diagnostics_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -188,3 +190,5 @@ TEST_CASE("nearest", "[diagnostics]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::diagnostics_test

@@ -13,7 +13,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::domain_test {
 namespace {
 
 using compiler::Kind;
@@ -187,4 +187,4 @@ TEST_CASE("more copies than can be counted are refused", "[domain]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::domain_test

@@ -15,6 +15,8 @@
 #include "tests/compiler/elaborated.h"
 #include "tests/support/effort.h"
 
+namespace fathom::elaborate_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -362,3 +364,5 @@ TEST_CASE("records name every property once", "[elaborate]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::elaborate_test

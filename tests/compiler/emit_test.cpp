@@ -9,7 +9,7 @@
 
 #include "tests/support/compiled.h"
 
-namespace fathom::tests {
+namespace fathom::tests::emit_test {
 namespace {
 
 std::size_t lines_of(const std::string& text) {
@@ -105,4 +105,4 @@ TEST_CASE("names that a language does not allow are refused", "[emit]") {
   }
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::tests::emit_test

@@ -79,7 +79,7 @@ struct showcase::lanes<pairs::Pair<double>> {
   static pairs::Pair<double> broadcast(double value) { return value; }
 };
 
-namespace fathom::test {
+namespace fathom::test::emitted_contract_test {
 
 TEST_CASE("emitted C++ asks of a lane type what its head says", "[emit]") {
   Random random(3);
@@ -105,4 +105,4 @@ TEST_CASE("emitted C++ asks of a lane type what its head says", "[emit]") {
   CHECK(differing == 0);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::emitted_contract_test

@@ -22,7 +22,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::test {
+namespace fathom::test::emitted_cpp_test {
 namespace {
 
 constexpr std::size_t kPoints = 3000;
@@ -119,4 +119,4 @@ TEST_CASE("emitted C++ gives the machine's bits for scene files", "[emit]") {
   check("tests/data/hi.vm", hi::distance<float>, hi::distance<double>);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::emitted_cpp_test

@@ -18,7 +18,7 @@
 #include "tests/support/temporary_folder.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::emitted_glsl_test {
 namespace {
 
 // Whether the text calls a function whose accuracy GLSL leaves open.
@@ -85,4 +85,4 @@ TEST_CASE("emitted GLSL computes what the machine does", "[emit]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::emitted_glsl_test

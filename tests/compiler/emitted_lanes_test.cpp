@@ -55,7 +55,7 @@ HWY_AFTER_NAMESPACE();
 #include <functional>
 #include <sstream>
 
-namespace fathom::test {
+namespace fathom::test::emitted_lanes_test {
 namespace {
 
 HWY_EXPORT(emitted_hi);
@@ -99,5 +99,5 @@ TEST_CASE("emitted C++ over the machine's lanes gives its bits on every instruct
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::emitted_lanes_test
 #endif

@@ -8,6 +8,8 @@
 #include "tests/support/plain_list.h"
 #include "vm/evaluate.h"
 
+namespace fathom::expression_list_test {
+
 namespace {
 
 using namespace fathom;
@@ -153,3 +155,5 @@ TEST_CASE("an expression list written as a scene is the same scene", "[import]")
     }
   }
 }
+
+}  // namespace fathom::expression_list_test

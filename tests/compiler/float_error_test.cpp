@@ -15,7 +15,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::float_error_test {
 namespace {
 
 using compiler::Kind;
@@ -159,4 +159,4 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::float_error_test

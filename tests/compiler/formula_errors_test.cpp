@@ -10,6 +10,8 @@
 #include "compiler/frontend/formula_evaluate.h"
 #include "tests/compiler/formula_texts.h"
 
+namespace fathom::formula_errors_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -173,3 +175,5 @@ TEST_CASE("formula: what is no string and no list of strings", "[formula]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::formula_errors_test

@@ -14,7 +14,7 @@
 #include "tests/support/judge.h"
 #include "tests/support/random_scene.h"
 
-namespace fathom::test {
+namespace fathom::test::formula_field_test {
 namespace {
 
 using compiler::Box;
@@ -141,4 +141,4 @@ TEST_CASE("a ball that grows faster than the way walked has no end, and a consta
   CHECK(!known(displaced_ball("x*y")).certified);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::formula_field_test

@@ -11,6 +11,8 @@
 #include "compiler/frontend/formula_functions.h"
 #include "tests/compiler/formula_texts.h"
 
+namespace fathom::formula_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -247,3 +249,5 @@ TEST_CASE("formula: names of parameters", "[formula]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::formula_test

@@ -13,7 +13,7 @@
 #include "vm/disassemble.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::fuse_test {
 namespace {
 
 using glm::dvec3;
@@ -167,4 +167,4 @@ TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::fuse_test

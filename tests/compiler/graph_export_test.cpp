@@ -6,6 +6,8 @@
 
 #include "compiler/compile.h"
 
+namespace fathom::graph_export_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -91,3 +93,5 @@ TEST_CASE("a graph printed with names by place keeps them when other nodes go", 
   CHECK(out.find("%sphere@2:21 = sphere radius=0.5") == 0);
   CHECK(out.find("%union = union ") != std::string::npos);
 }
+
+}  // namespace fathom::graph_export_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+namespace fathom::graph_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -90,3 +92,5 @@ TEST_CASE("the listing shows what the root reaches, renumbered", "[graph]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::graph_test

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace fathom::json_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -254,3 +256,5 @@ TEST_CASE("an error's place lies in the file, wherever it is cut short", "[json]
 }
 
 }  // namespace
+
+}  // namespace fathom::json_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/compiled.h"
 
-namespace fathom::compiler {
+namespace fathom::compiler::lamps_test {
 namespace {
 
 CompiledScene lit(const std::string& objects) {
@@ -143,4 +143,4 @@ TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]
 }
 
 }  // namespace
-}  // namespace fathom::compiler
+}  // namespace fathom::compiler::lamps_test

@@ -12,6 +12,8 @@
 
 #include "compiler/compile.h"
 
+namespace fathom::limits_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -186,3 +188,5 @@ TEST_CASE("limits: how to allow more is a number that is easily read", "[limits]
 }
 
 }  // namespace
+
+}  // namespace fathom::limits_test

@@ -8,6 +8,8 @@
 
 #include "tests/support/random_scene.h"
 
+namespace fathom::line_diff_test {
+
 namespace {
 
 using fathom::compiler::unified_diff;
@@ -96,3 +98,5 @@ TEST_CASE("line diff: what changes too much is not compared, however much stays 
   CHECK(unified_diff(same + "a\n" + same, same + "b\n" + same, 10).find("-a\n+b\n") != std::string::npos);
   CHECK(unified_diff(same + "a\n", same + other, 10) == "; 1 lines became 11: too many to compare\n");
 }
+
+}  // namespace fathom::line_diff_test

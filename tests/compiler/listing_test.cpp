@@ -7,6 +7,8 @@
 #include "tests/support/golden.h"
 #include "vm/disassemble.h"
 
+namespace fathom::listing_test {
+
 namespace {
 
 using namespace fathom;
@@ -93,3 +95,5 @@ TEST_CASE("a chain of a hundred thousand nodes compiles", "[compile]") {
   REQUIRE(scene);
   CHECK(scene->distance.instructions() == static_cast<std::size_t>(links) + 1);
 }
+
+}  // namespace fathom::listing_test

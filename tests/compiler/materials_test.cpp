@@ -11,6 +11,8 @@
 #include "compiler/frontend/records.h"
 #include "tests/compiler/elaborated.h"
 
+namespace fathom::materials_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -193,3 +195,5 @@ TEST_CASE("materials: light that varies counts as light", "[materials]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::materials_test

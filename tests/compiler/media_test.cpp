@@ -5,7 +5,7 @@
 #include "tests/support/compiled.h"
 #include "vm/evaluate.h"
 
-namespace fathom::compiler {
+namespace fathom::compiler::media_test {
 namespace {
 
 CompiledScene with(const std::string& materials, const std::string& objects) {
@@ -79,4 +79,4 @@ TEST_CASE("media: a body that has its material from above", "[compiler]") {
 }
 
 }  // namespace
-}  // namespace fathom::compiler
+}  // namespace fathom::compiler::media_test

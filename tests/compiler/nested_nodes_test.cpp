@@ -15,6 +15,8 @@
 #include "tests/support/golden.h"
 #include "vm/evaluate.h"
 
+namespace fathom::nested_nodes_test {
+
 namespace {
 
 using namespace fathom;
@@ -178,3 +180,5 @@ TEST_CASE("nested nodes written as a scene are the same scene", "[import]") {
     }
   }
 }
+
+}  // namespace fathom::nested_nodes_test

@@ -9,7 +9,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
 
-namespace fathom::test {
+namespace fathom::test::normals_test {
 namespace {
 
 using compiler::Kind;
@@ -179,4 +179,4 @@ TEST_CASE("gradients are what differences say, away from creases", "[shapes][nor
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::normals_test

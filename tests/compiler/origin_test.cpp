@@ -18,7 +18,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::origin_test {
 namespace {
 
 using compiler::Kind;
@@ -240,4 +240,4 @@ TEST_CASE("origin: what keeps the scene's coordinates says how coarse it is", "[
   CHECK(scene.magnitude >= 9e4);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::origin_test

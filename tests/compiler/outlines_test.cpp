@@ -20,7 +20,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::outlines_test {
 namespace {
 
 using compiler::Exactness;
@@ -239,4 +239,4 @@ TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[o
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::outlines_test

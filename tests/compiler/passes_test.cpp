@@ -20,7 +20,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::passes_test {
 namespace {
 
 using compiler::Kind;
@@ -234,4 +234,4 @@ TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::passes_test

@@ -6,6 +6,8 @@
 #include "compiler/formula_field.h"
 #include "compiler/make_node.h"
 
+namespace fathom::probe_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -105,3 +107,5 @@ TEST_CASE("results are the same for any number of threads", "[probe]") {
     CHECK(one[i].points == five[i].points);
   }
 }
+
+}  // namespace fathom::probe_test

@@ -6,6 +6,8 @@
 
 #include "compiler/compile.h"
 
+namespace fathom::report_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -133,3 +135,5 @@ TEST_CASE("lints are for check, and a formula without a bound is for everyone", 
   const std::string jump = R"_({"type": "expression", "formula": "y - floor(x)"})_";
   CHECK(compiled(jump).diagnostics.all().back().code == "W0509");
 }
+
+}  // namespace fathom::report_test

@@ -12,6 +12,8 @@
 #include "compiler/frontend/written_numbers.h"
 #include "tests/compiler/elaborated.h"
 
+namespace fathom::scene_numbers_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -112,7 +114,7 @@ TEST_CASE("formulas in lists of points, and what is no list of numbers", "[elabo
   const auto in = [&](const char* json) { return std::move(read_json(Source("", json), diagnostics)->root); };
   const syntax::Value points = in(R"([[0, "2 - 3"], [1, 0], ["2^3", 1]])");
   REQUIRE(has_formulas(points, ValueType::Points));
-  auto numbers = evaluated(points, Scope(), diagnostics);
+  auto numbers = evaluated(points, Scope(), diagnostics, false);
   REQUIRE(numbers.has_value());
   CHECK(syntax::print_syntax({std::move(*numbers)}) == syntax::print_syntax({in("[[0, -1], [1, 0], [8, 1]]")}));
   CHECK(has_formulas(in(R"(["1", 2])"), ValueType::Vec2));
@@ -133,3 +135,5 @@ TEST_CASE("no formula where no number is wanted", "[elaborate]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::scene_numbers_test

@@ -13,6 +13,8 @@
 #include "tests/support/golden.h"
 #include "tests/support/schema_check.h"
 
+namespace fathom::schema_test {
+
 namespace {
 
 using namespace fathom::compiler;
@@ -166,3 +168,5 @@ TEST_CASE("schema: every property of the tables is described", "[schema]") {
   CHECK(schema()["$defs"]["material"]["oneOf"][3]["properties"]["ior"]["default"] == 1.5);
   CHECK(schema()["properties"]["version"]["const"] == 1);
 }
+
+}  // namespace fathom::schema_test

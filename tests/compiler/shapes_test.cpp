@@ -17,7 +17,7 @@
 #include "tests/support/judge.h"
 #include "tests/support/plain_lowering.h"
 
-namespace fathom::test {
+namespace fathom::test::shapes_test {
 namespace {
 
 using compiler::Kind;
@@ -219,4 +219,4 @@ TEST_CASE("a primitive's box is tight", "[shapes]") {
   });
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::shapes_test

@@ -11,7 +11,7 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::solids_test {
 namespace {
 
 using compiler::Kind;
@@ -115,4 +115,4 @@ TEST_CASE("a Julia set is negative where orbits stay, positive where they leave,
   CHECK(outside > 500);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::solids_test

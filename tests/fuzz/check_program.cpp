@@ -23,14 +23,14 @@ using glm::dvec3;
 using test::Cloud;
 using test::Random;
 
-constexpr std::size_t kPoints = 37;  // fills no register
+constexpr std::size_t kCheckedPoints = 37;  // fills no register
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Points near the origin with, now and then, a coordinate from the edge of what floats can say.
 Cloud random_cloud(Random& random, double reach) {
   static const float kSpice[] = {0.f, -0.f, 1e-45f, 1e-20f, 1e19f, -1e30f, 3.4e38f, kInfinity, -kInfinity};
   Cloud cloud;
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  for (std::size_t i = 0; i < kCheckedPoints; ++i) {
     float p[3];
     for (float& c : p) c = static_cast<float>(random.uniform(-reach, reach));
     if (random.chance(0.15)) p[random.below(3)] = kSpice[random.below(9)];
@@ -75,7 +75,7 @@ void check_bits(const vm::VerifiedProgram& program, const Cloud& cloud, vm::Work
   const test::IsaGuard guard;
   vm::force_isa("scalar");
   std::vector<std::uint64_t> scalar;
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  for (std::size_t i = 0; i < kCheckedPoints; ++i) {
     const auto one = batch_bits(program, cloud, i, 1, workspace);
     scalar.insert(scalar.end(), one.begin(), one.end());
     const dvec3 p = point_of(cloud, i);
@@ -88,7 +88,7 @@ void check_bits(const vm::VerifiedProgram& program, const Cloud& cloud, vm::Work
   }
   for (const std::string_view isa : isas) {
     vm::force_isa(isa);
-    const auto many = batch_bits(program, cloud, 0, kPoints, workspace);
+    const auto many = batch_bits(program, cloud, 0, kCheckedPoints, workspace);
     for (std::size_t i = 0; i < many.size(); ++i) {
       promise(many[i] == scalar[i],
               fmt::format("{} differs from scalar in number {} {}", isa, i % 7, place(cloud, i / 7)));

@@ -27,7 +27,7 @@ using glm::dvec3;
 using test::Random;
 
 constexpr std::size_t kMostInstructions = 3000;
-constexpr std::size_t kPoints = 12;
+constexpr std::size_t kComparedPoints = 12;
 
 vm::VerifiedProgram lowered(const Scene& scene) {
   auto code = compiler::lower(scene.graph, scene.root, compiler::Source{}, 100 * kMostInstructions);
@@ -153,12 +153,12 @@ void run_differential(Bytes input) {
   if (plain.instructions() > kMostInstructions) return;
   vm::Workspace workspace;
   Sampled sampled;
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  for (std::size_t i = 0; i < kComparedPoints; ++i) {
     sampled.points.push_back(random.in_box(3));
     sampled.values.push_back(vm::evaluate_distance(plain, sampled.points.back(), workspace));
   }
   if (!options.mandelbulbs) {
-    for (std::size_t i = 0; i < kPoints; ++i) {
+    for (std::size_t i = 0; i < kComparedPoints; ++i) {
       const double judged = test::judge_distance(scene.graph, scene.root, sampled.points[i]);
       promise(std::abs(judged - sampled.values[i]) <= 1e-11 * std::max(1.0, std::abs(judged)),
               fmt::format("{} is judged {}", sampled.values[i], judged));

@@ -13,7 +13,7 @@
 namespace fathom::fuzz {
 namespace {
 
-constexpr runtime::ReadLimits kLimits{64e6};
+constexpr runtime::ReadLimits kFilmLimits{64e6};
 constexpr std::size_t kMostSums = 1 << 20;  // bytes; a head that asks for more gets what is there
 
 void put_checked(vm::ByteWriter& out, Bytes bytes) {
@@ -54,7 +54,7 @@ Input sealed_film(Bytes head, vm::ByteReader sums) {
 void run_file(const Input& bytes) {
   const ScratchFile given("given.film"), written("written.film");
   write_file(given.path, bytes);
-  const auto read = runtime::read_film(given.path, kLimits);
+  const auto read = runtime::read_film(given.path, kFilmLimits);
   if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
     return promise(!unread->problem.empty(), "a refusal has a reason");
   }

@@ -7,7 +7,7 @@
 #include "tests/fuzz/target.h"
 #include "tests/support/random_scene.h"
 
-namespace fathom::fuzz {
+namespace fathom::fuzz::fuzz_test {
 namespace {
 
 // Each in turn.
@@ -84,4 +84,4 @@ TEST_CASE("fuzz targets say of a broken promise what broke", "[fuzz]") {
   CHECK(find_target("nothing") == nullptr);
 }
 
-}  // namespace fathom::fuzz
+}  // namespace fathom::fuzz::fuzz_test

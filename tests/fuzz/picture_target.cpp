@@ -13,13 +13,13 @@
 namespace fathom::fuzz {
 namespace {
 
-constexpr runtime::ReadLimits kLimits{256e6};
+constexpr runtime::ReadLimits kPictureLimits{256e6};
 constexpr std::size_t kEndings = runtime::kImageFormats.size();
 
 std::string name_with(std::string_view ending) { return fmt::format("picture.{}", ending); }
 
 void check_environment(const std::string& path) {
-  const auto read = runtime::read_environment(path, kLimits);
+  const auto read = runtime::read_environment(path, kPictureLimits);
   const auto* light = std::get_if<runtime::EnvironmentImage>(&read);
   if (light == nullptr) return;
   promise(light->pixels.size() == static_cast<std::size_t>(light->width) * static_cast<std::size_t>(light->height),
@@ -36,7 +36,7 @@ void run_picture(Bytes input) {
   const std::string_view ending = runtime::kImageFormats[input[0] % kEndings].ending;
   const ScratchFile file(name_with(ending));
   write_file(file.path, input.subspan(1));
-  const auto read = runtime::read_image(file.path, kLimits);
+  const auto read = runtime::read_image(file.path, kPictureLimits);
   if (const auto* image = std::get_if<runtime::FloatImage>(&read)) {
     promise(image->values.size() == image->channels.size(), "every channel has values");
     for (const auto& channel : image->values) {

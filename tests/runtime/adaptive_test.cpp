@@ -13,7 +13,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::adaptive_test {
 namespace {
 
 // A pixel whose samples are 1 / chance so often, else 0: mean 1, the more noisy the rarer. Skewed, as light is.
@@ -348,4 +348,4 @@ TEST_CASE("adaptive: a caustic has less error than with as many samples everywhe
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::adaptive_test

@@ -13,7 +13,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/materials.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::bsdf_test {
 namespace {
 
 using test::coated, test::glass, test::matte, test::metal, test::principled, test::towards;
@@ -344,4 +344,4 @@ TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[runtime]
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::bsdf_test

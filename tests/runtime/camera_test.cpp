@@ -9,7 +9,7 @@
 #include "runtime/elementary.h"
 #include "runtime/sampler.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::camera_test {
 namespace {
 
 compiler::Camera facing_minus_z() {
@@ -230,4 +230,4 @@ TEST_CASE("camera: a panorama shows all directions, level, the target in its mid
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::camera_test

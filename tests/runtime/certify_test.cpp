@@ -9,7 +9,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::certify_test {
 namespace {
 
 using Status = Arrival::Status;
@@ -134,4 +134,4 @@ TEST_CASE("certify: in a stream, too, what becomes of a ray depends on that ray 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::certify_test

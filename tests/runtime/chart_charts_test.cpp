@@ -11,7 +11,7 @@
 #include "tests/runtime/markup_check.h"
 #include "tests/runtime/svg_reading.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_charts_test {
 namespace {
 
 using tests::circles;
@@ -237,4 +237,4 @@ TEST_CASE("chart B: a floor of 0 and a panel that was not measured", "[chart]") 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_charts_test

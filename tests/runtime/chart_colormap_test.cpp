@@ -8,7 +8,7 @@
 #include "runtime/chart/colormap.h"
 #include "runtime/image_io.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_colormap_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -115,4 +115,4 @@ TEST_CASE("chart colormap: narrow maps keep their scale, bad sizes are said", "[
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_colormap_test

@@ -4,7 +4,7 @@
 #include "runtime/chart/csv.h"
 #include "tests/runtime/chart_samples.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_csv_test {
 namespace {
 
 using tests::kProvenance;
@@ -73,4 +73,4 @@ TEST_CASE("chart csv: a line a row", "[chart]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_csv_test

@@ -16,7 +16,7 @@
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_measure_test {
 namespace {
 
 // A unit ball in the middle of the picture, and light all round.
@@ -284,4 +284,4 @@ TEST_CASE("chart: maps have a number for each pixel, and none where nothing is t
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_measure_test

@@ -7,7 +7,7 @@
 #include "tests/runtime/markup_check.h"
 #include "tests/runtime/svg_reading.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_page_test {
 namespace {
 
 using tests::count_of;
@@ -90,4 +90,4 @@ TEST_CASE("chart page: every scene has its own rows, an empty page is one too", 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_page_test

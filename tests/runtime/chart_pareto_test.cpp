@@ -7,7 +7,7 @@
 #include "runtime/chart/pareto.h"
 #include "tests/runtime/chart_samples.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_pareto_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -196,4 +196,4 @@ TEST_CASE("chart fit: a curve for each method and eps", "[chart]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_pareto_test

@@ -10,7 +10,7 @@
 #include "tests/runtime/svg_reading.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::chart_plot_test {
 namespace {
 
 using tests::circles;
@@ -347,4 +347,4 @@ TEST_CASE("chart plot: it fits any width, is white whatever is behind, and asks 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::chart_plot_test

@@ -9,6 +9,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_chart_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,3 +235,5 @@ TEST_CASE("cli: the closing numbers say how rays ended") {
              Contains("\"contacts\": 0") && !Contains("\"misses\": 0") && !Contains("\"clipped_rays\": 0"));
   CHECK_THAT(stats("--march sphere --max-steps 2"), !Contains("\"exhausted_rays\": 0"));
 }
+
+}  // namespace fathom::cli_chart_test

@@ -6,6 +6,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_check_test {
+
 namespace {
 
 using Catch::Contains;
@@ -104,3 +106,5 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
   CHECK(folder.run("check rope.json --probe 100000001").code == 2);
   CHECK(folder.run("check rope.json --probe 0").code == 2);
 }
+
+}  // namespace fathom::cli_check_test

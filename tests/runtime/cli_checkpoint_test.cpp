@@ -5,6 +5,8 @@
 #include "tests/support/effort.h"
 #include "tests/support/program.h"
 
+namespace fathom::cli_checkpoint_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -358,3 +360,5 @@ TEST_CASE("cli checkpoint: scripts/kill-test in short", "[heavy]") {
 }
 
 }  // namespace
+
+}  // namespace fathom::cli_checkpoint_test

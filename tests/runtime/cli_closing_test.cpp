@@ -4,6 +4,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_closing_test {
+
 namespace {
 
 using Catch::Contains;
@@ -62,3 +64,5 @@ TEST_CASE("cli: --watch prints one line per picture") {
                      "note: drawing again whenever ball.json changes; Ctrl-C ends\n"
                      "drew .*\n"));
 }
+
+}  // namespace fathom::cli_closing_test

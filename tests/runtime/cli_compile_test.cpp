@@ -4,7 +4,7 @@
 
 #include "tests/support/program.h"
 
-namespace fathom::tests {
+namespace fathom::tests::cli_compile_test {
 namespace {
 
 using Catch::Matchers::Contains;
@@ -231,4 +231,4 @@ TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {
   CHECK(folder.run("eval ball.fbc --at 0,0,3").out.starts_with("2 "));
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::tests::cli_compile_test

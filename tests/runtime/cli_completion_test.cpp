@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_completion_test {
+
 namespace {
 
 using Catch::Contains;
@@ -116,3 +118,5 @@ TEST_CASE("cli: the manual page has every verb, option and exit status, and grof
   if (has_program(folder, "groff")) CHECK(folder.run_script("groff -man -Tutf8 -ww fathom.1 2>&1 >page").out == "");
   if (has_program(folder, "mandoc")) CHECK(folder.run_script("mandoc -T lint -W error fathom.1").code == 0);
 }
+
+}  // namespace fathom::cli_completion_test

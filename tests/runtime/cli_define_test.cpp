@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_define_test {
+
 namespace {
 
 using Catch::Contains;
@@ -72,3 +74,5 @@ TEST_CASE("cli: values that the scene's parameters cannot have are exit code 2")
   }
   CHECK(!folder.has("out.png"));
 }
+
+}  // namespace fathom::cli_define_test

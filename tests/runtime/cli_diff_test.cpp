@@ -5,6 +5,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_diff_test {
+
 namespace {
 
 using Catch::Contains;
@@ -93,3 +95,5 @@ TEST_CASE("cli: pictures that cannot be compared") {
   CHECK(folder.run("diff a.pfm b.pfm --tol 1 --metric mean").code == 2);
   CHECK(folder.run("diff a.pfm b.pfm -o missing/map.png").code == 74);
 }
+
+}  // namespace fathom::cli_diff_test

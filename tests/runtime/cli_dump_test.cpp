@@ -4,6 +4,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_dump_test {
+
 namespace {
 
 using Catch::Contains;
@@ -196,3 +198,5 @@ TEST_CASE("cli: dump --diff of two scenes says what their programs differ in") {
   CHECK(folder.run("dump --diff two.json two.fbc --stage graph").code == 2);
   CHECK(folder.run("dump --diff two.json none.fbc").code == 74);
 }
+
+}  // namespace fathom::cli_dump_test

@@ -7,6 +7,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_files_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -197,3 +199,5 @@ TEST_CASE("cli files: memory that ends in a thread is an error with a message", 
 }
 
 }  // namespace
+
+}  // namespace fathom::cli_files_test

@@ -4,6 +4,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_help_test {
+
 namespace {
 
 using Catch::Contains;
@@ -78,3 +80,5 @@ TEST_CASE("cli: -V and --version print version and commit") {
   CHECK(result.out.starts_with("fathom "));
   CHECK(folder.run("--version").out == result.out);
 }
+
+}  // namespace fathom::cli_help_test

@@ -4,6 +4,8 @@
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 
+namespace fathom::cli_import_test {
+
 namespace {
 
 using Catch::Contains;
@@ -82,3 +84,5 @@ TEST_CASE("cli: prospero's pixels") {
       folder.run("slice " + data("prospero.vm") + " -o a.png --show sign --size 1024x1024 --box -1,-1,1,1");
   CHECK(result.out == "inside 132816 of 1048576 pixels\n");
 }
+
+}  // namespace fathom::cli_import_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_install_test {
+
 namespace {
 
 using fathom::tests::Folder;
@@ -29,3 +31,5 @@ TEST_CASE("cli: cmake --install installs a program that renders an installed sce
   CHECK(folder.read(share + "man/man1/fathom.1") == folder.run("man").out);
   for (const char* file : {"README.md", "LICENSE", "docs/SCENES.md"}) CHECK(folder.has(share + "doc/fathom/" + file));
 }
+
+}  // namespace fathom::cli_install_test

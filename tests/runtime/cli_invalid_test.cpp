@@ -5,6 +5,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_invalid_test {
+
 namespace {
 
 using Catch::Contains;
@@ -38,3 +40,5 @@ TEST_CASE("cli: check finds a point where the field is no number") {
   folder.write("root.json", kGuarded);
   CHECK_THAT(folder.run("check root.json").err, !Contains("W0514"));
 }
+
+}  // namespace fathom::cli_invalid_test

@@ -5,6 +5,8 @@
 #include "runtime/image_read.h"
 #include "tests/support/program.h"
 
+namespace fathom::cli_layers_test {
+
 namespace {
 
 using Catch::Contains;
@@ -204,3 +206,5 @@ TEST_CASE("cli layers: the attributes say what was rendered, and where the camer
   }
   CHECK(balls > 20);
 }
+
+}  // namespace fathom::cli_layers_test

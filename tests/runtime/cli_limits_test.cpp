@@ -5,6 +5,8 @@
 #include "compiler/limits.h"
 #include "tests/support/program.h"
 
+namespace fathom::cli_limits_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -105,3 +107,5 @@ TEST_CASE("cli: a picture's size is limited on the command line, too") {
 }
 
 }  // namespace
+
+}  // namespace fathom::cli_limits_test

@@ -6,6 +6,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_merge_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -164,3 +166,5 @@ TEST_CASE("cli merge: usage, files that are none, and outputs in the way") {
 }
 
 }  // namespace
+
+}  // namespace fathom::cli_merge_test

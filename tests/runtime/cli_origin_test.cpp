@@ -6,6 +6,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_origin_test {
+
 namespace {
 
 using Catch::Contains;
@@ -78,3 +80,5 @@ TEST_CASE("cli: dump says where the programs' origin is, check speaks of the sce
   CHECK_THAT(folder.run("render far.json -o a.png --size 8x8 --spp 1 -vvvv").err,
              Contains("the programs' origin is 100000 0 0") && Contains("camera at 100000 2 5 towards 100000 0.5 0"));
 }
+
+}  // namespace fathom::cli_origin_test

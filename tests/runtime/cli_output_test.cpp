@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_output_test {
+
 namespace {
 
 using Catch::Contains;
@@ -83,3 +85,5 @@ TEST_CASE("cli: standard output that takes no more is exit code 74, and a render
   CHECK_THAT(result.err, Contains("cannot write to standard output") && Contains("kept.film"));
   CHECK(folder.run("render ball.json -o - --checkpoint kept.film --resume -q").code == 0);
 }
+
+}  // namespace fathom::cli_output_test

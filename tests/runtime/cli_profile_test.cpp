@@ -5,6 +5,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_profile_test {
+
 namespace {
 
 using Catch::Contains;
@@ -90,3 +92,5 @@ TEST_CASE("cli: a cost map that cannot be written is refused before the first ra
   CHECK(folder.files() == 2);
   CHECK(folder.run("render ball.json --quiet --profile --stats-json s.json").err == "");
 }
+
+}  // namespace fathom::cli_profile_test

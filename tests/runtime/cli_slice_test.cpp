@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_slice_test {
+
 namespace {
 
 using Catch::Contains;
@@ -52,3 +54,5 @@ TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no d
     CHECK(result.out == "");
   }
 }
+
+}  // namespace fathom::cli_slice_test

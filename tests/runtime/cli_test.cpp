@@ -4,6 +4,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -267,3 +269,5 @@ TEST_CASE("cli: output that is not a terminal has no colours and no redrawn line
     CHECK_THAT(folder.run(arguments).err, !Contains("\033") && !Contains("\r"));
   }
 }
+
+}  // namespace fathom::cli_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_usage_test {
+
 namespace {
 
 using Catch::Contains;
@@ -150,3 +152,5 @@ TEST_CASE("cli: the version is the project's") {
   REQUIRE(result.out.substr(0, 7) == "fathom ");
   CHECK_THAT(lists.str(), Contains("VERSION " + result.out.substr(7, result.out.find_first_of(" \n", 7) - 7) + " "));
 }
+
+}  // namespace fathom::cli_usage_test

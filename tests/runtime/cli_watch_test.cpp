@@ -3,6 +3,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::cli_watch_test {
+
 namespace {
 
 using Catch::Contains;
@@ -101,3 +103,5 @@ TEST_CASE("cli: standard input cannot be watched") {
   CHECK(result.code == 2);
   CHECK_THAT(result.err, Contains("standard input"));
 }
+
+}  // namespace fathom::cli_watch_test

@@ -11,6 +11,8 @@
 
 #include "vm/evaluate.h"
 
+namespace fathom::clip_test {
+
 using namespace fathom;
 using namespace fathom::runtime;
 
@@ -132,3 +134,5 @@ TEST_CASE("a ray that is clipped begins where it enters the box, in a unit direc
   CHECK(block->id[0] == 7);
   CHECK(block->side[0] == 1);
 }
+
+}  // namespace fathom::clip_test

@@ -14,6 +14,8 @@
 #include "tests/support/effort.h"
 #include "tests/support/random_scene.h"
 
+namespace fathom::convex_march_test {
+
 namespace {
 
 using namespace fathom;
@@ -121,3 +123,5 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
   CHECK(skipping.off <= plain.off);
   CHECK(skipping.evaluations < 0.95 * static_cast<double>(plain.evaluations));
 }
+
+}  // namespace fathom::convex_march_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace fathom::runtime {
+namespace fathom::runtime::coverage_test {
 namespace {
 
 constexpr int kSide = 9, kDepth = 7;
@@ -158,4 +158,4 @@ TEST_CASE("coverage: whether many blocks are apart is soon known") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::coverage_test

@@ -11,7 +11,7 @@
 #include "runtime/sampler.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::denoise_test {
 namespace {
 
 using Pixels = std::vector<float>;
@@ -303,4 +303,4 @@ TEST_CASE("denoise: a film keeps all but its radiance", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::denoise_test

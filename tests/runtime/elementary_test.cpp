@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace fathom::runtime {
+namespace fathom::runtime::elementary_test {
 namespace {
 
 TEST_CASE("elementary: sine and cosine of a turn are within 2e-7 of libm's", "[runtime]") {
@@ -129,4 +129,4 @@ TEST_CASE("elementary: sRGB follows the standard", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::elementary_test

@@ -12,7 +12,7 @@
 #include "runtime/sampler.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::energy_test {
 namespace {
 
 constexpr Lattice kFine{10946, 6765};
@@ -140,4 +140,4 @@ TEST_CASE("energy: what a coat takes too much is the mean of what it dims more",
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::energy_test

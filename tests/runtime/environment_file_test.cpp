@@ -10,7 +10,7 @@
 #include "runtime/image_exr.h"
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::environment_file_test {
 namespace {
 
 std::string reason(const std::string& path) {
@@ -66,4 +66,4 @@ TEST_CASE("environment file: bad files say why", "[lights]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::environment_file_test

@@ -12,7 +12,7 @@
 #include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::environment_test {
 namespace {
 
 using test::kPicture, test::kSky, test::random_image;
@@ -210,4 +210,4 @@ TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[lights
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::environment_test

@@ -9,7 +9,7 @@
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::far_test {
 namespace {
 
 // Rays that are exact in float there, and aim at the solid; truth follows from moving them back, which is exact.
@@ -123,4 +123,4 @@ TEST_CASE("march: a grain beside a ball is hit where it is", "[march]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::far_test

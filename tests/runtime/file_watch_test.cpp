@@ -5,7 +5,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::file_watch_test {
 namespace {
 
 // A watched file. Every text is of another length: two writes may be of one time.
@@ -92,4 +92,4 @@ TEST_CASE("file watch: one of several files is enough") {
   CHECK(watch.settled());
 }
 
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::file_watch_test

@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.h"
 #include "vm/digest.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::film_file_test {
 namespace {
 
 FilmFile small_file(FilmLayers layers, bool adaptive = false) {
@@ -239,4 +239,4 @@ TEST_CASE("film files: what renders differ in is named") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::film_file_test

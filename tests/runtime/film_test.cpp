@@ -9,7 +9,7 @@
 #include "runtime/sampler.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::film_test {
 namespace {
 
 PathSample sample_of(float value, double depth) {
@@ -299,4 +299,4 @@ TEST_CASE("film: the order of samples within a stage leaves no trace, the stage 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::film_test

@@ -7,7 +7,7 @@
 
 #include "runtime/sampler.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::filter_test {
 namespace {
 
 constexpr FilterKind kFilters[] = {FilterKind::Box, FilterKind::Tent, FilterKind::Gaussian,
@@ -161,4 +161,4 @@ TEST_CASE("filter: samples in order of u are in order in the picture") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::filter_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace fathom::runtime {
+namespace fathom::runtime::flip_test {
 namespace {
 
 constexpr int kWidth = 40, kHeight = 30;
@@ -104,4 +104,4 @@ TEST_CASE("flip: a difference shows where it is, an edge counts more than a fain
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::flip_test

@@ -14,6 +14,8 @@
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 
+namespace fathom::hostile_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -153,3 +155,5 @@ TEST_CASE("hostile inputs are refused with a message, soon and in little memory"
 }
 
 }  // namespace
+
+}  // namespace fathom::hostile_test

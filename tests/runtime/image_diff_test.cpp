@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_diff_test {
 namespace {
 
 RgbView view(const std::vector<float>& rgb) { return {static_cast<int>(rgb.size() / 3), 1, rgb}; }
@@ -43,4 +43,4 @@ TEST_CASE("image diff: what is not finite is counted and left out", "[runtime]")
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_diff_test

@@ -16,7 +16,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_exr_read_test {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 131, kX = -5, kY = 3;
@@ -124,4 +124,4 @@ TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_exr_read_test

@@ -8,7 +8,7 @@
 #include "runtime/image_read.h"
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_exr_test {
 namespace {
 
 std::vector<std::uint8_t> read(const std::string& path) {
@@ -136,4 +136,4 @@ TEST_CASE("image_exr: a file that cannot be written leaves nothing", "[runtime]"
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_exr_test

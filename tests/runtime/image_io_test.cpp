@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_io_test {
 namespace {
 
 Picture gradient(int width, int height) {
@@ -97,4 +97,4 @@ TEST_CASE("image_io: a path is refused before rendering, with the reason", "[run
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_io_test

@@ -8,7 +8,7 @@
 // It needs <cstdio> before it.
 #include <jpeglib.h>
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_jpeg_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -110,4 +110,4 @@ TEST_CASE("image_jpeg: memory is counted before it is taken", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_jpeg_test

@@ -9,7 +9,7 @@
 #include "runtime/image_io.h"
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_read_test {
 namespace {
 
 // 16 x 9 pixels that get brighter and bluer; the last one saw nothing.
@@ -224,4 +224,4 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_read_test

@@ -6,7 +6,7 @@
 
 #include "runtime/elementary.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::image_test {
 namespace {
 
 // Two pixels: one grey hit at depth 2 and 4 each, and one pixel that saw nothing.
@@ -104,4 +104,4 @@ TEST_CASE("image: a part of a picture is shown as that part", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::image_test

@@ -11,7 +11,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/lamp_patches.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::light_shapes_test {
 namespace {
 
 using compiler::Lamp;
@@ -158,4 +158,4 @@ TEST_CASE("light shapes: P5, polygons give Lambert's sum over edges", "[lights]"
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::light_shapes_test

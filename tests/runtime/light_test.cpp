@@ -12,7 +12,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::light_test {
 namespace {
 
 compiler::CompiledScene scene_with(const std::string& settings, const std::string& objects) {
@@ -235,4 +235,4 @@ TEST_CASE("lights: a scene without any is empty", "[lights]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::light_test

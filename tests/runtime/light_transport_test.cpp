@@ -11,7 +11,7 @@
 #include "tests/support/light_scenes.h"
 #include "tests/support/white_furnace.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::light_transport_test {
 namespace {
 
 using tests::LightScene;
@@ -255,4 +255,4 @@ TEST_CASE("light: looking for lights, hitting them and both give one picture", "
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::light_transport_test

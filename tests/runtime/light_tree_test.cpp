@@ -10,7 +10,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/sample_bins.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::light_tree_test {
 namespace {
 
 std::vector<LightBounds> random_lights(std::uint32_t count) {
@@ -123,4 +123,4 @@ TEST_CASE("light tree: near() finds every ball in reach", "[lights]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::light_tree_test

@@ -11,7 +11,7 @@
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::march_test {
 namespace {
 
 void expect_accurate(const char* scene_text, const std::vector<Ray>& rays, const Truth& truth) {
@@ -107,4 +107,4 @@ TEST_CASE("march: an arrival depends on its ray alone", "[march]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::march_test

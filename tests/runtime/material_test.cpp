@@ -8,7 +8,7 @@
 #include "runtime/pattern.h"
 #include "tests/support/compiled.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::material_test {
 namespace {
 
 using compiler::CompiledScene;
@@ -242,4 +242,4 @@ TEST_CASE("material: the albedo picture shows colour and light", "[material]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::material_test

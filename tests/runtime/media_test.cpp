@@ -6,7 +6,7 @@
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::media_test {
 namespace {
 
 // The radiance straight down through slabs that overlap, before an even light.
@@ -108,4 +108,4 @@ TEST_CASE("media: glass that stands in a table shows the table", "[render]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::media_test

@@ -16,7 +16,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::method_test {
 namespace {
 
 using Status = Arrival::Status;
@@ -360,4 +360,4 @@ TEST_CASE("method: among flat copies rays end in reasonable evaluations", "[marc
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::method_test

@@ -6,7 +6,7 @@
 #include "runtime/warp.h"
 #include "tests/support/chi_square.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::microfacet_test {
 namespace {
 
 glm::vec3 direction(float cos, float turn) {
@@ -83,4 +83,4 @@ TEST_CASE("microfacet: the chi-square test sees a density that is wrong by a few
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::microfacet_test

@@ -13,7 +13,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::noise_test {
 namespace {
 
 struct Sum {
@@ -235,4 +235,4 @@ TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[re
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::noise_test

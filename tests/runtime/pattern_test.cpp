@@ -8,7 +8,7 @@
 #include "runtime/sampler.h"
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::pattern_test {
 namespace {
 
 using compiler::Pattern;
@@ -172,4 +172,4 @@ TEST_CASE("pattern: what is no place has no value", "[pattern]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::pattern_test

@@ -18,7 +18,7 @@
 #include "tests/support/effort.h"
 #include "tests/support/random_scene.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::plateaus_test {
 namespace {
 
 using Status = Arrival::Status;
@@ -323,4 +323,4 @@ TEST_CASE("plateaus: as many scenes as are asked for", "[nightly][.]") {
   CHECK(tally.wrong() == 0);
 }
 
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::plateaus_test

@@ -12,7 +12,7 @@
 #include "tests/support/program.h"
 #include "vm/evaluate.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::profile_test {
 namespace {
 
 // Grazing rays, which are decided in double, and every way for a path to end.
@@ -141,4 +141,4 @@ TEST_CASE("profile: the cost of all pixels is what was counted, for any threads 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::profile_test

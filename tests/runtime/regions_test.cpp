@@ -23,6 +23,8 @@
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
 
+namespace fathom::regions_test {
+
 namespace {
 
 using namespace fathom;
@@ -329,3 +331,5 @@ TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[re
   CHECK_FALSE(regions_of(many(20, false, false, false)));
   CHECK(regions_of(many(400, false, false, false)));
 }
+
+}  // namespace fathom::regions_test

@@ -14,7 +14,7 @@
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::render_test {
 namespace {
 
 RenderOptions options_of(int width, int height, int spp) {
@@ -420,4 +420,4 @@ TEST_CASE("render: a large scene with a plane is not cut off", "[render]") {
   CHECK(result.stats.primary_hits == result.stats.primary_rays);
 }
 
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::render_test

@@ -10,6 +10,8 @@
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 
+namespace fathom::renderer_bits_test {
+
 namespace {
 
 using namespace fathom;
@@ -80,3 +82,5 @@ TEST_CASE("renderer bits: what changes them raises kRendererBits of runtime/cli/
 }
 
 }  // namespace
+
+}  // namespace fathom::renderer_bits_test

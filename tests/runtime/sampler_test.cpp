@@ -9,7 +9,7 @@
 
 #include "tests/support/effort.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::sampler_test {
 namespace {
 
 TEST_CASE("sampler: a function of its key alone", "[runtime]") {
@@ -215,4 +215,4 @@ TEST_CASE("sampler: more samples than were planned are still all different, and 
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::sampler_test

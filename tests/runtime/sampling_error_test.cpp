@@ -6,7 +6,7 @@
 #include <cmath>
 
 
-namespace fathom::runtime {
+namespace fathom::runtime::sampling_error_test {
 namespace {
 
 constexpr std::array<int, 9> kPowersOfTwo = {16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
@@ -80,4 +80,4 @@ TEST_CASE("sampling error: a pixel by itself errs with the kind blue as with sob
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::sampling_error_test

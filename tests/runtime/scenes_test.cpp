@@ -12,6 +12,8 @@
 #include "runtime/render.h"
 #include "tests/support/golden.h"
 
+namespace fathom::scenes_test {
+
 namespace {
 
 using namespace fathom;
@@ -152,3 +154,5 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
     CHECK(std::abs(brighter) < 15 * std::sqrt(variance));
   }
 }
+
+}  // namespace fathom::scenes_test

@@ -9,6 +9,8 @@
 
 #include "tests/support/program.h"
 
+namespace fathom::shared_graphs_test {
+
 namespace {
 
 using namespace fathom::tests;
@@ -59,3 +61,5 @@ TEST_CASE("shared graphs: every verb visits a node that is used in many ways onc
 }
 
 }  // namespace
+
+}  // namespace fathom::shared_graphs_test

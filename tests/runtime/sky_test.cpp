@@ -7,7 +7,7 @@
 
 #include "runtime/light_query.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::sky_test {
 namespace {
 
 compiler::Background::Sky sky_at(double elevation, double turbidity) {
@@ -78,4 +78,4 @@ TEST_CASE("sky: every direction has a finite radiance, and the ground is what it
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::sky_test

@@ -8,6 +8,8 @@
 #include "tests/runtime/scenes.h"
 #include "vm/evaluate.h"
 
+namespace fathom::slice_test {
+
 namespace {
 
 using namespace fathom::runtime;
@@ -113,3 +115,5 @@ TEST_CASE("slice: a region all at one level is no line", "[slice]") {
   const std::vector<std::uint8_t> rgb = distance_picture({1, 1, 1, 1}, 2, 2, 1).rgb;
   CHECK(rgb[0] > 230);
 }
+
+}  // namespace fathom::slice_test

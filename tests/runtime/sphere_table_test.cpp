@@ -8,7 +8,7 @@
 
 #include "runtime/sampler.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::sphere_table_test {
 namespace {
 
 TEST_CASE("sphere table: longitude and latitude there and back", "[lights]") {
@@ -49,4 +49,4 @@ TEST_CASE("sphere table: equal values are equal densities", "[lights]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::sphere_table_test

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace fathom::runtime {
+namespace fathom::runtime::stats_test {
 namespace {
 
 TEST_CASE("stats: counts add up and come out as JSON", "[runtime]") {
@@ -110,4 +110,4 @@ TEST_CASE("stats: the peak of memory grows with what is held", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::stats_test

@@ -6,7 +6,7 @@
 #include "runtime/field.h"
 #include "tests/runtime/scenes.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::surface_test {
 namespace {
 
 SurfacePoint find(const compiler::CompiledScene& scene, const Hit& hit) {
@@ -49,4 +49,4 @@ TEST_CASE("surface: new rays start clear of the surface, on the side asked for",
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::surface_test

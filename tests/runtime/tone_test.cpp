@@ -7,7 +7,7 @@
 
 #include "runtime/elementary.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::tone_test {
 namespace {
 
 constexpr ToneCurve kCurves[] = {ToneCurve::None, ToneCurve::Filmic, ToneCurve::Aces, ToneCurve::Agx,
@@ -97,4 +97,4 @@ TEST_CASE("tone: a stop is a factor of two", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::tone_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace fathom::runtime {
+namespace fathom::runtime::units_test {
 namespace {
 
 TEST_CASE("units: rounds follow one another, short at first, and never long") {
@@ -57,4 +57,4 @@ TEST_CASE("units: the whole picture's first samples come before any pixel's last
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::units_test

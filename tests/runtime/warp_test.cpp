@@ -6,7 +6,7 @@
 
 #include "runtime/sampler.h"
 
-namespace fathom::runtime {
+namespace fathom::runtime::warp_test {
 namespace {
 
 TEST_CASE("warp: cosine hemisphere passes a chi-square test against its density", "[runtime]") {
@@ -59,4 +59,4 @@ TEST_CASE("warp: frames are orthonormal for every direction", "[runtime]") {
 }
 
 }  // namespace
-}  // namespace fathom::runtime
+}  // namespace fathom::runtime::warp_test

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "vm/check.h"
+#include "tests/support/judge_geometry.h"
 
 namespace fathom::test {
 namespace {
@@ -16,7 +17,6 @@ using compiler::Kind;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kGrid = 16;                // nodes a side; two minima of one patch are never nearer than two cells
 constexpr double kSmallestStep = 1e-12;  // of the patch's side: what is left of it is below 1e-10 of the distance
 
@@ -48,24 +48,23 @@ std::function<dvec2(double)> arc(double rho, double y, double radius, double fro
     return dvec2(rho + radius * std::sin(angle), y + radius * std::cos(angle));
   };
 }
-std::function<dvec2(double)> line(dvec2 a, dvec2 b) {
+std::function<dvec2(double)> segment(dvec2 a, dvec2 b) {
   return [=](double t) { return (1 - t) * a + t * b; };
 }
 
-dvec3 vec(std::span<const double> k, std::size_t i) { return {k[i], k[i + 1], k[i + 2]}; }
 
 }  // namespace
 
 BruteForce::BruteForce(Kind kind, std::span<const double> k) {
   switch (kind) {
     case Kind::Box:
-      build_box(vec(k, 0), 0);
+      build_box(vec3_at(k, 0), 0);
       break;
     case Kind::RoundBox:
-      build_box(vec(k, 0), k[3]);
+      build_box(vec3_at(k, 0), k[3]);
       break;
     case Kind::Plane:
-      build_plane(vec(k, 0), k[3]);
+      build_plane(vec3_at(k, 0), k[3]);
       break;
     case Kind::RoundCone:
       build_round_cone(k[0], k[1], k[2]);
@@ -179,9 +178,9 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
     };
   } else if (kind == Kind::Cylinder || kind == Kind::Cone) {
     const double h = kind == Kind::Cone ? k[2] : k[1], bottom = k[0], top = kind == Kind::Cone ? k[1] : k[0];
-    revolve(line({0, -h}, {bottom, -h}));
-    revolve(line({bottom, -h}, {top, h}));
-    revolve(line({top, h}, {0, h}));
+    revolve(segment({0, -h}, {bottom, -h}));
+    revolve(segment({bottom, -h}, {top, h}));
+    revolve(segment({top, h}, {0, h}));
     inside_ = [=](dvec3 p) {  // the cross section at height y is a disc of area pi radius^2
       const double radius = bottom * (h - p.y) / (2 * h) + top * (h + p.y) / (2 * h);
       return p.y > -h && p.y < h && p.x * p.x + p.z * p.z < radius * radius;
@@ -189,9 +188,9 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
   } else {
     CHECK(kind == Kind::RoundedCylinder, "a solid of revolution");
     const double radius = k[0], h = k[1], e = k[2];
-    revolve(line({0, -h}, {radius - e, -h}));
-    revolve(line({radius, -h + e}, {radius, h - e}));
-    revolve(line({radius - e, h}, {0, h}));
+    revolve(segment({0, -h}, {radius - e, -h}));
+    revolve(segment({radius, -h + e}, {radius, h - e}));
+    revolve(segment({radius - e, h}, {0, h}));
     revolve(arc(radius - e, h - e, e, 0, kPi / 2));
     revolve(arc(radius - e, -h + e, e, kPi / 2, kPi));
     inside_ = [=](dvec3 p) {  // at height y the cross section is a disc, smaller near the caps
@@ -215,7 +214,7 @@ void BruteForce::build_round_cone(double bottom, double top, double height) {
     const double touch = std::acos(s);  // polar angle of the cone's normals
     revolve(arc(0, 0, bottom, touch, kPi));
     revolve(arc(0, height, top, 0, touch));
-    revolve(line(arc(0, 0, bottom, touch, touch)(0), arc(0, height, top, touch, touch)(0)));
+    revolve(segment(arc(0, 0, bottom, touch, touch)(0), arc(0, height, top, touch, touch)(0)));
   }
   // In a ball of the family, whose radius and height go together; ternary search for the one that reaches farthest.
   inside_ = [=](dvec3 p) {
@@ -242,8 +241,8 @@ void BruteForce::build_plane(dvec3 normal, double offset) {
 
 // Triangle (a degenerate bilinear patch) or quad, unsigned.
 void BruteForce::build_sheet(std::span<const double> corners, double thickness) {
-  const dvec3 a = vec(corners, 0), b = vec(corners, 3), c = vec(corners, 6);
-  const dvec3 d = corners.size() == 12 ? vec(corners, 9) : c;
+  const dvec3 a = vec3_at(corners, 0), b = vec3_at(corners, 3), c = vec3_at(corners, 6);
+  const dvec3 d = corners.size() == 12 ? vec3_at(corners, 9) : c;
   add([=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * d + u * c); });
   inside_ = [](dvec3) { return false; };
   thickness_ = thickness;

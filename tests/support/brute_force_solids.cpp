@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/support/brute_force.h"
+#include "tests/support/judge_geometry.h"
 
 namespace fathom::test {
 namespace {
@@ -14,7 +15,6 @@ using compiler::Kind;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kGolden = std::numbers::phi;
 
 // Corners and face normals of a regular polyhedron up to scale: the normals are the corners of its dual.

@@ -23,11 +23,8 @@ using compiler::Kind;
 using compiler::NodeId;
 using glm::dvec2;
 using glm::dvec3;
-using Params = std::span<const double>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-dvec3 vec(Params k, std::size_t first) { return {k[first], k[first + 1], k[first + 2]}; }
 dvec2 half_plane(dvec3 p) { return {std::hypot(p.x, p.z), p.y}; }
 
 // A solid of revolution with a straight profile from (bottom, -h) to (top, h): its boundary is three segments of the
@@ -89,13 +86,13 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::Sphere:
       return std::hypot(p.x, p.y, p.z) - k[0];
     case Kind::Box:
-      return distance_to_box(p, vec(k, 0));
+      return distance_to_box(p, vec3_at(k, 0));
     case Kind::RoundBox:
-      return distance_to_box(p, vec(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
+      return distance_to_box(p, vec3_at(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
     case Kind::Torus:
       return torus(p, k[0], k[1]);
     case Kind::Plane:
-      return glm::dot(p, vec(k, 0)) / std::hypot(k[0], k[1], k[2]) - k[3];
+      return glm::dot(p, vec3_at(k, 0)) / std::hypot(k[0], k[1], k[2]) - k[3];
     case Kind::Cylinder:
       return frustum(p, k[0], k[0], k[1]);
     case Kind::RoundedCylinder:
@@ -105,9 +102,9 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::RoundCone:
       return round_cone(p, k[0], k[1], k[2]);
     case Kind::Triangle:
-      return distance_to_polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6)}) - k[9];
+      return distance_to_polygon(p, {vec3_at(k, 0), vec3_at(k, 3), vec3_at(k, 6)}) - k[9];
     case Kind::Quad:
-      return distance_to_polygon(p, {vec(k, 0), vec(k, 3), vec(k, 6), vec(k, 9)}) - k[12];
+      return distance_to_polygon(p, {vec3_at(k, 0), vec3_at(k, 3), vec3_at(k, 6), vec3_at(k, 9)}) - k[12];
     case Kind::Mandelbulb:
       return mandelbulb(p, k[0], static_cast<int>(k[1]), k[2]) - k[3];
     default: {

@@ -1,4 +1,5 @@
 #include "tests/support/judge_domain.h"
+#include "tests/support/judge_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +13,9 @@ namespace {
 
 using compiler::Kind;
 using glm::dvec3;
-using Params = std::span<const double>;
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-dvec3 vec(Params k, std::size_t first) { return {k[first], k[first + 1], k[first + 2]}; }
 
 dvec3 turned_about_y(dvec3 p, double angle) {
   return {p.x * std::cos(angle) + p.z * std::sin(angle), p.y, p.z * std::cos(angle) - p.x * std::sin(angle)};
@@ -89,7 +87,7 @@ std::vector<dvec3> repeated(Params k, dvec3 p) {
     for (long y : numbers(k, 1, p.y)) {
       for (long z : numbers(k, 2, p.z)) {
         const dvec3 cell(axis_of(k, 0).middle(x), axis_of(k, 1).middle(y), axis_of(k, 2).middle(z));
-        points.push_back(p - cell - shift(x, y, z) * vec(k, 6));
+        points.push_back(p - cell - shift(x, y, z) * vec3_at(k, 6));
       }
     }
   }
@@ -167,20 +165,20 @@ double pulled_apart(Params k, dvec3 p, double child) {
   return child + std::min(0.0, std::max({std::abs(p.x) - k[0], std::abs(p.y) - k[1], std::abs(p.z) - k[2]}));
 }
 
-double box_met(Params k, dvec3 p, double child) { return met(child, k[6] * box_distance(p, vec(k, 0), vec(k, 3))); }
+double box_met(Params k, dvec3 p, double child) { return met(child, k[6] * box_distance(p, vec3_at(k, 0), vec3_at(k, 3))); }
 
 }  // namespace
 
 std::vector<dvec3> child_points(Kind kind, Params k, dvec3 p) {
   switch (kind) {
     case Kind::Transform:  // the row-major 3x4 matrix takes p to the child's space
-      return {{glm::dot(vec(k, 0), p) + k[3], glm::dot(vec(k, 4), p) + k[7], glm::dot(vec(k, 8), p) + k[11]}};
+      return {{glm::dot(vec3_at(k, 0), p) + k[3], glm::dot(vec3_at(k, 4), p) + k[7], glm::dot(vec3_at(k, 8), p) + k[11]}};
     case Kind::Elongate:
       return {{outside(p.x, -k[0], k[0]), outside(p.y, -k[1], k[1]), outside(p.z, -k[2], k[2])}};
     case Kind::Revolve:
       return {{std::hypot(p.x, p.z) - k[0], p.y, 0}};
     case Kind::Mirror: {
-      const dvec3 n = glm::normalize(vec(k, 0));
+      const dvec3 n = glm::normalize(vec3_at(k, 0));
       const double above = glm::dot(n, p) - k[3];
       return {above < 0 ? p - 2 * above * n : p};
     }
@@ -200,7 +198,7 @@ std::vector<dvec3> child_points(Kind kind, Params k, dvec3 p) {
       return {{q.x / s, q.y, q.z / s}};
     }
     case Kind::Bounded:
-      return {glm::clamp(p, vec(k, 0), vec(k, 3))};
+      return {glm::clamp(p, vec3_at(k, 0), vec3_at(k, 3))};
     default:
       return {p};
   }

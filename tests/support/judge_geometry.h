@@ -1,11 +1,13 @@
-// Distances to segments and flat polygons, for the judge.
+// What the judge and brute force share: parameters as vectors, distances to segments and flat polygons.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +15,15 @@
 #include "compiler/graph.h"
 
 namespace fathom::test {
+
+using Params = std::span<const double>;  // a node's parameters
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline double radians(double degrees) { return degrees * kPi / 180; }
+inline glm::dvec2 vec2_at(Params k, std::size_t first) { return {k[first], k[first + 1]}; }
+inline glm::dvec3 vec3_at(Params k, std::size_t first) { return {k[first], k[first + 1], k[first + 2]}; }
 
 // The foot of p on the line through a and b is a + t(b - a) with t = <p-a, b-a> / |b-a|^2; the nearest point of the
 // segment has t clamped, since |p - a - t(b-a)|^2 is a parabola in t.

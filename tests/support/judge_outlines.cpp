@@ -9,19 +9,16 @@
 #include <utility>
 
 #include "vm/check.h"
+#include "tests/support/judge_geometry.h"
 
 namespace fathom::test {
 namespace {
 
 using compiler::Kind;
 using glm::dvec2;
-using Params = std::span<const double>;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
-dvec2 vec(Params k, std::size_t first) { return {k[first], k[first + 1]}; }
-double radians(double degrees) { return degrees * kPi / 180; }
 
 // At a distance from the origin, `angle` radians from +y towards +x.
 dvec2 polar(double radius, double angle) { return {radius * std::sin(angle), radius * std::cos(angle)}; }
@@ -64,7 +61,7 @@ std::vector<dvec2> corners(Kind kind, Params k) {
     case Kind::Rectangle:
       return {{k[0], k[1]}, {-k[0], k[1]}, {-k[0], -k[1]}, {k[0], -k[1]}};
     case Kind::Polygon:
-      for (std::size_t i = 0; i < k.size(); i += 2) v.push_back(vec(k, i));
+      for (std::size_t i = 0; i < k.size(); i += 2) v.push_back(vec2_at(k, i));
       return v;
     case Kind::RegularPolygon:
       for (int i = 0; i < static_cast<int>(k[0]); ++i) v.push_back(polar(k[1], 2 * kPi * i / k[0]));
@@ -180,7 +177,7 @@ bool inside(Kind kind, Params k, dvec2 p) {
       return std::hypot(std::max(x - k[0] + k[2], 0.0), std::max(y - k[1] + k[2], 0.0)) < k[2] ||
              (x < k[0] && y < k[1] - k[2]) || (x < k[0] - k[2] && y < k[1]);
     case Kind::Segment:
-      return to_segment(p, vec(k, 0), vec(k, 2)) < k[4];
+      return to_segment(p, vec2_at(k, 0), vec2_at(k, 2)) < k[4];
     case Kind::UnevenCapsule:
       return inside_capsule(k, p);
     case Kind::Arc:
@@ -249,7 +246,7 @@ std::vector<Piece> outline_boundary(Kind kind, Params k) {
     case Kind::RoundedRectangle:
       return rounded_rectangle(k);
     case Kind::Segment:
-      return straight(vec(k, 0), vec(k, 2), k[4]);
+      return straight(vec2_at(k, 0), vec2_at(k, 2), k[4]);
     case Kind::UnevenCapsule:
       return capsule(k);
     case Kind::Arc: {

@@ -13,11 +13,8 @@ namespace {
 using compiler::Kind;
 using glm::dvec2;
 using glm::dvec3;
-using Params = std::span<const double>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 // Twelve bars, boxes 2 thickness wide. What is not the frame is the outside of the box and three shafts through it:
 // within the frame the way out leads to the nearest of them.
@@ -116,7 +113,7 @@ void add_corners(std::vector<dvec3>& to, dvec3 corner, bool turning) {
 }
 
 Polyhedron regular(Kind kind) {
-  constexpr double kGolden = std::numbers::phi;
+  constexpr double kGoldenRatio = std::numbers::phi;
   std::vector<dvec3> corners;
   switch (kind) {
     case Kind::Tetrahedron:
@@ -127,10 +124,10 @@ Polyhedron regular(Kind kind) {
       break;
     case Kind::Dodecahedron:
       add_corners(corners, {1, 1, 1}, false);
-      add_corners(corners, {0, 1 / kGolden, kGolden}, true);
+      add_corners(corners, {0, 1 / kGoldenRatio, kGoldenRatio}, true);
       break;
     default:
-      add_corners(corners, {0, kGolden, 1}, true);
+      add_corners(corners, {0, kGoldenRatio, 1}, true);
   }
   for (dvec3& corner : corners) corner = glm::normalize(corner);
   return hull(corners);

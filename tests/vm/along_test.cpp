@@ -14,7 +14,7 @@
 #include "tests/support/judge.h"
 #include "tests/vm/formula.h"
 
-namespace fathom::test {
+namespace fathom::test::along_test {
 namespace {
 
 using compiler::Kind;
@@ -254,4 +254,4 @@ TEST_CASE("along a line: steps are flat between their jumps", "[along][formula]"
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::along_test

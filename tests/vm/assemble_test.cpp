@@ -11,7 +11,7 @@
 #include "vm/disassemble.h"
 #include "vm/escape.h"
 
-namespace fathom::test {
+namespace fathom::test::assemble_test {
 namespace {
 
 vm::Program assembled(const std::string& text) {
@@ -123,4 +123,4 @@ TEST_CASE("escaped texts lie on one line and read back", "[assemble]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::assemble_test

@@ -12,7 +12,7 @@
 #include "tests/support/same_program.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::binary_test {
 namespace {
 
 std::vector<std::uint8_t> bytes_of(const vm::VerifiedProgram& program) {
@@ -128,4 +128,4 @@ TEST_CASE("the machine is the one whose number files carry", "[binary]") {
   CHECK(vm::digest(values.bytes()).text() == "e5c9f30af244193dafc953c6de470951");
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::binary_test

@@ -8,7 +8,7 @@
 
 #include "vm/digest.h"
 
-namespace fathom::test {
+namespace fathom::test::bytes_test {
 
 TEST_CASE("what is written as bytes is read back", "[bytes]") {
   vm::ByteWriter out;
@@ -74,4 +74,4 @@ TEST_CASE("digests are those of XXH3", "[bytes]") {
   CHECK_FALSE(vm::digest("ball") == vm::digest("balL"));
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::bytes_test

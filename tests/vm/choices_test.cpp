@@ -3,7 +3,7 @@
 #include "tests/support/compiled.h"
 #include "tests/vm/boxes.h"
 
-namespace fathom::test {
+namespace fathom::test::choices_test {
 namespace {
 
 using vm::Opcode;
@@ -120,4 +120,4 @@ TEST_CASE("a choice between far spheres is decided, between near ones it is not"
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::choices_test

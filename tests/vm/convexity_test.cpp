@@ -15,7 +15,7 @@
 #include "tests/vm/float_bits.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::convexity_test {
 namespace {
 
 using compiler::Kind;
@@ -128,4 +128,4 @@ TEST_CASE("convexity: distances beside it have the same bits, and it has them on
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::convexity_test

@@ -9,7 +9,7 @@
 
 #include "tests/vm/formula.h"
 
-namespace fathom::test {
+namespace fathom::test::elementary_test {
 namespace {
 
 using vm::Opcode;
@@ -256,4 +256,4 @@ TEST_CASE("binary mathematics by its table", "[elementary]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::elementary_test

@@ -6,7 +6,7 @@
 
 #include "tests/vm/boxes.h"
 
-namespace fathom::test {
+namespace fathom::test::enclosure_test {
 namespace {
 
 using vm::Opcode;
@@ -235,4 +235,4 @@ TEST_CASE("enclosures are the same bits on every instruction set", "[enclosure][
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::enclosure_test

@@ -16,7 +16,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::test {
+namespace fathom::test::evaluate_test {
 namespace {
 
 using compiler::Kind;
@@ -317,4 +317,4 @@ TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite grad
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::evaluate_test

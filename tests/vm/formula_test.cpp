@@ -10,7 +10,7 @@
 #include "tests/support/effort.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::test {
+namespace fathom::test::formula_test {
 namespace {
 
 using glm::dvec3;
@@ -202,4 +202,4 @@ TEST_CASE("a blend of what is not below 0 may be", "[formula][slope]") {
   CHECK(bound.lipschitz >= 1);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::formula_test

@@ -4,7 +4,7 @@
 #include "tests/support/effort.h"
 #include "tests/vm/boxes.h"
 
-namespace fathom::test {
+namespace fathom::test::nonexpansive_test {
 namespace {
 
 using vm::Opcode;
@@ -94,4 +94,4 @@ TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosu
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::nonexpansive_test

@@ -7,7 +7,7 @@
 
 #include "vm/opcode_rows.h"
 
-namespace fathom::test {
+namespace fathom::test::opcode_test {
 
 using vm::Choice;
 using vm::Form;
@@ -106,4 +106,4 @@ TEST_CASE("an opcode word takes apart into what it was made of", "[opcode]") {
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::opcode_test

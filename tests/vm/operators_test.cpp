@@ -9,7 +9,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::test {
+namespace fathom::test::operators_test {
 
 using compiler::Kind;
 using glm::dvec3;
@@ -111,4 +111,4 @@ TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::operators_test

@@ -5,7 +5,7 @@
 #include "tests/vm/formula.h"
 #include "vm/disassemble.h"
 
-namespace fathom::test {
+namespace fathom::test::polygon_test {
 namespace {
 
 using glm::dvec2;
@@ -131,4 +131,4 @@ TEST_CASE("an outline has whole groups, enough of them, all finite", "[polygon][
   CHECK(refusal(differs).find("wide table") != std::string::npos);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::polygon_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace fathom::vm {
+namespace fathom::vm::printable_test {
 
 TEST_CASE("printable: what is text stays, and line breaks", "[vm]") {
   for (const char* text : {"", "a ball\nof \u00E9, \u20AC and \U0001F600", "\u00A0", "\uFFFD"}) {
@@ -32,4 +32,4 @@ TEST_CASE("printable: data keep their controls as JSON writes them", "[vm]") {
   CHECK(escape_controls("\xff\xc0\x80") == "\uFFFD\uFFFD\uFFFD");
 }
 
-}  // namespace fathom::vm
+}  // namespace fathom::vm::printable_test

@@ -16,7 +16,7 @@
 #include "tests/vm/formula.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::real_batch_test {
 namespace {
 
 struct RealCloud {
@@ -106,4 +106,4 @@ TEST_CASE("in double, one point at a time or many: the same bits of the scenes t
   }
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::real_batch_test

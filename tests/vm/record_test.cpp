@@ -10,7 +10,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/vm/float_bits.h"
 
-namespace fathom::test {
+namespace fathom::test::record_test {
 namespace {
 
 using vm::Opcode;
@@ -158,4 +158,4 @@ TEST_CASE("passes that differ are not taken for a loop", "[emit]") {
   CHECK_FALSE(vm::reroll(function).loop);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::record_test

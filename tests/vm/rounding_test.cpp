@@ -2,7 +2,7 @@
 // double -> float -> double for two of three adjacent struct members, just what a float ray compared in double does.
 #include <catch2/catch.hpp>
 
-namespace fathom::test {
+namespace fathom::test::rounding_test {
 namespace {
 
 struct Three {
@@ -28,4 +28,4 @@ TEST_CASE("three rounded members hold rounded values", "[canary]") {
   CHECK(three.z == 0x1.333334p-2);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::rounding_test

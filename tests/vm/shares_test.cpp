@@ -6,7 +6,7 @@
 #include "tests/support/compiled.h"
 #include "vm/evaluate.h"
 
-namespace fathom::vm {
+namespace fathom::vm::shares_test {
 namespace {
 
 compiler::CompiledScene blend_of(const std::string& combinator) {
@@ -96,4 +96,4 @@ TEST_CASE("shares: a cut shows the material of what cuts", "[vm]") {
 }
 
 }  // namespace
-}  // namespace fathom::vm
+}  // namespace fathom::vm::shares_test

@@ -15,7 +15,7 @@
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 
-namespace fathom::test {
+namespace fathom::test::skeleton_test {
 namespace {
 
 constexpr float kFarAway = std::numeric_limits<float>::infinity();
@@ -162,4 +162,4 @@ TEST_CASE("skeletons: what several threads have packed becomes one", "[skeleton]
   CHECK(a.skeletons.size() == known);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::skeleton_test

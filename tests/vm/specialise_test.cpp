@@ -17,7 +17,7 @@
 #include "tests/support/random_scene.h"
 #include "tests/vm/formula.h"
 
-namespace fathom::test {
+namespace fathom::test::specialise_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -378,4 +378,4 @@ TEST_CASE("places that are met again are found among a hundred thousand", "[spec
   CHECK(expression.read(std::get<vm::VerifiedProgram>(verified)));
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::specialise_test

@@ -14,7 +14,7 @@
 #include "tests/support/random_program.h"
 #include "vm/evaluate.h"
 
-namespace fathom::test {
+namespace fathom::test::trace_test {
 
 TEST_CASE("a trace's last value is the program's, and its stacks are as high as the verifier says", "[trace]") {
   vm::Workspace workspace;
@@ -74,4 +74,4 @@ TEST_CASE("a trace finds the first instruction without a finite value", "[trace]
   CHECK_FALSE(vm::first_not_finite(program, {4, 1, 0}));
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::trace_test

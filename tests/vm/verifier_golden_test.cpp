@@ -20,7 +20,7 @@
 #include "tests/support/golden.h"
 #include "vm/verify.h"
 
-namespace fathom::test {
+namespace fathom::test::verifier_golden_test {
 namespace {
 
 void set_limit(vm::Limits& limits, const std::string& name, std::uint32_t value) {
@@ -87,4 +87,4 @@ std::string verdict(const std::string& input) {
 
 TEST_CASE("golden verifier rules", "[verify]") { tests::check_golden("verifier", verdict); }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::verifier_golden_test

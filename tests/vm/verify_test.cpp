@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace fathom::test {
+namespace fathom::test::verify_test {
 namespace {
 
 using Catch::Matchers::Contains;
@@ -241,4 +241,4 @@ TEST_CASE("random words are refused or run: nothing in between", "[verify]") {
   CHECK(passed > 10);
 }
 
-}  // namespace fathom::test
+}  // namespace fathom::test::verify_test
