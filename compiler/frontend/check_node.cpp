@@ -216,6 +216,9 @@ void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
     node.material = materials_.resolve(*text(material), "material", "E0202", material->span, diagnostics_);
   }
   node.transform = read_placement(reader, scope_, diagnostics_);
+  if (const syntax::Value* translate = reader.value("translate")) {
+    if (std::get<syntax::List>(translate->data).size() == 2) node.flat_translate = translate->span;
+  }
 }
 
 void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax::Property& type,

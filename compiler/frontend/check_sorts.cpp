@@ -44,6 +44,7 @@ class SortChecker {
                             [this](CheckedNode& node, std::nullptr_t, std::span<const Sort> children) {
                               const Sort sort = node.use ? sorts_[*node.use] : sort_over(node, children);
                               if (sort == Sort::Outline && node.transform) flatten(node);
+                              if (sort != Sort::Outline && node.flat_translate) report_flat_translate(node);
                               return sort;
                             });
   }
@@ -71,6 +72,12 @@ class SortChecker {
                                                 : "`{}` is a solid; an outline is needed here";
     diagnostics_.error("E0306", word_span(node), fmt::format(fmt::runtime(message), node.word), "",
                        {std::move(help)});
+  }
+
+  void report_flat_translate(const CheckedNode& node) {
+    diagnostics_.error("E0306", *node.flat_translate,
+                       fmt::format("`translate` must be three numbers [x, y, z]: `{}` is a solid", node.word), "",
+                       {"only outlines are moved by two numbers [x, y]"});
   }
 
   static std::string help_for_outline() {

@@ -25,6 +25,7 @@ struct CheckedNode {
   std::optional<Formula> formula;  // the last child, after `children`
   std::optional<std::array<double, 13>> between;    // see Between: where the primitive itself stands, a Transform
   std::optional<std::array<double, 13>> transform;  // see Kind::Transform
+  std::optional<Span> flat_translate;               // of a `translate` of two numbers, which only an outline takes
   std::optional<std::uint32_t> material;            // its own
 };
 

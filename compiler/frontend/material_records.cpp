@@ -102,7 +102,8 @@ RecordSpec pattern(std::string type, std::vector<PropertySpec> own) {
   record.properties.push_back(varying(other("b", ValueType::Color, "where the pattern is 1", true)));
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   // As of a node.
-  for (const char* name : {"scale", "rotate", "translate"}) record.properties.push_back(*use_record().find(name));
+  for (const char* name : {"scale", "rotate"}) record.properties.push_back(*use_record().find(name));
+  record.properties.push_back(vec3("translate", "how far to move the pattern, after scale and rotate", {0, 0, 0}));
   return record;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compiler/frontend/color_text.h"
 #include "compiler/frontend/suggest.h"
 #include "compiler/frontend/written_numbers.h"
 #include "vm/check.h"
@@ -47,6 +48,8 @@ std::string_view expected(ValueType type) {
       return "a list of nodes [{...}, ...]";
     case ValueType::Scale:
       return "a number or three numbers [x, y, z]";
+    case ValueType::Translation:
+      return "three numbers [x, y, z], or two of an outline";
     case ValueType::Rotation:
       return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
     case ValueType::Background:
@@ -86,6 +89,8 @@ bool has_type(const Value& value, ValueType type) {
       return is_pair(value);
     case ValueType::Vec3:
       return three;
+    case ValueType::Translation:
+      return three || is_pair(value);
     case ValueType::Color:
       return number != nullptr || three;
     case ValueType::Boolean:
@@ -182,6 +187,14 @@ std::vector<std::string> retype(const Value& value, const Value& written, const 
   return about(spec);
 }
 
+// Help for a value out of range.
+std::vector<std::string> correct(const Value& value, const PropertySpec& spec) {
+  std::vector<std::string> help = about(spec);
+  const std::string text = spec.type == ValueType::Color ? color_text_of(value) : "";
+  if (!text.empty()) help.push_back(fmt::format("a colour as a screen shows it is \"{}\"", text));
+  return help;
+}
+
 // The name that values are looked up by.
 std::string_view own_name(const PropertySpec& row) { return row.alias_of.empty() ? row.name : row.alias_of; }
 
@@ -214,7 +227,8 @@ std::string owner(const RecordSpec& spec, std::string_view property) {
 
 bool is_numeric(ValueType type) {
   return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Vec2 ||
-         type == ValueType::Vec3 || type == ValueType::Color || type == ValueType::Points;
+         type == ValueType::Vec3 || type == ValueType::Color || type == ValueType::Points ||
+         type == ValueType::Translation;
 }
 
 }  // namespace
@@ -285,6 +299,8 @@ void RecordReader::check(const syntax::Property& property) {
     diagnostics_.error("E0102", property.name_span,
                        fmt::format("unknown property `{}` in {}", property.name, spec_.title),
                        fmt::format("not a {} property", spec_.noun), std::move(help));
+  } else if (is_color_text(*property.value, row->type)) {
+    check_color_text(*property.value, *row);
   } else if (row->varies && varies(*property.value)) {
     fit_.push_back({own_name(*row), property.value.get()});
   } else if (!has_formulas(*property.value, row->type)) {
@@ -292,6 +308,15 @@ void RecordReader::check(const syntax::Property& property) {
   } else if (auto numbers = evaluated(*property.value, scope_, diagnostics_, row->varies)) {
     evaluated_.push_back(std::make_unique<const Value>(std::move(*numbers)));
     check_value(*evaluated_.back(), *property.value, *row);
+  } else {
+    good_ = false;
+  }
+}
+
+void RecordReader::check_color_text(const Value& value, const PropertySpec& row) {
+  if (auto numbers = read_color_text(value, diagnostics_)) {
+    evaluated_.push_back(std::make_unique<const Value>(std::move(*numbers)));
+    check_value(*evaluated_.back(), value, row);
   } else {
     good_ = false;
   }
@@ -306,7 +331,7 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
   } else if (const std::optional<Broken> broken = first_broken(value, row, scope_.limits())) {
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
-                       about(row));
+                       correct(value, row));
   } else if (row.type == ValueType::Choice && !choice_of(value, row)) {
     const std::string& word = std::get<std::string>(value.data);
     diagnostics_.error("E0108", value.span, fmt::format("unknown {} of {} `{}`", row.name, spec_.title, word), "",
@@ -361,7 +386,7 @@ bool RecordReader::flag(std::string_view name, bool fallback) const {
 
 glm::dvec3 RecordReader::vec3(std::string_view name) const {
   const std::vector<double> v = numbers(name);
-  return {v[0], v[1], v[2]};
+  return {v[0], v[1], v.size() == 2 ? 0 : v[2]};
 }
 
 }  // namespace fathom::compiler

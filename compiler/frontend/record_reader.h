@@ -53,6 +53,7 @@ class RecordReader {
 
   void check(const syntax::Property& property);
   void check_aliases(const syntax::Record& record);
+  void check_color_text(const syntax::Value& value, const PropertySpec& row);
   void check_value(const syntax::Value& value, const syntax::Value& written, const PropertySpec& row);
 
   const RecordSpec& spec_;

@@ -50,7 +50,8 @@ void add_placement(RecordSpec& record) {
                      {}},
         other("rotate", ValueType::Rotation,
               "{\"axis\": [x,y,z], \"angle\": degrees}, or degrees about the fixed x, then y, then z axis"),
-        vec3("translate", "how far to move the node, after scale and rotate", {0, 0, 0}),
+        other("translate", ValueType::Translation,
+              "how far to move the node, after scale and rotate; two numbers of an outline"),
         other("material", ValueType::Text, "name of a material, for what within has none of its own"),
         other("name", ValueType::Text, "for messages and listings")}) {
     record.properties.push_back(std::move(property));

@@ -28,6 +28,7 @@ enum class ValueType {
   Node,
   Nodes,       // a list of nodes
   Scale,       // a number or three
+  Translation,  // three numbers, or two of an outline
   Rotation,    // three numbers or a record by rotation_record()
   Background,  // a colour or a record of background_records()
   Version,     // the number kSceneVersion

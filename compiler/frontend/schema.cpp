@@ -55,7 +55,9 @@ OrderedJson record_schema(const RecordSpec& record, bool type_required);
 // Whether the property says which of a family its record is.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
-// A grey or a colour.
+OrderedJson color_text_schema() { return {{"type", "string"}, {"pattern", "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"}}; }
+
+// A grey or a colour; its text is a string, as a formula is.
 OrderedJson color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
 
 // What the value of a property of `record` must be.
@@ -69,6 +71,8 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
       return list_schema(number_schema(property), 2, 2);
     case ValueType::Vec3:
       return three_schema(property);
+    case ValueType::Translation:
+      return list_schema(number_schema(property), 2, 3);
     case ValueType::Color:
       return color_schema(property);
     case ValueType::Boolean:
@@ -95,7 +99,7 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
     case ValueType::Rotation:
       return reference(property.name);
     case ValueType::Background:  // one colour for both ends
-      return either(three_schema(*background_records()[0].find("top")), reference(property.name));
+      return {{"anyOf", {three_schema(*background_records()[0].find("top")), color_text_schema(), reference(property.name)}}};
     case ValueType::Version:
       return {{"const", kSceneVersion}};
     case ValueType::Anything:

@@ -21,7 +21,8 @@ bool may_be_number(ValueType type) {
 
 bool may_be_numbers(ValueType type) {
   return type == ValueType::Vec2 || type == ValueType::Vec3 || type == ValueType::Points ||
-         type == ValueType::Color || type == ValueType::Scale || type == ValueType::Rotation ||
+         type == ValueType::Color || type == ValueType::Scale || type == ValueType::Translation ||
+         type == ValueType::Rotation ||
          type == ValueType::Background;
 }
 

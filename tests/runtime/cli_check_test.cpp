@@ -107,4 +107,19 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
   CHECK(folder.run("check rope.json --probe 0").code == 2);
 }
 
+TEST_CASE("cli: check takes several scenes, names each and counts warnings") {
+  const Folder folder;
+  folder.write("unused.json", R"({"version": 1, "materials": {"m": {"type": "diffuse"}}, "objects": [{"type": "sphere", "radius": 1}]})");
+  folder.write("wrong.json", R"({"version": 1, "objects": [{"type": "sphere"}]})");
+  Result result = folder.run("check unused.json ball.json");
+  CHECK(result.code == 0);
+  CHECK_THAT(result.out, Contains("unused.json:\n") && Contains("\nball.json:\n"));
+  CHECK_THAT(result.err, Contains("unused.json: 1 warning\n") && !Contains("ball.json: "));
+  result = folder.run("check wrong.json ball.json");
+  CHECK(result.code == 1);
+  CHECK_THAT(result.out, Contains("ball.json:\n"));
+  CHECK(folder.run("check wrong.json missing.json").code == 74);
+  CHECK(folder.run("check ball.json").out.find("ball.json:\n") == std::string::npos);
+}
+
 }  // namespace fathom::cli_check_test

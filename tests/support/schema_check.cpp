@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <regex>
 #include <stdexcept>
 
 namespace fathom::tests {
@@ -110,6 +111,10 @@ const std::map<std::string, Keyword>& keywords() {
       {"additionalProperties", check_additional},
       {"required", check_required},
       {"items", check_items},
+      {"pattern",
+       [](const Context& at, const Json& rule) {
+         return !at.value.is_string() || std::regex_search(at.value.get<std::string>(), std::regex(rule.get<std::string>()));
+       }},
       {"minItems",
        [](const Context& at, const Json& rule) { return !at.value.is_array() || at.value.size() >= rule; }},
       {"maxItems",

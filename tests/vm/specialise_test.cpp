@@ -28,7 +28,7 @@ struct BoxSet {
   vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-BoxSet random_boxes(Random& random) {
+BoxSet random_box_set(Random& random) {
   static const double kSizes[] = {1e-3, 0.03, 0.1, 0.3, 1, 3};
   BoxSet boxes;
   for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
@@ -108,7 +108,7 @@ void cut(const vm::Code& whole, Random& random, Tally& tally) {
   const vm::Part first = vm::whole(whole);
   vm::Workspace workspace;
   vm::Specialiser specialiser, again;
-  const BoxSet boxes = random_boxes(random);
+  const BoxSet boxes = random_box_set(random);
   REQUIRE(specialiser.look(first, boxes.view(), workspace));
   static const float kLimits[][2] = {
       {-kInfinity, kInfinity}, {-kInfinity, 0.25f}, {0, 0}, {-0.1f, 0.1f}, {-kInfinity, 1e-3f}};
