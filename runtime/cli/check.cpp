@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <ostream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "runtime/cli/check_report.h"
 #include "runtime/cli/scene_file.h"
@@ -17,6 +19,7 @@ namespace {
 
 constexpr const char* kCheckExamples =
     "fathom check scene.json\n"
+    "fathom check scenes/*.json                     # the worst is the status\n"
     "fathom check --error-format short scene.json   # a line per error\n"
     "fathom check --error-format json scene.json    # JSON lines\n"
     "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
@@ -25,14 +28,16 @@ constexpr int kMostProbes = 100'000'000;
 
 struct CheckRequest {
   SceneArguments scene;
+  std::vector<std::string> paths;
   std::optional<int> probes, threads;
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, CheckRequest& request) {
   Arguments arguments("check",
-                      "Prints every error and warning of a scene and how exact its distances are. Renders nothing.",
+                      "Prints every error and warning of scenes and how exact their distances are. Renders nothing.",
                       kCheckExamples);
-  add_scene_arguments(arguments, request.scene);
+  request.scene.count_warnings = true;
+  add_scene_arguments(arguments, request.scene, request.paths);
   arguments.option("--probe", "N",
                    "Compare gradients and differences at N points with the constants that the compiler proved",
                    whole(request.probes, 1, kMostProbes));
@@ -56,12 +61,7 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   return culprits.empty() ? kDone : kFoundProblems;
 }
 
-}  // namespace
-
-int run_check(std::span<const std::string> args, const Streams& streams) {
-  CheckRequest request;
-  if (const auto code = parse(args, streams, request)) return *code;
-
+ExitCode check_scene(const CheckRequest& request, const Streams& streams) {
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   compiler::Scene graph;
@@ -78,6 +78,24 @@ int run_check(std::span<const std::string> args, const Streams& streams) {
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
   if (!streams.quiet) print(streams, json ? report_json(scene, report) : report_text(scene, report));
   return request.probes ? run_probe(request, scene, graph, streams) : kDone;
+}
+
+}  // namespace
+
+int run_check(std::span<const std::string> args, const Streams& streams) {
+  CheckRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  const bool text = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Text;
+  ExitCode worst = kDone;
+  for (std::size_t i = 0; i < request.paths.size(); ++i) {
+    request.scene.path = request.paths[i];
+    if (request.paths.size() > 1 && text && !streams.quiet) {
+      print(streams, fmt::format("{}{}:\n", i > 0 ? "\n" : "", source_name(request.scene.path)));
+      streams.out.flush();
+    }
+    worst = std::max(worst, check_scene(request, streams));  // larger is worse
+  }
+  return worst;
 }
 
 }  // namespace fathom::cli

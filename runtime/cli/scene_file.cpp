@@ -1,6 +1,7 @@
 #include "runtime/cli/scene_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -151,9 +152,11 @@ void print(const compiler::Diagnostics& diagnostics, const compiler::Source& sou
   const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
   streams.err << diagnostics.print(source, format, streams.color);
   const std::size_t errors = diagnostics.errors(), warnings = diagnostics.warnings();
-  if (errors == 0 || format != compiler::ErrorFormat::Text) return;
-  streams.err << vm::printable(source.name()) << ": " << count_of(errors, "error")
-              << (warnings > 0 ? ", " + count_of(warnings, "warning") : "") << '\n';
+  if (format != compiler::ErrorFormat::Text || (errors == 0 && !arguments.count_warnings)) return;
+  std::vector<std::string> counts;
+  if (errors > 0) counts.push_back(count_of(errors, "error"));
+  if (warnings > 0) counts.push_back(count_of(warnings, "warning"));
+  streams.err << vm::printable(source.name()) << ": " << fmt::format("{}", fmt::join(counts, ", ")) << '\n';
 }
 
 // Whether anything is wrong with the command line's values for parameters (E05xx).
@@ -164,17 +167,30 @@ bool about_definitions(const compiler::Diagnostics& diagnostics) {
 
 }  // namespace
 
-void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required) {
-  arguments.positional(
-      "scene",
-      "Scene file: JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input",
-      scene.path, required);
+namespace {
+
+constexpr const char* kAboutScene =
+    "Scene file: JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input";
+
+void add_scene_options(Arguments& arguments, SceneArguments& scene) {
   arguments.option("-D,--define", "NAME=VALUE",
                    "Set a parameter of the scene to a number or a formula, as r=0.5 or angle=pi/4",
                    append_to(read_definition, scene.definitions));
   add_limit_option(arguments, scene.limits);
   arguments.option("--error-format", "FORMAT", "Format of errors and warnings: text (default), short or json",
                    one_of({"text", "short", "json"}, scene.error_format));
+}
+
+}  // namespace
+
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required) {
+  arguments.positional("scene", kAboutScene, scene.path, required);
+  add_scene_options(arguments, scene);
+}
+
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene, std::vector<std::string>& paths) {
+  arguments.positionals("scene", kAboutScene, paths);
+  add_scene_options(arguments, scene);
 }
 
 void add_limit_option(Arguments& arguments, compiler::Limits& limits) {

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "compiler/artefact/load.h"
 #include "compiler/compile.h"
@@ -17,11 +18,14 @@ struct SceneArguments {
   int error_format = 0;               // a compiler::ErrorFormat
   compiler::Definitions definitions;  // values for the scene's parameters
   compiler::Limits limits;
+  bool count_warnings = false;  // say how many there are, even where there is no error
 };
 
 // The positional argument, --define, --limit and --error-format. A scene that is not `required` has an empty path
 // when none was given.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool required = true);
+// The same for a verb that takes several scenes, one after the other.
+void add_scene_arguments(Arguments& arguments, SceneArguments& scene, std::vector<std::string>& paths);
 
 // The option --limit alone, for verbs that read no scene.
 void add_limit_option(Arguments& arguments, compiler::Limits& limits);
