@@ -108,8 +108,10 @@ class Reader {
     return static_cast<std::size_t>(picture_.width) * static_cast<std::size_t>(picture_.components);
   }
 
-  bool decode() {
-    if (setjmp(out_) != 0) return false;
+  bool decode() { return setjmp(out_) == 0 && decode_rows(); }
+
+  // Not inlined: longjmp() may clobber variables of the function that calls setjmp().
+  [[gnu::noinline]] bool decode_rows() {
     jpeg_.out_color_space = picture_.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg_.dct_method = JDCT_ISLOW;  // the same bits with and without SIMD
     jpeg_.do_block_smoothing = FALSE;

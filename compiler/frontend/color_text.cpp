@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
+// A channel of this much was meant as a byte; a smaller one above 1 may be a linear value that is too large.
+constexpr double kLeastByte = 16;
+
 // The value of a digit of either case; npos of other letters.
 std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
 
@@ -49,13 +52,13 @@ std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnos
 std::string color_text_of(const syntax::Value& value) {
   const auto channels = std::holds_alternative<syntax::List>(value.data) ? three_numbers(value) : std::nullopt;
   if (!channels) return "";
-  bool above = false;
+  bool bytes = false;
   for (int i = 0; i < 3; ++i) {
     const double channel = (*channels)[i];
     if (!(channel >= 0 && channel <= 255) || channel != std::floor(channel)) return "";
-    above = above || channel > 1;
+    bytes = bytes || channel >= kLeastByte;
   }
-  if (!above) return "";
+  if (!bytes) return "";
   return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(channels->r), static_cast<int>(channels->g),
                      static_cast<int>(channels->b));
 }

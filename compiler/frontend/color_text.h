@@ -18,7 +18,7 @@ bool is_color_text(const syntax::Value& value, ValueType type);
 // Three numbers from 0 to 1; nullopt after a report.
 std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics);
 
-// The text of three whole numbers from 0 to 255 of which one is above 1, as others write colours; "" of other values.
+// The text of three whole numbers from 0 to 255 of which one is 16 or more, as others write colours; "" of other values.
 std::string color_text_of(const syntax::Value& value);
 
 }  // namespace fathom::compiler
