@@ -71,14 +71,18 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   CHECK(folder.run("check bad.json --error-format json").err.front() == '{');
 }
 
-TEST_CASE("cli: the scenes that come with the program have no errors and no warnings", "[heavy]") {
+TEST_CASE("cli: the scenes that come with the program have no errors and no warnings but one", "[heavy]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
     const Result result = Folder().run("check '" + entry.path().string() + "'");
     INFO(entry.path());
     CHECK(result.code == 0);
-    CHECK(result.err == "");
+    if (entry.path().filename() == "e-gyroid.json") {  // whose sheet is meant in the gyroid's values, as its head says
+      CHECK_THAT(result.err, Contains("W0511") && Contains("e-gyroid.json: 1 warning\n"));
+    } else {
+      CHECK(result.err == "");
+    }
     ++scenes;
   }
   CHECK(scenes > 0);
