@@ -106,6 +106,9 @@ TEST_CASE("every shipped scene reads back from its bytes and from its listing", 
   int count = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
+    // Ten thousand of one node show the sanitizers no more than d1000 does.
+    const bool few_cases = few(8) < 8;
+    if (few_cases && entry.file_size() > 500'000) continue;
     INFO(entry.path().string());
     check_round_trips(tests::compiled(tests::read_file(entry.path())));
     ++count;
