@@ -10,7 +10,9 @@
 
 #include "compiler/blends.h"
 #include "compiler/bounds.h"
+#include "compiler/extent.h"
 #include "compiler/fits_float.h"
+#include "compiler/framing.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/fuse.h"
@@ -34,6 +36,12 @@ using OnPass = std::function<void(std::string_view, const Scene&)>;
 constexpr std::string_view kGraph = "graph";    // the graph as it was read
 constexpr std::string_view kOrigin = "origin";  // the first step (compiler/origin.h)
 constexpr std::string_view kFuse = "fuse";      // the last, over programs
+
+// A camera that no one placed has the whole scene in its picture.
+void place_camera(Elaborated& elaborated, const Box& extent) {
+  const Film& film = elaborated.film;
+  elaborated.camera = placed(elaborated.camera, extent, static_cast<double>(film.width) / film.height);
+}
 
 // All places of the scene become those of the programs; returns the origin.
 glm::dvec3 move_to_origin(Elaborated& elaborated) {
@@ -157,7 +165,8 @@ void report_media(const Graph& graph, NodeId node, std::string_view what, const 
   diagnostics.error(
       "E0312", graph.origin(node).span,
       fmt::format("the solids of the transparent materials have more than {} {} here", limits.media, what), "",
-      {"each transparent material has a solid, its bodies without what outranks them in their box: use fewer of these "
+      {"each transparent material has a solid, its bodies without what outranks them in their box: use fewer of "
+       "these "
        "materials, or move their bodies apart",
        raise(&Limits::media, 2 * limits.media)});
 }
@@ -294,7 +303,11 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (diagnostics.has_errors()) return std::nullopt;
 
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
+  Box whole_extent = extent(elaborated->scene, analyse(elaborated->scene.graph));
+  place_camera(*elaborated, whole_extent);
   const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
+  whole_extent = whole_extent.moved(-origin);
+  place_camera(*elaborated, whole_extent);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
   const bool several = elaborated->surfaces.size() > 1;
   std::optional<CompiledField> whole = compile_field(elaborated->scene, field, several, source, diagnostics, options);
@@ -321,6 +334,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(*whole),
                        std::move(source),
                        origin,
+                       whole_extent,
                        std::move(*media),
                        std::move(lamps),
                        std::move(*formulas),

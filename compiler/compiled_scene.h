@@ -35,6 +35,7 @@ struct Surface {
 struct Camera {
   // A panorama shows all directions: 360 degrees from left to right, 180 from top to bottom.
   enum class Projection { Perspective, Orthographic, Panorama };
+  bool automatic = false;  // the scene has no `camera`: its extent is framed (compiler/framing.h), as far as it has one
   Projection projection = Projection::Perspective;
   glm::dvec3 position{0, 0, 5};
   glm::dvec3 target{0, 0, 0};
@@ -181,6 +182,7 @@ struct Medium : CompiledField {
 struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};       // where the programs' zero is in the scene, scene units (compiler/origin.h)
+  Box extent;                 // of all parts that end (compiler/extent.h); empty when there are none
   std::vector<Medium> media;  // of the transparent materials, in their order
   std::vector<Lamp> lamps;    // in file order; of those that coincide the first alone
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates

@@ -10,6 +10,7 @@
 #include "compiler/affine.h"
 #include "compiler/bounds.h"
 #include "compiler/direction.h"
+#include "compiler/extent.h"
 #include "compiler/shapes/node_table.h"
 #include "vm/opcode.h"
 
@@ -22,26 +23,6 @@ bool reads_point(const Instruction& instruction) {
   const vm::Form form = vm::info(instruction.opcode).form;
   return form == vm::Form::Point || form == vm::Form::Shape || form == vm::Form::Outline;
 }
-
-// The box of a node's parts that end.
-Box finite_part(const Graph& graph, NodeId id, const Knowledge& known, const std::vector<Box>& parts) {
-  if (known.box.finite()) return known.box;
-  const std::span<const NodeId> children = graph.children(id);
-  if (graph.kind(id) == Kind::Transform) {
-    return image(inverse(Affine::from_params(graph.params(id))), parts[children[0]]);
-  }
-  Box part;
-  if (!takes_own_point(graph, id)) return part;
-  for (const NodeId child : children) part = unite(part, parts[child]);
-  return part;
-}
-
-Box finite_part(const Scene& scene, const std::vector<Knowledge>& known) {
-  std::vector<Box> parts(scene.graph.size());
-  for (NodeId id = 0; id <= scene.root; ++id) parts[id] = finite_part(scene.graph, id, known[id], parts);
-  return parts[scene.root];
-}
-
 
 // The largest power of two up to `value` > 0.
 double power_of_two(double value) {
@@ -178,7 +159,7 @@ bool takes_own_point(const Graph& graph, NodeId id) {
 
 dvec3 choose_origin(const Scene& scene, const Camera& camera) {
   const std::vector<Knowledge> known = analyse(scene.graph);
-  const Box part = finite_part(scene, known);
+  const Box part = extent(scene, known);
   const Box view{glm::min(camera.position, camera.target), glm::max(camera.position, camera.target)};
   const dvec3 near_view = part.contains(camera.target) ? middle_if_far(view) : dvec3(0);
   const dvec3 near_parts = middle_if_far(known[scene.root].box.finite() ? part : unite(part, view));

@@ -255,6 +255,7 @@ void fields(Archive& a, Parameter& p) {
 }
 
 void fields(Archive& a, Camera& c) {
+  field(a, "automatic", c.automatic);
   field(a, "projection", c.projection, ChoiceNames(kProjections));
   field(a, "position", c.position, -kAny, kAny);
   field(a, "target", c.target, -kAny, kAny);
@@ -333,6 +334,8 @@ void fields(Archive& a, CompiledScene& scene) {
   field(a, "summary", scene.summary);
   field(a, "nodes", scene.node_count, 0, ~std::uint32_t{0});
   field(a, "origin", scene.origin, -kAny, kAny);
+  field(a, "extent_lo", scene.extent.lo, -kEndless, kEndless);
+  field(a, "extent_hi", scene.extent.hi, -kEndless, kEndless);
   list(a, "parameters", scene.parameters);
   record(a, "camera", scene.camera);
   record(a, "film", scene.film);

@@ -96,7 +96,9 @@ CheckedScene check_nodes(const RecordReader& reader, const Scope& parameters, Di
 
 Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnostics& diagnostics) {
   Elaborated out;
-  if (const syntax::Value* camera = reader.value("camera")) out.camera = read_camera(*camera, scope, diagnostics);
+  const syntax::Value* camera = reader.value("camera");
+  if (camera != nullptr) out.camera = read_camera(*camera, scope, diagnostics);
+  out.camera.automatic = camera == nullptr;
   if (const syntax::Value* film = reader.value("film")) out.film = read_film(*film, scope, diagnostics);
   if (const syntax::Value* render = reader.value("render")) out.settings = read_render(*render, scope, diagnostics);
   if (const syntax::Value* background = reader.value("background")) {

@@ -38,6 +38,12 @@ std::string view_of(const compiler::Camera& camera) {
   return number(camera.fov) + " rad";
 }
 
+// Where the camera is may come from the command line, too, or from the size of the picture.
+std::string place_of(const compiler::CompiledScene& scene) {
+  const glm::dvec3 from = scene.camera.position + scene.origin, to = scene.camera.target + scene.origin;
+  return fmt::format("{},{},{} to {},{},{}", from.x, from.y, from.z, to.x, to.y, to.z);
+}
+
 std::string environment_of(const runtime::RenderOptions& options) {
   if (!options.environment) return "none";
   static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
@@ -101,6 +107,7 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
       {"scene", scene_hash(scene)},
       {"program", program_hash(scene)},
       {"size", fmt::format("{}x{}", settings.width, settings.height)},
+      {"camera", place_of(scene)},
       {"field of view", view_of(scene.camera)},
       {"background picture", environment_of(options)},
       {"spp", std::to_string(settings.spp)},

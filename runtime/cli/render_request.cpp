@@ -341,6 +341,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
                     request.verbosity);
   arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
   add_output_options(arguments, request);
+  add_camera_options(arguments, request.camera);
   bool no_denoise = false;
   add_renderer_options(arguments, request);
   add_running_options(arguments, request, no_denoise);
@@ -371,6 +372,7 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
                 {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
   if (const auto code = override_size(request, scene.film, streams)) return code;
+  if (const auto code = place_camera(request.camera, scene, streams)) return code;
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
   if (const auto code = check_adaptive(request, scene, streams)) return code;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/cli/camera_options.h"
 #include "runtime/cli/long_render.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
@@ -21,6 +22,7 @@ struct RenderRequest {
   bool default_output = false;  // the name was made from the scene's
   bool albedo = false, depth = false, normal = false;
   std::optional<double> aspect, fov;  // width over height; radians
+  CameraOptions camera;
   std::optional<int> resolution;      // width, pixels
   std::optional<PixelSize> size;
   std::optional<CropSides> crop;

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <vector>
 
+#include "runtime/cli/camera_options.h"
 #include "runtime/cli/operation_table.h"
 #include "vm/disassemble.h"
 #include "vm/evaluate.h"
@@ -45,9 +46,7 @@ std::string describe_settings(const compiler::CompiledScene& scene, const runtim
 }
 
 std::string describe_tables(const compiler::CompiledScene& scene) {
-  const compiler::Camera& camera = scene.camera;
-  std::string text = fmt::format("camera at {} towards {}, up {}\n", triple(camera.position + scene.origin),
-                                 triple(camera.target + scene.origin), triple(camera.up));
+  std::string text;
   const char* types[] = {"diffuse", "emissive", "specular", "transparent", "principled"};
   for (const compiler::Material& material : scene.materials) {
     text += fmt::format("material `{}`: {}, colour {}\n", material.name,
@@ -83,6 +82,7 @@ void Verbosity::describe(const compiler::CompiledScene& scene) const {
 void Verbosity::describe(const compiler::CompiledScene& scene, const runtime::Settings& settings) const {
   std::ostream& err = streams_.err;
   describe(scene);
+  if (level_ >= 1) err << camera_text(scene) << '\n';
   if (level_ >= 3) err << describe_settings(scene, settings);
   if (level_ >= 4) err << vm::printable(describe_tables(scene));
   if (level_ >= 5) err << operation_table(scene.distance);

@@ -1,6 +1,6 @@
 // What `fathom render -v` to `-vvvvvv` tell, and of other verbs the first two, each level beside those below it:
 //
-//     1  what the scene compiled to, and how long it took     4  camera, film, materials
+//     1  what the scene compiled to and in what time; camera  4  materials, surfaces
 //     2  the compiler's passes and the size after each        5  how often each operation occurs
 //     3  instruction set, threads, settings, bounds           6  the listings
 //

@@ -78,7 +78,8 @@ TEST_CASE("cli: dump says where the programs' origin is, check speaks of the sce
   folder.write("hair.json", hair);
   CHECK(folder.run("check hair.json").err == "");
   CHECK_THAT(folder.run("render far.json -o a.png --size 8x8 --spp 1 -vvvv").err,
-             Contains("the programs' origin is 100000 0 0") && Contains("camera at 100000 2 5 towards 100000 0.5 0"));
+             Contains("the programs' origin is 100000 0 0") &&
+                 Contains(R"("camera": {"position": [100000, 2, 5], "target": [100000, 0.5, 0], )"));
 }
 
 }  // namespace fathom::cli_origin_test
