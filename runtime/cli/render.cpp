@@ -331,8 +331,9 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   Verbosity verbosity(request.verbosity, streams);
-  auto compiled =
-      compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, verbosity.watch_compiler());
+  compiler::CompileOptions options = verbosity.watch_compiler();
+  options.lint_picture = true;
+  auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;
