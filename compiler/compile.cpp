@@ -328,6 +328,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     lint_places(elaborated->scene, origin, diagnostics);
     warn_of_nan(elaborated->scene, *whole, *elaborated, origin, source, diagnostics);
   }
+  if (options.lint || options.lint_picture) lint_light(elaborated->scene, *elaborated, whole->surface, diagnostics);
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
   std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),

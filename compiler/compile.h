@@ -27,6 +27,8 @@ struct CompileOptions {
   Definitions definitions;
   // Warn of what is sound but surely not meant, or dear (compiler/lints.h).
   bool lint = false;
+  // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
+  bool lint_picture = false;
   // Called with what the front end read.
   std::function<void(const ReadScene& scene)> on_syntax;
 };

@@ -97,6 +97,8 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0512", "a part too small for where it stands"},
     {"W0513", "a scene too small for numbers"},
     {"W0514", "a field that is not a number somewhere"},
+    {"W0515", "no light reaches the camera"},
+    {"W0516", "nothing is in view"},  // runtime/cli/picture_warning.cpp
 };
 
 }  // namespace fathom::compiler

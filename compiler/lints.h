@@ -23,6 +23,10 @@ void lint_places(const Scene& scene, glm::dvec3 origin, Diagnostics& diagnostics
 // Offsets and blends of values that are smaller than the distance near the surface (W0511).
 void lint_offsets(const Scene& scene, Diagnostics& diagnostics);
 
+// A scene without any light, or with its only lights inside opaque solids (W0515). `surface` is its program.
+void lint_light(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgram& surface,
+                Diagnostics& diagnostics);
+
 // Twice the thickness of a wall, or the smallest side of a primitive's box; infinite when it has neither. `box` is
 // the node's; the result is in the node's own space.
 double thickness(const Graph& graph, NodeId id, const Box& box);

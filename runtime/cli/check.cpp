@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/cli/check_report.h"
+#include "runtime/cli/picture_warning.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 
@@ -37,6 +38,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                       "Prints every error and warning of scenes and how exact their distances are. Renders nothing.",
                       kCheckExamples);
   request.scene.count_warnings = true;
+  request.scene.inspect = warn_of_empty_view;
   add_scene_arguments(arguments, request.scene, request.paths);
   arguments.option("--probe", "N",
                    "Compare gradients and differences at N points with the constants that the compiler proved",

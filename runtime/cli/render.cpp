@@ -23,6 +23,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_files.h"
+#include "runtime/cli/picture_warning.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_identity.h"
 #include "runtime/cli/render_request.h"
@@ -207,6 +208,7 @@ class Job {
     const End ended = result.stats.end;
     warn_of_lost(result.stats);
     warn_of_invalid(result.stats);
+    warn_of_picture(result);
     const bool undone = ended == End::Cancelled || ended == End::TimeLimit;
     const bool keep = checkpoint_ && (undone || checkpoint_->named());
     if (keep) checkpoint_->write(header_, result, streams_);
@@ -247,6 +249,15 @@ class Job {
   void warn_of_invalid(const runtime::Stats& stats) {
     const std::optional<glm::dvec3>& at = stats.march.invalid_at;
     if (at) warn(streams_, invalid_text(scene_, stats.march.invalid, stats.march.rays, *at));
+  }
+
+  // Of a whole picture with all its samples: parts may well be empty.
+  void warn_of_picture(const runtime::RenderResult& result) {
+    using End = runtime::RenderEnd;
+    const runtime::Settings& used = result.settings;
+    const bool whole = !request_.crop && used.samples.size() == static_cast<std::uint32_t>(used.spp);
+    if (!whole || (result.stats.end != End::Done && result.stats.end != End::Noise)) return;
+    if (const auto text = picture_warning(scene_, result)) warn(streams_, *text);
   }
 
   void warn_of_lost(const runtime::Stats& stats) {
@@ -331,8 +342,9 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   Verbosity verbosity(request.verbosity, streams);
-  auto compiled =
-      compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, verbosity.watch_compiler());
+  compiler::CompileOptions options = verbosity.watch_compiler();
+  options.lint_picture = true;
+  auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (const auto code = override_scene(request, scene, streams)) return *code;

@@ -285,6 +285,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     };
   }
   auto scene = compiler::compile(input.source, diagnostics, options);
+  if (scene && arguments.inspect) arguments.inspect(*scene, diagnostics);
   if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);
   if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
   verbosity.describe(*scene);

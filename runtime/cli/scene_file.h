@@ -2,6 +2,7 @@
 // Tested by: tests/runtime/cli_test.cpp
 #pragma once
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,6 +20,8 @@ struct SceneArguments {
   compiler::Definitions definitions;  // values for the scene's parameters
   compiler::Limits limits;
   bool count_warnings = false;  // say how many there are, even where there is no error
+  // Adds warnings that only the renderer's own tables tell.
+  std::function<void(const compiler::CompiledScene&, compiler::Diagnostics&)> inspect = nullptr;
 };
 
 // The positional argument, --define, --limit and --error-format. A scene that is not `required` has an empty path

@@ -78,7 +78,8 @@ inline std::string codes_of(const std::string& objects, bool lint = false) {
   compiler::Diagnostics diagnostics;
   compiler::CompileOptions options;
   options.lint = lint;
-  compile(compiler::Source("test.json", R"({"version": 1, "objects": [)" + objects + "]}"), diagnostics, options);
+  const std::string scene = R"({"version": 1, "background": [1, 1, 1], "objects": [)" + objects + "]}";
+  compile(compiler::Source("test.json", scene), diagnostics, options);
   std::string codes;
   for (const compiler::Diagnostic& diagnostic : diagnostics.all()) {
     codes += (codes.empty() ? "" : " ") + diagnostic.code;

@@ -71,6 +71,7 @@ TEST_CASE("every code has a golden file and every golden file shows its code", "
     shown.insert(code);
   }
   for (const ErrorCode& row : kErrorCodes) {
+    if (row.code == "W0516") continue;  // of `fathom check`, not of the compiler: cli_picture_warning_test.cpp
     CAPTURE(std::string(row.code));
     CHECK(shown.count(std::string(row.code)) == 1);
     shown.erase(std::string(row.code));

@@ -117,7 +117,8 @@ TEST_CASE("what is within glass shows", "[report]") {
   const std::pair<std::string, std::string> cases[] = {
       {"", ""}, {"", R"(, "material": "glass")"}, {R"(, "lamp": {"type": "emissive"})", R"(, "material": "lamp")"}};
   for (const auto& [material, inner] : cases) {
-    const Source source("scene.json", R"({"version": 1, "materials": {"glass": {"type": "transparent"})" + material +
+    const Source source("scene.json", R"({"version": 1, "background": [1, 1, 1],
+      "materials": {"glass": {"type": "transparent"})" + material +
                                           "}, " + outer + inner + "}]}");
     Diagnostics diagnostics;
     CompileOptions options;
@@ -130,8 +131,9 @@ TEST_CASE("what is within glass shows", "[report]") {
 TEST_CASE("lints are for check, and a formula without a bound is for everyone", "[report]") {
   const std::string hidden = R"({"type": "sphere", "radius": 2}, {"type": "sphere", "radius": 1})";
   CHECK(compiled(hidden).diagnostics.all().empty());
-  REQUIRE(compiled(hidden, true).diagnostics.all().size() == 1);
+  REQUIRE(compiled(hidden, true).diagnostics.all().size() == 2);
   CHECK(compiled(hidden, true).diagnostics.all()[0].code == "W0501");
+  CHECK(compiled(hidden, true).diagnostics.all()[1].code == "W0515");
   const std::string jump = R"_({"type": "expression", "formula": "y - floor(x)"})_";
   CHECK(compiled(jump).diagnostics.all().back().code == "W0509");
 }

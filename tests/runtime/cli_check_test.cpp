@@ -15,7 +15,7 @@ using fathom::tests::Folder;
 using fathom::tests::Result;
 
 const char* const kRope = R"({
-  "version": 1,
+  "version": 1, "background": [1, 1, 1],
   "objects": [
     {"name": "floor", "type": "plane", "normal": [0, 1, 0], "offset": -3},
     {"name": "rope", "type": "twist", "turn": 90, "of":
@@ -109,7 +109,7 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
 
 TEST_CASE("cli: check takes several scenes, names each and counts warnings") {
   const Folder folder;
-  folder.write("unused.json", R"({"version": 1, "materials": {"m": {"type": "diffuse"}}, "objects": [{"type": "sphere", "radius": 1}]})");
+  folder.write("unused.json", R"({"version": 1, "background": [1, 1, 1], "materials": {"m": {"type": "diffuse"}}, "objects": [{"type": "sphere", "radius": 1}]})");
   folder.write("wrong.json", R"({"version": 1, "objects": [{"type": "sphere"}]})");
   Result result = folder.run("check unused.json ball.json");
   CHECK(result.code == 0);

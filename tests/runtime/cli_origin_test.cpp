@@ -16,6 +16,7 @@ using fathom::tests::Folder;
 // A ball of radius 0.5 over a floor, at x = 1e5.
 const char* const kFar = R"({
   "version": 1,
+  "background": [1, 1, 1],
   "camera": {"position": [100000, 2, 5], "target": [100000, 0.5, 0]},
   "objects": [
     {"name": "floor", "type": "plane", "normal": [0, 1, 0]},
