@@ -1,0 +1,94 @@
+// Commands that README.md and docs/TUTORIAL.md show, run on the scenes that they show: what is printed there is printed here.
+#include <catch2/catch.hpp>
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/golden.h"
+#include "tests/support/program.h"
+
+namespace fathom::cli_docs_test {
+
+namespace {
+
+using namespace fathom::tests;
+
+struct Block {
+  std::string language, text;
+};
+
+// What stands between ```language and ``` of a page, in order.
+std::vector<Block> blocks_of(const std::string& page) {
+  std::vector<Block> blocks;
+  bool within = false;
+  std::istringstream lines(page);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("```")) {
+      within = !within;
+      if (within) blocks.push_back({line.substr(3), ""});
+    } else if (within) {
+      blocks.back().text += line + '\n';
+    }
+  }
+  REQUIRE_FALSE(within);
+  return blocks;
+}
+
+// The file `name` of scene blocks that begin with "// name.json".
+std::string file_name(const std::string& scene) {
+  const std::size_t end = scene.find(".json");
+  REQUIRE(scene.starts_with("// "));
+  REQUIRE(end != std::string::npos);
+  return scene.substr(3, end + 2);
+}
+
+// Runs each "$ command" of a console block and compares what it prints with the lines that follow. "..." ends what is
+// compared.
+int check_console(const Folder& folder, const std::string& block) {
+  int commands = 0;
+  std::size_t at = 0;
+  while (block.compare(at, 2, "$ ") == 0) {
+    const std::size_t end = block.find('\n', at);
+    const std::string command = block.substr(at + 2, end - at - 2);
+    const std::size_t next = std::min(block.find("\n$ ", end), block.size() - 1) + 1;
+    std::string shown = block.substr(end + 1, next - end - 1);
+    INFO(command);
+    REQUIRE(command.starts_with("fathom "));
+    std::string printed = folder.run_script("\"$fathom\" " + command.substr(7) + " 2>&1").out;
+    if (shown.ends_with("\n...\n")) {
+      shown.resize(shown.size() - 4);
+      printed.resize(std::min(printed.size(), shown.size()));
+    }
+    CHECK(printed == shown);
+    ++commands;
+    at = next;
+  }
+  CHECK(commands > 0);
+  return commands;
+}
+
+int check_page(const Folder& folder, const std::string& page) {
+  int commands = 0;
+  for (const Block& block : blocks_of(page)) {
+    if (block.language == "json") folder.write(file_name(block.text), block.text);
+    if (block.language == "console") commands += check_console(folder, block.text);
+  }
+  return commands;
+}
+
+}  // namespace
+
+TEST_CASE("docs: the tutorial's commands print what it shows", "[docs]") {
+  CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/TUTORIAL.md")) >= 5);
+}
+
+TEST_CASE("docs: README shows scenes/melt.json and its listing", "[docs]") {
+  const std::string melt = read_file(FATHOM_SOURCE_DIR "/scenes/melt.json");
+  CHECK(melt.starts_with("// melt.json"));
+  const std::string page = read_file(FATHOM_SOURCE_DIR "/README.md");
+  CHECK(page.find("```json\n" + melt + "```\n") != std::string::npos);
+  CHECK(check_page(Folder(), page) >= 1);
+}
+
+}  // namespace fathom::cli_docs_test
