@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace fathom::compiler {
@@ -29,22 +31,35 @@ struct Edit {
   std::string_view line;
 };
 
+// Numbers that are equal where lines are: aligning compares each line with each, and a line can be a megabyte.
+std::pair<std::vector<std::size_t>, std::vector<std::size_t>> numbered(const Lines& before, const Lines& after) {
+  std::unordered_map<std::string_view, std::size_t> numbers;
+  const auto of = [&](const Lines& lines) {
+    std::vector<std::size_t> out;
+    for (const std::string_view line : lines) out.push_back(numbers.try_emplace(line, numbers.size()).first->second);
+    return out;
+  };
+  auto first = of(before);
+  return {std::move(first), of(after)};
+}
+
 // The edits that keep a longest common subsequence of lines. Source: Wagner & Fischer, "The string-to-string
 // correction problem", 1974; memory and time grow with the product of the lengths.
 std::vector<Edit> align(const Lines& before, const Lines& after) {
+  const auto [old_lines, new_lines] = numbered(before, after);
   const std::size_t columns = after.size() + 1;
   std::vector<std::uint16_t> common((before.size() + 1) * columns, 0);  // of what follows [before][after]
   const auto at = [&](std::size_t i, std::size_t j) -> std::uint16_t& { return common[i * columns + j]; };
   for (std::size_t i = before.size(); i-- > 0;) {
     for (std::size_t j = after.size(); j-- > 0;) {
-      at(i, j) = before[i] == after[j] ? static_cast<std::uint16_t>(at(i + 1, j + 1) + 1)
-                                       : std::max(at(i + 1, j), at(i, j + 1));
+      at(i, j) = old_lines[i] == new_lines[j] ? static_cast<std::uint16_t>(at(i + 1, j + 1) + 1)
+                                              : std::max(at(i + 1, j), at(i, j + 1));
     }
   }
   std::vector<Edit> edits;
   std::size_t i = 0, j = 0;
   while (i < before.size() || j < after.size()) {
-    if (i < before.size() && j < after.size() && before[i] == after[j]) {
+    if (i < before.size() && j < after.size() && old_lines[i] == new_lines[j]) {
       edits.push_back({' ', before[i++]}), ++j;
     } else if (j == after.size() || (i < before.size() && at(i + 1, j) >= at(i, j + 1))) {
       edits.push_back({'-', before[i++]});

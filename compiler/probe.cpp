@@ -18,11 +18,12 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kLargestSide = 1e17;        // a box's side beyond this stands for one without end
+constexpr double kLargestSide = 1e17;    // a box's side beyond this stands for one without end
 constexpr std::uint64_t kFewest = 256;   // points of a row
 constexpr std::uint64_t kChunk = 4096;   // points a thread takes at once
 constexpr int kWalk = 3;                 // steps towards the surface
 constexpr double kTolerance = 1 + 1e-6;  // what rounding can add to a ratio
+constexpr std::uint64_t kLowering = 64;  // times an instruction could be run while it is made
 
 // SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014), from a point's number.
 class Random {
@@ -133,11 +134,18 @@ class Probing {
 
   const FieldGraph& field() const { return field_; }
 
-  void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) const {
+  // The row of the whole scene takes what `points` of it take, each other one a part of what is left of as much.
+  void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) {
     const Knowledge& known = field_.known(id);
     ProbeRow& row = rows.emplace_back(ProbeRow{what, id, field_.place(id), known.certified, known.lipschitz});
-    const std::optional<vm::Program> program =
-        lower(field_.graph(), id, Source("", ""), static_cast<std::size_t>(Limits{}.instructions));
+    const bool first = what == ProbeRow::What::Scene;
+    const auto allowed = static_cast<std::uint64_t>(Limits{}.instructions);
+    const std::uint64_t most = first ? allowed : std::min(allowed, left_ / (points + kLowering));
+    const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), most);
+    const std::uint64_t length = program ? program->debug.size() : 0;
+    if (first) left_ = std::max(options_.least_work, points * length);
+    // Lowering looks at the graph up to the node.
+    if (!first) take(id + (program ? (points + kLowering) * length : kLowering * most));
     if (!program) return;
     const auto verified = vm::verify(*program, largest_machine());
     if (const auto* sound = std::get_if<vm::VerifiedProgram>(&verified)) run(*sound, points, row);
@@ -168,8 +176,11 @@ class Probing {
     for (const ProbeRow& part : parts) merge(row, part);
   }
 
+  void take(std::uint64_t work) { left_ -= std::min(left_, work); }
+
   const FieldGraph field_;
   const ProbeOptions options_;
+  std::uint64_t left_ = 0;  // instructions that the rows to come may run
 };
 
 bool has_own_proof(const FieldGraph& field, NodeId id) {
@@ -194,7 +205,7 @@ bool ProbeRow::broken() const { return certified && seen() > declared * kToleran
 
 std::vector<ProbeRow> probe(const Scene& scene, const std::vector<Surface>& surfaces, const ProbeOptions& options) {
   using What = ProbeRow::What;
-  const Probing probing(scene, options);
+  Probing probing(scene, options);
   const FieldGraph& field = probing.field();
   std::vector<std::pair<What, NodeId>> others;
   std::vector<bool> taken(scene.root + 1, false);

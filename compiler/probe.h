@@ -3,7 +3,10 @@
 //
 // Each node is probed in its own space: half of the points uniform in its box grown by a fifth (infinite sides end at
 // `reach` from the origin), half walked from there towards the surface. Points depend on their number alone, so
-// results do not depend on the number of threads. No probe proves anything; one that breaks a constant refutes it.
+// results do not depend on the number of threads. A node may be used in so many ways that its program is very long:
+// all rows after the first take no more instructions together than the first, or `least_work` if that is more, and a
+// row that comes when too few are left has no points. No probe proves anything; one that breaks a constant refutes
+// it.
 //
 //     const std::vector<ProbeRow> rows = probe(scene, surfaces, {.points = 1'000'000, .reach = 50});
 //
@@ -23,6 +26,7 @@ struct ProbeOptions {
   double reach = 50;                 // scene units
   glm::dvec3 origin{0};              // of the scene's and the objects' endless sides, scene units
   int threads = 1;
+  std::uint64_t least_work = 100'000'000;  // instructions
 };
 
 struct ProbeRow {

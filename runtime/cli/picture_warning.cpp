@@ -46,7 +46,7 @@ std::string place_out_of_view(const compiler::Box& box, const runtime::Camera& c
   return below ? "below the view" : "";
 }
 
-std::string place_of(const compiler::CompiledScene& scene) {
+std::string place_of_scene(const compiler::CompiledScene& scene) {
   const compiler::Film& film = scene.film;
   return place_out_of_view(scene.bound, runtime::Camera(scene.camera, film.width, film.height), film);
 }
@@ -87,7 +87,7 @@ double stops_to_show(double brightest) { return std::clamp(std::round(std::log2(
 }  // namespace
 
 void warn_of_empty_view(const compiler::CompiledScene& scene, compiler::Diagnostics& diagnostics) {
-  const std::string place = place_of(scene);
+  const std::string place = place_of_scene(scene);
   if (place.empty()) return;
   diagnostics.warning("W0516", {}, fmt::format("nothing is in view: the whole scene is {}", place), "",
                       {kFrameRemedy});
@@ -98,7 +98,7 @@ std::optional<std::string> picture_warning(const compiler::CompiledScene& scene,
   if (result.film.area().pixels() < 2) return std::nullopt;
   const Summary seen = summarize(scene, result.film);
   if (!seen.hit) {
-    const std::string place = place_of(scene);
+    const std::string place = place_of_scene(scene);
     return fmt::format("nothing is in view: every camera ray missed{}; {}",
                        place.empty() ? "" : ", for the whole scene is " + place, kFrameRemedy);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compiler/formula_field.h"
+#include "compiler/lower.h"
 #include "compiler/make_node.h"
 
 namespace fathom::probe_test {
@@ -91,6 +92,40 @@ TEST_CASE("a formula whose constant is halved is named, and an estimate never br
     CHECK(rows[0].gradient == Approx(3));
     CHECK(culprits(scene, rows).size() == certified);
   }
+}
+
+TEST_CASE("all rows after the first take no more work than is allowed", "[probe][limits]") {
+  Scene scene;
+  Graph& graph = scene.graph;
+  NodeMaker maker(graph);
+  const double one[] = {1};
+  const NodeId ball = graph.add(Kind::Sphere, one, {});
+  NodeId last = ball;
+  for (int i = 0; i < 12; ++i) {
+    // Four doublings, then one node more each.
+    const double x = 1 + 0.1 * i;
+    const auto moved = [&](NodeId node, double to) {
+      return maker.make(Kind::Transform, std::vector<double>{1, 0, 0, -to, 0, 1, 0, 0, 0, 0, 1, 0, 1}, {{node}});
+    };
+    const NodeId second = i < 4 ? moved(last, -x) : moved(ball, x);
+    last = maker.make(Kind::RoundUnion, one, {{moved(last, x), second}});
+  }
+  scene.root = last;
+  ProbeOptions options{.points = 64, .reach = 10, .threads = 1, .least_work = 50'000};
+  std::uint64_t work = 0, seen = 0;
+  const std::vector<ProbeRow> rows = probe(scene, {}, options);
+  REQUIRE(rows.size() == 12);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto program = lower(graph, rows[i].node, Source("", ""), 1'000'000);
+    REQUIRE(program);
+    work += rows[i].points * program->debug.size();
+    seen += rows[i].points > 0;
+  }
+  CHECK(work <= options.least_work);
+  CHECK(seen >= 3);
+  CHECK(rows.back().points == 0);
+  options.least_work *= 100;
+  CHECK(probe(scene, {}, options).back().points == 64);
 }
 
 TEST_CASE("results are the same for any number of threads", "[probe]") {

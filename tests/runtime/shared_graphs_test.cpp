@@ -2,18 +2,23 @@
 // Forty doublings took 2^39 visits to find lamps, lamps within other bodies, bodies of two materials, and what is
 // bounded beside a plane. That each verb ends is tested, not how soon: the system ends the program after seconds of a
 // processor that no machine is slow enough to need.
+//
+// Random scenes are held to the same: each node uses a few of those before it, moved, turned, scaled or painted anew.
+// A verb does what it is asked or refuses the scene with an error.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 #include <string>
 
 #include "tests/support/program.h"
+#include "tests/support/random_scene.h"
 
 namespace fathom::shared_graphs_test {
 
 namespace {
 
 using namespace fathom::tests;
+using test::Random;
 
 // `doubled`: a node in which $ stands for the one before, forty times.
 std::string doublings(const std::string& base, const std::string& doubled) {
@@ -31,19 +36,24 @@ std::string doublings(const std::string& base, const std::string& doubled) {
 }
 
 const char* const kVerbs[] = {"check scene.json",
+                              "check scene.json --probe 1000 --threads 1",
                               "dump scene.json --diff",
                               "dump scene.json --stage graph --format json",
                               "dump scene.json --stage bytecode",
                               "eval scene.json --at 1,2,3",
                               "emit cpp scene.json",
+                              "compile scene.json -o scene.fbc",
                               "render -q scene.json -o scene.png"};
+
+Result run_verb(const Folder& folder, const std::string& verb) {
+  return folder.run_script(fmt::format("ulimit -t {}\n\"$fathom\" {}", is_sanitized() ? 300 : 30, verb));
+}
 
 void check_all(const std::string& scene) {
   const Folder folder;
   folder.write("scene.json", scene);
-  const std::string seconds = is_sanitized() ? "300" : "30";
   for (const std::string verb : kVerbs) {
-    const Result result = folder.run_script("ulimit -t " + seconds + "\n\"$fathom\" " + verb);
+    const Result result = run_verb(folder, verb);
     INFO(verb << "\n" << scene.substr(0, 600) << "\n" << result.err.substr(0, 600));
     CHECK(result.code == 0);
   }
@@ -59,6 +69,132 @@ TEST_CASE("shared graphs: every verb visits a node that is used in many ways onc
       {"type": "sphere", "radius": 1}]})",
                       R"({"type": "smooth_union", "k": 0.001, "of": [$, $]})"));
 }
+
+const char* const kMaterials = R"("materials": {
+    "lamp": {"type": "emissive", "emission": [1, 2, 3]}, "clay": {"type": "diffuse"},
+    "glass": {"type": "transparent"}, "water": {"type": "transparent", "ior": 1.3},
+    "paint": {"type": "principled", "color": [0.2, 0.4, 0.6], "roughness": 0.4}})";
+
+// A scene for each seed.
+class Writer {
+ public:
+  explicit Writer(std::uint64_t seed) : random_(seed) {}
+
+  std::string scene() {
+    const int count = 8 + random_.below(30);
+    std::string nodes;
+    for (int i = 0; i < count; ++i) nodes += fmt::format("{}\n  \"n{}\": {}", i == 0 ? "" : ",", i, node(i));
+    const std::string first = use(count), second = use(count);
+    return fmt::format(R"({{"version": 1, "film": {{"width": 8, "height": 8}}, "render": {{"spp": 1}}, {},
+"nodes": {{{}}},
+"objects": [{}, {}, {}]}})",
+                       kMaterials, nodes, first, second, use(count));
+  }
+
+ private:
+  std::string material() {
+    const char* const names[] = {"lamp", "clay", "glass", "water", "paint"};
+    return fmt::format(R"(, "material": "{}")", names[random_.below(5)]);
+  }
+
+  std::string vector(double lo, double hi) {
+    const double x = random_.uniform(lo, hi), y = random_.uniform(lo, hi);
+    return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", x, y, random_.uniform(lo, hi));
+  }
+
+  // One of the nodes before `i`, mostly one of the last.
+  std::string use(int i) {
+    int back = 1;
+    while (back < i && random_.chance(0.5)) ++back;
+    std::string text = fmt::format(R"({{"use": "n{}")", i - back);
+    const int moved = random_.below(10);
+    if (moved < 3) text += R"(, "translate": )" + vector(-1, 1);
+    if (moved == 3) text += fmt::format(R"(, "scale": {:.3f})", random_.uniform(0.5, 1.5));
+    if (moved == 4) text += R"(, "scale": )" + vector(0.5, 1.5);
+    if (moved == 5) text += fmt::format(R"(, "rotate": [0, {:.1f}, 0])", random_.uniform(0, 90));
+    if (random_.chance(0.2)) text += material();
+    return text + "}";
+  }
+
+  std::string node(int i) {
+    const int choice = i < 3 ? 0 : random_.below(10);
+    std::string text = choice == 0 ? primitive() : choice < 6 ? combinator(i) : alteration(i);
+    if (random_.chance(0.3)) text.insert(text.size() - 1, material());
+    return text;
+  }
+
+  std::string primitive() {
+    const char* const shapes[] = {
+        R"({"type": "sphere", "radius": 0.6})",
+        R"({"type": "box", "half_size": [0.5, 0.4, 0.3]})",
+        R"({"type": "torus", "major_radius": 0.7, "minor_radius": 0.2})",
+        R"({"type": "ellipsoid", "radii": [0.5, 0.8, 0.3]})",
+        R"({"type": "plane", "normal": [0, 1, 0], "offset": -1})",
+        R"({"type": "expression", "formula": "0.1*sin(5*x) + x^2 + y^2 + z^2 - 0.5", "half_size": [1, 1, 1]})",
+    };
+    return shapes[random_.below(6)];
+  }
+
+  std::string combinator(int i) {
+    const char* const kinds[] = {R"("union")",
+                                 R"("intersection")",
+                                 R"("subtraction")",
+                                 R"("xor")",
+                                 R"("smooth_union", "k": 0.2)",
+                                 R"("smooth_subtraction", "k": 0.1)",
+                                 R"("smooth_intersection", "k": 0.05)",
+                                 R"("chamfer_union", "radius": 0.1)",
+                                 R"("round_union", "radius": 0.1)",
+                                 R"("stairs_union", "radius": 0.2)",
+                                 R"("morph", "t": 0.4)"};
+    const char* const kind = kinds[random_.below(11)];
+    const std::string first = use(i);
+    return fmt::format(R"({{"type": {}, "of": [{}, {}]}})", kind, first, use(i));
+  }
+
+  // Of a node cut to a box: what repeats or bends needs an end.
+  std::string alteration(int i) {
+    const char* const kinds[] = {R"("round", "radius": 0.05)",
+                                 R"("onion", "thickness": 0.05)",
+                                 R"("complement")",
+                                 R"("elongate", "half_size": [0.2, 0, 0.1])",
+                                 R"("mirror", "normal": [1, 0, 0])",
+                                 R"("repetition", "period": [3, 0, 2], "count": [3, 0, 3])",
+                                 R"("repetition", "period": [3, 3, 0], "jitter": [0.2, 0.1, 0])",
+                                 R"("polar_repetition", "count": 5)",
+                                 R"("twist", "turn": 30)",
+                                 R"("bend", "turn": 20)",
+                                 R"("taper", "bottom": 1, "top": 0.7, "half_height": 1)",
+                                 R"("displacement", "formula": "sin(5*x)*sin(4*y)*0.02")"};
+    const char* const kind = kinds[random_.below(12)];
+    return fmt::format(
+        R"({{"type": {}, "of": {{"type": "intersection", "of": [{}, {{"type": "box", "half_size": [2, 1, 1]}}]}}}})",
+        kind, use(i));
+  }
+
+  Random random_;
+};
+
+// How many of the scenes of these seeds were rendered, and not refused: for a limit, or for what has no end.
+int rendered(std::uint64_t first, std::uint64_t last) {
+  int done = 0;
+  for (std::uint64_t seed = first; seed < last; ++seed) {
+    const Folder folder;
+    folder.write("scene.json", Writer(seed).scene());
+    for (const std::string verb : kVerbs) {
+      const Result result = run_verb(folder, verb);
+      INFO("seed " << seed << ": " << verb << "\n" << result.err.substr(0, 600));
+      const bool refused = result.code == (verb.starts_with("check") ? 1 : 65);
+      CHECK((result.code == 0 || (refused && result.err.find("error[E") != std::string::npos)));
+    }
+    done += folder.has("scene.png");
+  }
+  return done;
+}
+
+TEST_CASE("shared graphs: random ones end in every verb", "[limits]") { CHECK(rendered(1, 5) >= 2); }
+
+TEST_CASE("shared graphs: many random ones end in every verb", "[limits][heavy]") { CHECK(rendered(100, 140) >= 20); }
 
 }  // namespace
 
