@@ -259,7 +259,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
     CHECK_FALSE(compiler::read_listing(source, diagnostics, contents));
     return diagnostics.print(source, compiler::ErrorFormat::Short);
   };
-  CHECK_THAT(refused("fathom 1", "fathom 2"), Contains("test.txt:1:8: error: `1` should be here"));
+  CHECK_THAT(refused("fathom 2", "fathom 3"), Contains("test.txt:1:8: error: `2` should be here"));
   CHECK_THAT(refused("fov ", "fvo "), Contains("`fov` should be here"));
   CHECK_THAT(refused("blades 6", "blades 99"), Contains("99 is not in 0..32"));
   CHECK_THAT(refused("blades 6", "blades six"), Contains("this should be a whole number"));

@@ -88,7 +88,8 @@ TEST_CASE("emitted code grows with the program and has each function once", "[em
 }
 
 TEST_CASE("an emitted function takes places of the scene", "[emit]") {
-  const auto scene = compiled_objects(R"({"type": "sphere", "radius": 1, "translate": [30000, 0, 0]})");
+  const auto scene = fathom::tests::compiled(
+      R"({"version": 1, "camera": {}, "objects": [{"type": "sphere", "radius": 1, "translate": [30000, 0, 0]}]})");
   REQUIRE(scene.origin == glm::dvec3(30000, 0, 0));
   CHECK(compiler::emit_glsl(scene, "scene").find("vec3 q = scene_translate(p, 30000.0, 0.0, 0.0);") !=
         std::string::npos);

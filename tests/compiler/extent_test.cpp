@@ -44,7 +44,7 @@ TEST_CASE("extent: grounds and endless copies are left out, in groups that are m
   const std::string both = std::string(kGround) + ", " + kBall;
   check_box(both, {4, -1, -1}, {6, 1, 1});
   check_box(R"({"type": "union", "of": [)" + both + R"(], "translate": [0, 7, 0]})", {4, 6, -1}, {6, 8, 1});
-  check_box(both + R"(, {"type": "repetition", "spacing": [9, 9, 9], "of": {"type": "sphere", "radius": 1}})",
+  check_box(both + R"(, {"type": "repetition", "period": [9, 9, 9], "of": {"type": "sphere", "radius": 1}})",
             {4, -1, -1}, {6, 1, 1});
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("extent: a pit is what there is to see of a ground; what only has no e
   check_box(std::string(R"({"type": "subtraction", "of": [)") + kGround + ", " + kBall + "]}", {4, -1, -1},
             {6, 1, 1});
   CHECK(extent_of(kGround).empty());
-  CHECK(extent_of(R"({"type": "gyroid", "scale": 1, "thickness": 0.1})").empty());
+  CHECK(extent_of(R"({"type": "gyroid", "period": 1})").empty());
 }
 
 }  // namespace fathom::extent_test

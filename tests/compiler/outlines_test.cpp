@@ -44,7 +44,7 @@ Made over_outline(Kind above, double parameter, Kind kind, const std::vector<dou
   return made;
 }
 
-dvec3 random_point(Random& random) { return random.in_box(random.chance(0.8) ? 2 : 8); }
+dvec3 point_near_outline(Random& random) { return random.in_box(random.chance(0.8) ? 2 : 8); }
 
 // A value against the truth: equal where exact, else nearer to the surface on the same side.
 void check(double value, double truth, const compiler::Knowledge& known) {
@@ -80,7 +80,7 @@ TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]"
     const vm::VerifiedProgram program = plain_lowering(made.scene);
     CHECK(made.known.box.lo.z == -half_depth);
     for (int i = 0; i < 20; ++i) {
-      const dvec3 p = random_point(random);
+      const dvec3 p = point_near_outline(random);
       const double flat = outline.distance(dvec2(p)), above = std::abs(p.z) - half_depth;
       const double wall = std::hypot(flat, std::max(0.0, above));
       const double cap = flat < 0 ? std::abs(above) : std::hypot(flat, above);
@@ -106,7 +106,7 @@ TEST_CASE("an outline turned about y is as far as brute force says", "[outlines]
     const BruteForceOutline outline(kind, params);
     const vm::VerifiedProgram program = plain_lowering(made.scene);
     for (int i = 0; i < 20; ++i) {
-      const dvec3 p = random_point(random);
+      const dvec3 p = point_near_outline(random);
       check(vm::evaluate_distance(program, p, workspace), outline.distance({std::hypot(p.x, p.z) - offset, p.y}),
             made.known);
     }
@@ -164,7 +164,7 @@ compiler::Knowledge check_on_axis(Kind kind, const std::vector<double>& params, 
   const TurnedBoundary truth(kind, params, offset);
   const vm::VerifiedProgram program = plain_lowering(made.scene);
   for (int i = 0; i < 20 && !truth.empty(); ++i) {
-    dvec3 p = random_point(random);
+    dvec3 p = point_near_outline(random);
     if (random.chance(0.3)) p.x = p.z = 0;
     const double value = vm::evaluate_distance(program, p, workspace),
                  distance = truth.distance({std::hypot(p.x, p.z), p.y});
