@@ -220,9 +220,9 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   };
   CHECK_THAT(reason_of({'{', '}'}), Contains("no compiled scene"));
   Bytes other = good;
-  other[8] = 2;
+  other[8] = 3;
   CHECK_THAT(reason_of(other),
-             Contains("it is of version 2 of the format with 4 sections; this program reads version 1"));
+             Contains("it is of version 3 of the format with 4 sections; this program reads version 2"));
   CHECK_THAT(reason_of({good.begin(), good.begin() + 10}), Contains("header is damaged or cut off"));
   CHECK_THAT(reason_of(sealed(parts, vm::Digest{1, 2})), Contains("another machine"));
   CHECK_THAT(with([](Sections& s) { s.code.push_back(0); }), Contains("goes on for 1 bytes after its last program"));

@@ -232,7 +232,7 @@ TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none
   const Folder folder;
   const std::string rest = R"("film": {"width": 8, "height": 8}, "objects": [{"type": "sphere", "radius": 1}]})";
   folder.write("lens.json", R"({"version": 1, "camera": {"focal_length": 50}, )" + rest);
-  folder.write("plain.json", R"({"version": 1, )" + rest);
+  folder.write("plain.json", R"({"version": 1, "camera": {}, )" + rest);
   REQUIRE(folder.run("render lens.json -o a.png -n -f 45deg").code == 0);
   REQUIRE(folder.run("render plain.json -o b.png -n").code == 0);
   CHECK(folder.read("a-normal.png") == folder.read("b-normal.png"));
