@@ -1,6 +1,6 @@
-// Commands that README.md and docs/TUTORIAL.md show, run on the scenes that they show: what is printed there is printed here.
-#include <catch2/catch.hpp>
+// Commands that README.md and docs/TUTORIAL.md show, run on the scenes of these pages: the output is as shown.
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
