@@ -11,6 +11,8 @@ namespace fathom::runtime {
 namespace {
 
 constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget that double the resolution
+// ... up to this times max(1, |p|) or the stretch: what follows a place that is hard to search is not passed over.
+constexpr double kCoarsest = 0x1p-10;
 // Segments shorter than this times max(1, |p|) are not cut further: a thousand times the rounding of double.
 constexpr double kResolution = 0x1p-40;
 // ... and where a segment ends behind the surface, so much before that may stay open: the root that is reported may
@@ -106,7 +108,7 @@ void Search::begin(double g) {
 // False when the search is done, or the near part the root's.
 bool Search::cut(double g) {
   const Segment nearer{now_.a, now_.ga, wanted_, g, now_.fall, now_.rise};
-  if (is_free(nearer, gap_of(nearer))) {
+  if (is_free(nearer, gap_of(nearer)) && !hides_end(nearer)) {
     now_.a = wanted_, now_.ga = g;
     return leave_behind(nearer);
   }
@@ -130,56 +132,77 @@ void Search::go_on(RealScratch& scratch) {
 bool Search::settle(RealScratch& scratch) {
   Segment& s = now_;
   Gap gap = gap_of(s);
-  if (is_free(s, gap)) return leave_behind(s);
-  const Told told = worth_narrowing(s, gap) ? narrow(s, scratch) : Told::Nothing;
-  if (told == Told::Free) return leave_behind(s);
-  if (told == Told::Slope) {
+  bool free = is_free(s, gap);
+  Told told = Told::Nothing;
+  if (!free && worth_narrowing(s, gap)) {
+    told = narrow(s, scratch);
     gap = gap_of(s);
-    if (is_free(s, gap)) return leave_behind(s);
-    if (s.gb < 0 && s.rise <= 0) {
+    free = told == Told::Free || is_free(s, gap);
+    if (!free && told == Told::Slope && s.gb < 0 && s.rise <= 0) {
       find_root(s, 0);
       return false;
     }
   }
+  if (free && hides_end(s)) {
+    ask((s.a + s.b) / 2, Purpose::Cut);
+    return false;
+  }
+  if (free) return leave_behind(s);
   const double open = gap.hi - gap.lo, middle = (gap.lo + gap.hi) / 2;
   if (open <= coarsened(s.gb < 0 ? kRootResolution : kResolution, middle) || !(middle > s.a && middle < s.b)) {
-    contact_ = contact_ || s.gb >= 0;
+    if (s.gb < 0) {
+      find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
+      return false;
+    }
+    contact_ = true;
     // Beyond what nothing is told of, as where a field comes down to a plateau, longer segments are asked of again.
-    if (s.gb >= 0) hopeless_ = std::max(hopeless_, kShorter * (s.b - s.a));
-    if (s.gb < 0) find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
-    return s.gb >= 0;
+    hopeless_ = std::max(hopeless_, kShorter * (s.b - s.a));
+    return side_ > 0 || !ends_solid(s, true);
   }
   ask(told == Told::Slope ? middle : std::min(middle, place_to_cut(s, gap)), Purpose::Cut);
   return false;
 }
 
-// False when it turns out that the solid ended before.
+// Goes on beyond a segment that is free. False when it turns out that the solid ended before.
 bool Search::leave_behind(const Segment& s) {
   slope_ = (s.gb - s.ga) / (s.b - s.a);
-  if (side_ > 0) return true;
+  return side_ > 0 || !ends_solid(s, is_still(s));
+}
+
+// Of a segment whose ends are level with 0: whether all of it is.
+bool Search::is_still(const Segment& s) const {
+  return std::min(s.fall, s.rise) * (s.b - s.a) <= kLevelRoundings * rounding_;
+}
+
+// Whether a segment of a solid that is free may be level with 0 for long, beside an end that is.
+bool Search::hides_end(const Segment& s) const {
+  const double level = kLevelRoundings * rounding_;
+  if (side_ > 0 || (s.ga > level && s.gb > level) || s.b - s.a <= kLeastLevel * scale(s.a)) return false;
+  return s.ga > level || s.gb > level || !is_still(s);
+}
+
+// Whether a solid has ended by the end of a segment of it. `still`: nothing rises far within it.
+bool Search::ends_solid(const Segment& s, bool still) {
   const double level = kLevelRoundings * rounding_;
   if (s.gb > level) {
     above_ = s.b, g_above_ = s.gb;
   } else if (s.ga > level) {
     above_ = s.a, g_above_ = s.ga;
-  } else if (is_level(s)) {
-    leave_solid(s, level);
-    return false;
+  } else if (still) {
+    if (std::isnan(level_from_)) level_from_ = s.a, g_level_ = s.ga;
+    if (s.b - level_from_ <= kLeastLevel * scale(level_from_)) return false;
+    leave_solid(level);
+    return true;
   }
-  return true;
+  level_from_ = std::nan("");
+  return false;
 }
 
-// Whether the field is 0 all over the segment, which is free, and its ends are level with 0.
-bool Search::is_level(const Segment& s) const {
-  const double length = s.b - s.a;
-  return length > kLeastLevel * scale(s.a) && std::min(s.fall, s.rise) * length <= kLevelRoundings * rounding_;
-}
-
-// The solid ended where g came down to the level of s.
-void Search::leave_solid(const Segment& s, double level) {
-  if (g_above_ == 0) return hit(s.a, s.a);
+// The solid ended where g came down to the level it has had since.
+void Search::leave_solid(double level) {
+  if (g_above_ == 0) return hit(level_from_, level_from_);
   root_level_ = 2 * level;
-  find_root({above_, g_above_ - root_level_, s.a, s.ga - root_level_, 0, 0}, 0);
+  find_root({above_, g_above_ - root_level_, level_from_, g_level_ - root_level_, 0, 0}, 0);
 }
 
 // Where intervals may tell something of the near part; else where the balls of the near end and of the sample should
@@ -220,12 +243,24 @@ Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
   ++result_.evaluations;
   const double length = s.b - s.a, known = s.fall + s.rise;
   std::optional<vm::AlongLine> line = field_->along(origin_, direction_, s.a, s.b, scratch, result_.instructions);
+  bool free = false;
   if (line) {
     const auto [lo, hi] = line->derivative;
     s.fall = std::min(s.fall, std::max(0.0, side_ < 0 ? hi : -lo));
     s.rise = std::min(s.rise, std::max(0.0, side_ < 0 ? -lo : hi));
+    // The value tells of a plateau where the derivative is that of what lies about it. Outside a solid it is free; a
+    // solid ends there. No place is rounded less than the origin.
+    const double flat = field_->rounding({});
+    const bool empty = line->value.lo >= -flat;
+    if (side_ > 0) {
+      free = empty;
+    } else if (empty && (s.gb >= 0 || length > kLeastLevel * scale(s.a))) {
+      free = true;
+      s.fall = s.rise = 0;
+    } else {
+      free = line->value.hi < 0;
+    }
   }
-  const bool free = line && (side_ < 0 ? line->value.hi < 0 : line->value.lo > 0);
   const bool told = free || s.fall + s.rise < kProgress * known;
   hopeless_ = told ? std::max(hopeless_, kShorter * length) : length / kShorter;
   return free ? Told::Free : told ? Told::Slope : Told::Nothing;
@@ -269,7 +304,8 @@ double Search::scale(double t) const {
 double Search::coarsened(double resolution, double t) const {
   const double finest = resolution * scale(t);
   if (result_.evaluations <= kSearchBudget) return finest;
-  return std::ldexp(finest, static_cast<int>((result_.evaluations - kSearchBudget) / kCoarsening));
+  const double coarser = std::ldexp(finest, static_cast<int>((result_.evaluations - kSearchBudget) / kCoarsening));
+  return std::min(coarser, std::max(finest, kCoarsest * std::min(scale(t), stretch_.end - stretch_.begin)));
 }
 
 void Search::hit(double lo, double hi) {

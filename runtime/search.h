@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "runtime/field.h"
@@ -72,8 +73,10 @@ class Search {
   void go_on(RealScratch& scratch);
   bool settle(RealScratch& scratch);
   bool leave_behind(const Segment& s);
-  bool is_level(const Segment& s) const;
-  void leave_solid(const Segment& s, double level);
+  bool is_still(const Segment& s) const;
+  bool hides_end(const Segment& s) const;
+  bool ends_solid(const Segment& s, bool still);
+  void leave_solid(double level);
   double place_to_cut(const Segment& s, const Gap& gap) const;
   static Gap gap_of(const Segment& s);
   static bool is_free(const Segment& s, const Gap& gap);
@@ -100,8 +103,10 @@ class Search {
   double slope_ = 0;                // of g, over the segment that was left behind last
   double rounding_ = 0;             // of the field, at the last place that was asked for
   double above_ = 0, g_above_ = 0;  // the last end of a segment left behind where g was not level with 0, and g there
-  double root_level_ = 0;           // the value that is looked for within the bracket
-  double width_ = 0;                // of what may hold the first root, where that is more than its bracket
+  // Where a solid's g became level with 0, and g there.
+  double level_from_ = std::numeric_limits<double>::quiet_NaN(), g_level_ = 0;
+  double root_level_ = 0;  // the value that is looked for within the bracket
+  double width_ = 0;       // of what may hold the first root, where that is more than its bracket
   double wanted_ = 0;
   Purpose purpose_ = Purpose::Begin;
   bool contact_ = false, done_ = true;

@@ -20,6 +20,11 @@ template <class T>
 HWY_INLINE T pull(const T& a, Constant<T> by) {
   return a - max(-by, min(by, a));
 }
+// It rises, so the ends of a stretch have its ends. The difference alone would be as wide as `a` where it is 0.
+HWY_INLINE Along pull(const Along& a, const Along& by) {
+  const auto at = [&](double end) { return pull(Interval{end, end}, by.v); };
+  return {{at(a.v.lo).lo, at(a.v.hi).hi}, pull<Along>(a, by).d};
+}
 template <class T>
 HWY_INLINE Vec3<T> elongate(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
   return {pull(p.x, x), pull(p.y, y), pull(p.z, z)};
