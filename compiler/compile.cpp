@@ -15,6 +15,7 @@
 #include "compiler/framing.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/read_scene.h"
+#include "compiler/frontend/stage.h"
 #include "compiler/fuse.h"
 #include "compiler/lamps.h"
 #include "compiler/lints.h"
@@ -294,8 +295,14 @@ bool has_work(const Pass& pass, const Scene& scene) {
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
-  const std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits);
+  std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits);
   if (!read) return std::nullopt;
+  if (options.stage && wants_stage(*read)) {
+    CompileOptions bare;
+    bare.limits = options.limits;
+    Diagnostics ignored;  // the staged model has the same
+    if (const std::optional<CompiledScene> model = compile(source, ignored, bare)) set_stage(*read, *model);
+  }
   if (options.on_syntax) options.on_syntax(*read);
   std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions, options.limits);
   if (!elaborated) return std::nullopt;

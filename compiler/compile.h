@@ -29,7 +29,9 @@ struct CompileOptions {
   bool lint = false;
   // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
   bool lint_picture = false;
-  // Called with what the front end read.
+  // A model from elsewhere gets a ground, a lamp and a camera that has it in the picture (compiler/frontend/stage.h).
+  bool stage = false;
+  // Called with what the front end read, its stage with it.
   std::function<void(const ReadScene& scene)> on_syntax;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "compiler/frontend/stage.h"
 #include "compiler/frontend/write_json.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr const char* kImportExamples =
     "fathom import prospero.vm -o prospero.json\n"
-    "fathom import molecule.json | fathom check -\n"
+    "fathom import --bare molecule.json | fathom check -\n"
     "fathom import scene.fbc -o scene.json         # the text in a compiled scene\n"
     "\n"
     "Every verb reads these formats itself. `fathom import` is for changing the model.";
@@ -32,9 +33,13 @@ std::string printable(std::string text) {
 int run_import(std::span<const std::string> args, const Streams& streams) {
   SceneArguments scene_arguments;
   std::optional<std::string> output;
-  Arguments arguments("import", "Writes a model of another format as a scene file.", kImportExamples);
+  bool bare = false;
+  Arguments arguments("import",
+                      "Writes a model of another format as a scene file, with a ground to stand on and a lamp.",
+                      kImportExamples);
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "Scene file to write (standard output)", any_text(output));
+  arguments.flag("--bare", "Write the model alone, in front of a camera", bare);
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (output) {
     if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
@@ -46,19 +51,20 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (compiled_file && !scene_arguments.definitions.empty()) {
     note(streams, "the text says nothing of the values that -D gave to parameters");
   }
-  bool foreign = false;
-  std::string text;
-  compiler::CompileOptions options;
-  options.on_syntax = [&](const compiler::ReadScene& scene) {
-    foreign = scene.format != compiler::SceneFormat::Scene;
-    if (foreign) text = compiler::write_json(scene.file);
-  };
-  const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams, options);
+  const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  compiler::Diagnostics ignored;  // compiling it read it without any
+  std::optional<compiler::ReadScene> model = compiler::read_scene(source, ignored, scene_arguments.limits);
+  const bool foreign = model && model->format != compiler::SceneFormat::Scene;
   if (!foreign && !compiled_file) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
   }
-  text = foreign ? fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) + text : source.text();
+  std::string text = source.text();
+  if (foreign) {
+    if (!bare) compiler::set_stage(*model, std::get<compiler::CompiledScene>(compiled));
+    text = fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) +
+           compiler::write_json(model->file);
+  }
   if (!output) {
     streams.out << text;
     return kDone;

@@ -344,6 +344,7 @@ ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watchin
   Verbosity verbosity(request.verbosity, streams);
   compiler::CompileOptions options = verbosity.watch_compiler();
   options.lint_picture = true;
+  options.stage = true;
   auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto& scene = std::get<compiler::CompiledScene>(compiled);

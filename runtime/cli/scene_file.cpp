@@ -277,6 +277,8 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   options.definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   options.limits = arguments.limits;
+  // A file of compiled programs is what it is.
+  if (input.stored) options.stage = false;
   Verbosity verbosity(streams.verbosity, streams);
   if (const auto watch = verbosity.watch_compiler().on_pass) {
     options.on_pass = [watch, own = options.on_pass](std::string_view pass, const compiler::Scene& graph) {

@@ -52,14 +52,32 @@ TEST_CASE("cli: import writes a scene that means the same") {
   const std::string at = " --at 0.1,0.2,0 --at 0.9,-0.7,0.3 --at -2,1,0.5";
   for (const std::string name : {"circle.vm", "balls.json"}) {
     CAPTURE(name);
-    const Result result = folder.run("import " + name + " -o scene.json");
+    const Result result = folder.run("import --bare " + name + " -o scene.json");
     CHECK(result.code == 0);
     CHECK(result.out.empty());
     CHECK(result.err.ends_with("wrote scene.json\n"));
     CHECK(folder.read("scene.json").starts_with("// From `" + name + "`.\n{\n  \"version\": 1,\n"));
     CHECK(folder.run("eval scene.json" + at).out == folder.run("eval " + name + at).out);
-    CHECK(folder.run("import " + name).out == folder.read("scene.json"));
+    CHECK(folder.run("import --bare " + name).out == folder.read("scene.json"));
   }
+}
+
+TEST_CASE("cli: a model is drawn as the scene that import writes of it, on a ground and lit") {
+  const Folder folder;
+  folder.write("balls", kTwoBalls);
+  CHECK(folder.run("import balls -o scene.json").code == 0);
+  CHECK_THAT(folder.read("scene.json"),
+             Contains("\"ground\"") && Contains("\"directional\"") && !Contains("\"camera\""));
+  CHECK(folder.run("render balls -o a.pfm -s 1 --size 32x18").code == 0);
+  CHECK(folder.run("render scene.json -o b.pfm -s 1 --size 32x18").code == 0);
+  CHECK(folder.read("a.pfm") == folder.read("b.pfm"));
+  // What looks at the model alone does not see the ground; nor does a file of its programs have one.
+  CHECK_THAT(folder.run("eval balls --at 40,-0.5,0").out, !Contains("ground"));
+  CHECK_THAT(folder.run("eval scene.json --at 40,-0.5,0").out, Contains("ground"));
+  CHECK(folder.run("compile balls -o balls.fbc").code == 0);
+  const Result stored = folder.run("render balls.fbc -o a.pfm -s 1 --size 32x18");
+  CHECK(stored.code == 0);
+  CHECK_THAT(stored.err, !Contains("other programs"));
 }
 
 TEST_CASE("cli: import refuses scenes, mistakes, and its own input as output") {
