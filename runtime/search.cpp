@@ -27,9 +27,9 @@ constexpr double kProgress = 0.8;
 // evaluations, and then twice as many.
 constexpr double kShorter = 8;
 constexpr std::uint32_t kSeldom = 1u << 10;
-// In a large scene they are asked after so many evaluations for the first time: an interval takes the whole program,
-// an evaluation little of it.
-constexpr std::uint32_t kLeastAsked = 16, kAskedShare = 16;
+// In a large scene an interval takes the whole program and an evaluation little of it. They are asked after this many
+// evaluations, or this share of the program's instructions, and after as many again.
+constexpr std::uint32_t kLeastAsked = 16, kAskedShare = 4;
 // A step's length in what it should be for the balls of both ends just to touch, and the slope that is expected at
 // most, relative to the bound on it (compare tiered-inl.h).
 constexpr double kReach = 0.995, kLargestSlope = 0.9;
@@ -53,8 +53,8 @@ Search::Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int 
       done_(false),
       range_ratio_(std::isfinite(field.longest_told) ? kCostlyRangeRatio : kRangeRatio),
       hopeless_(field.longest_told / glm::length(direction)),
-      ask_at_(field.far_levels.used() ? std::max(kLeastAsked, field.distance->instructions() / kAskedShare)
-                                      : kSeldom) {
+      dear_(field.far_levels.used() ? std::max(kLeastAsked, field.distance->instructions() / kAskedShare) : 0),
+      ask_at_(dear_ > 0 ? dear_ : kSeldom) {
   ask(stretch.begin, Purpose::Begin);
 }
 
@@ -232,9 +232,9 @@ Search::Gap Search::gap_of(const Segment& s) {
 bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
   const double length = s.b - s.a;
   if (length <= range_ratio_ * (gap.lo - s.a)) return false;
-  if (length <= hopeless_) return true;
+  if (length <= hopeless_ && dear_ == 0) return true;
   if (result_.evaluations < ask_at_) return false;
-  ask_at_ *= 2;
+  ask_at_ = dear_ > 0 ? result_.evaluations + dear_ : 2 * ask_at_;
   return true;
 }
 

@@ -112,6 +112,7 @@ class Search {
   bool contact_ = false, done_ = true;
   double range_ratio_ = 0;    // how long a segment is worth an interval
   double hopeless_ = 0;       // intervals are expected to tell nothing of longer segments
+  std::uint32_t dear_ = 0;    // evaluations, between two intervals of a large scene; else 0
   std::uint32_t ask_at_ = 0;  // evaluations, at which they are asked all the same
   Certified result_{};
 };
