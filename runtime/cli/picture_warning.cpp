@@ -11,6 +11,7 @@
 
 #include "runtime/camera.h"
 #include "runtime/image.h"
+#include "vm/evaluate.h"
 
 namespace fathom::cli {
 namespace {
@@ -81,6 +82,15 @@ Summary summarize(const compiler::CompiledScene& scene, const runtime::Film& fil
   return summary;
 }
 
+// The name of the solid that the camera is in; nullopt when it is in none.
+std::optional<std::string> solid_around_camera(const compiler::CompiledScene& scene) {
+  if (scene.camera.projection == compiler::Camera::Projection::Orthographic) return std::nullopt;
+  vm::Workspace workspace;
+  const vm::SurfaceValue value = vm::evaluate_surface(scene.surface, scene.camera.position, workspace);
+  if (!(value.distance < 0) || value.surface >= scene.surfaces.size()) return std::nullopt;
+  return scene.surfaces[value.surface].name;
+}
+
 // Stops that bring the brightest channel of the picture to a half.
 double stops_to_show(double brightest) { return std::clamp(std::round(std::log2(0.5 / brightest)), -100.0, 100.0); }
 
@@ -103,6 +113,13 @@ std::optional<std::string> picture_warning(const compiler::CompiledScene& scene,
                        place.empty() ? "" : ", for the whole scene is " + place, kFrameRemedy);
   }
   if (!seen.alike) return std::nullopt;
+  const std::optional<std::string> solid = solid_around_camera(scene);
+  if (solid) {
+    return fmt::format(
+        "the picture is {} throughout: the camera is inside `{}`; move its `position` out, or give "
+        "--position",
+        seen.lit ? "one color" : "black", *solid);
+  }
   if (!seen.lit) {
     return "the picture is black throughout: no light reached the camera; move the lights to where what is in view "
            "is not in their shadow, or give the scene a `background`";
