@@ -17,9 +17,13 @@ std::string point(glm::dvec3 p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p
 // As few digits as say the angle again after it was radians.
 std::string degrees(double radians) { return fmt::format("{:.15g}", radians / compiler::kDegree); }
 
-// Of a view that has no direction, or no way to tell what is up in the picture.
-std::optional<ExitCode> check_view(const compiler::CompiledScene& scene, const Streams& streams) {
-  const Camera& camera = scene.camera;
+bool along(glm::dvec3 a, glm::dvec3 b) {
+  return !(glm::length(glm::cross(glm::normalize(a), glm::normalize(b))) > 1e-6);
+}
+
+// Of a view from straight above -z is up in the picture, as on a map and in a slice.
+std::optional<ExitCode> check_view(compiler::CompiledScene& scene, const Streams& streams) {
+  Camera& camera = scene.camera;
   const glm::dvec3 view = camera.target - camera.position;
   if (!(glm::length(view) > 0)) {
     return fail(streams, kUsage,
@@ -27,17 +31,17 @@ std::optional<ExitCode> check_view(const compiler::CompiledScene& scene, const S
                             point(camera.position + scene.origin)),
                 {"move one of them"});
   }
-  if (glm::length(glm::cross(glm::normalize(view), glm::normalize(camera.up))) > 1e-6) return std::nullopt;
-  return fail(streams, kUsage,
-              fmt::format("--position and --look-at: the camera would look along its `up`, {}", point(camera.up)),
-              {"move one of them a little aside, or give the scene's camera another `up`"});
+  if (along(view, camera.up)) camera.up = {0, 0, -1};
+  if (along(view, camera.up)) camera.up = {0, 1, 0};
+  return std::nullopt;
 }
 
 }  // namespace
 
 void add_camera_options(Arguments& arguments, CameraOptions& options) {
   arguments.group("Camera (a scene without one is framed whole, from three quarters above)");
-  arguments.option("--position", "X,Y,Z", "Where the camera is, in scene units (the scene's)",
+  arguments.option("--position", "X,Y,Z",
+                   "Where the camera is, in scene units (the scene's); -z is up in a view from straight above",
                    into(read_point, options.position));
   arguments.option("--look-at", "X,Y,Z", "What the camera looks at, in scene units (the scene's)",
                    into(read_point, options.look_at));

@@ -133,10 +133,20 @@ TEST_CASE("cli: options that make no camera are exit code 2, with a remedy") {
   says("ball.json --look-at here", "write three numbers");
   says("ball.json --look-at 0,0,4", "the camera would look at its own place, [0, 0, 4]");
   says("ball.json --look-at 0,0,4", "move one of them");
-  says("ball.json --position 0,9,0", "along its `up`, [0, 1, 0]");
   says("ground.json --frame", "nothing in the scene has an end");
   says("ground.json --frame", "--position X,Y,Z --look-at X,Y,Z");
   CHECK(folder.run("render ground.json -q -o a.png").code == 0);
+}
+
+// The camera's `up` is its way of looking then, and says nothing.
+TEST_CASE("cli: a view from straight above has -z up, one from straight below too") {
+  const Folder folder;
+  for (const std::string from : {"0,9,0", "0,-9,0"}) {
+    const Result result =
+        folder.run("render ball.json --look-at 0,0,0 -v -s 1 --size 8x8 -o a.png --position " + from);
+    CHECK(result.code == 0);
+    CHECK_THAT(result.err, Contains("\"up\": [0, 0, -1]"));
+  }
 }
 
 TEST_CASE("cli: a checkpoint of another place of the camera is another render's") {
