@@ -22,8 +22,6 @@ constexpr std::size_t kMostPlaces = 256;
 // Places of all nodes beyond the first of each.
 constexpr std::size_t kMostInAll = 1 << 18;
 
-
-
 // Where nodes stand: [node] the maps from its own space to the scene's. Below what folds, bends or repeats space a
 // node has no one place.
 std::vector<std::vector<Affine>> places_of(const FieldGraph& field) {

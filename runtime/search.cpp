@@ -209,13 +209,14 @@ void Search::leave_solid(double level) {
 // just touch, if g goes on as it did; near a root, just beyond it.
 double Search::place_to_cut(const Segment& s, const Gap& gap) const {
   const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
-  if (hopeless_ > range_ratio_ * near) return s.a + hopeless_;
+  const double least = gap.lo + coarsened(kResolution, gap.lo);
+  if (hopeless_ > range_ratio_ * near) return std::max(s.a + hopeless_, least);
   double step = kReach * (near + s.ga / s.rise) / (1 - slope / s.rise);
   if (slope < 0) {
     const double open = 0.75 * coarsened(kRootResolution, gap.lo);
     step = std::max(step, std::min(kOvershoot * s.ga / -slope, near + open));
   }
-  return std::max(s.a + step, gap.lo + coarsened(kResolution, gap.lo));
+  return std::max(s.a + step, least);
 }
 
 bool Search::is_free(const Segment& s, const Gap& gap) { return s.gb >= 0 && gap.lo > gap.hi; }

@@ -12,7 +12,6 @@
 namespace fathom::compiler {
 namespace {
 
-
 // The unit vector a spot or directional light shines along.
 glm::dvec3 read_direction(const RecordReader& reader, const Light& light, Diagnostics& diagnostics) {
   if (light.type == Light::Type::Directional) {

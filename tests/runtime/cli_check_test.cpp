@@ -109,7 +109,8 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
 
 TEST_CASE("cli: check takes several scenes, names each and counts warnings") {
   const Folder folder;
-  folder.write("unused.json", R"({"version": 1, "background": [1, 1, 1], "materials": {"m": {"type": "diffuse"}}, "objects": [{"type": "sphere", "radius": 1}]})");
+  folder.write("unused.json", R"({"version": 1, "background": [1, 1, 1], "materials": {"m": {"type": "diffuse"}},
+    "objects": [{"type": "sphere", "radius": 1}]})");
   folder.write("wrong.json", R"({"version": 1, "objects": [{"type": "sphere"}]})");
   Result result = folder.run("check unused.json ball.json");
   CHECK(result.code == 0);
