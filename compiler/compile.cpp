@@ -306,6 +306,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (options.on_syntax) options.on_syntax(*read);
   std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions, options.limits);
   if (!elaborated) return std::nullopt;
+  read.reset();  // for the rest of compiling: of 200,000 balls 120 MB
   find_files(*elaborated, source, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
 

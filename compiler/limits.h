@@ -47,6 +47,9 @@ struct LimitRow {
 
 inline constexpr double kAnySize = 1e15;
 
+// Bytes of memory per node of the graph, from its text to its programs: 200,000 balls, two nodes each, take 1,600.
+inline constexpr double kBytesPerNode = 2000;
+
 inline constexpr std::array<LimitRow, 16> kLimits = {{
     {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",
      "places in a text have 32 bits"},
@@ -74,7 +77,8 @@ inline constexpr std::array<LimitRow, 16> kLimits = {{
     {"pixels", &Limits::pixels, 1 << 28, "pixels", "a picture", "films and pictures of floats hold no more"},
     {"samples", &Limits::samples, 1 << 20, "samples a pixel", "a render", "samples are numbered in 20 bits"},
     {"memory", &Limits::memory, kAnySize, "bytes",
-     "a render's film and regions; the sum of a merge; each picture and film that is read", "no machine has more"},
+     "compiling a scene; a render's film and regions; the sum of a merge; each picture and film that is read",
+     "no machine has more"},
 }};
 
 constexpr const LimitRow* find_limit(std::string_view name) {

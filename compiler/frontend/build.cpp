@@ -39,11 +39,20 @@ SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vec
 // Reports it once; what is not built then is not missed.
 bool SceneBuilder::too_many_nodes(const CheckedNode& node) {
   const auto nodes = static_cast<double>(std::max(scene_.graph.size(), built_nodes_));
-  if (full_ || nodes <= limits_.nodes) return full_;
+  const bool too_large = limits_.memory > 0 && kBytesPerNode * nodes > limits_.memory;
+  if (full_ || (nodes <= limits_.nodes && !too_large)) return full_;
   full_ = true;
-  diagnostics_.error("E0312", node.span, fmt::format("the scene has more than {} nodes here", limits_.nodes), "",
-                     {"a named node with materials in it is another in each object that uses it",
-                      raise(&Limits::nodes, 2 * limits_.nodes)});
+  const char* const shared = "a named node with materials in it is another in each object that uses it";
+  if (too_large) {
+    diagnostics_.error(
+        "E0312", node.span,
+        fmt::format("the scene's {} nodes up to here take more than {:.15g} bytes of memory, {} per node", nodes,
+                    limits_.memory, kBytesPerNode),
+        "", {shared, raise(&Limits::memory, 2 * limits_.memory)});
+  } else {
+    diagnostics_.error("E0312", node.span, fmt::format("the scene has more than {} nodes here", limits_.nodes), "",
+                       {shared, raise(&Limits::nodes, 2 * limits_.nodes)});
+  }
   return true;
 }
 

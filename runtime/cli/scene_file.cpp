@@ -14,6 +14,7 @@
 
 #include "compiler/artefact/programs.h"
 #include "compiler/frontend/formula.h"
+#include "runtime/cli/memory.h"
 #include "runtime/cli/verbosity.h"
 #include "vm/printable.h"
 
@@ -277,6 +278,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   options.definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   options.limits = arguments.limits;
+  options.limits.memory = allowed_memory(arguments.limits);
   // A file of compiled programs is what it is.
   if (input.stored) options.stage = false;
   Verbosity verbosity(streams.verbosity, streams);

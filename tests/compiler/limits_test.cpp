@@ -79,6 +79,11 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
              "E0301");
 }
 
+TEST_CASE("limits: the memory that a scene's nodes take", "[limits]") {
+  const std::string two = objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})");
+  check_edge(two, &Limits::memory, 4 * kBytesPerNode, "E0312");
+}
+
 // Each of three glass balls is cut by those before it: 2 + 4 + 6 nodes, of which a place and a paint are one each.
 TEST_CASE("limits: the solids of transparent materials", "[limits]") {
   std::string materials, balls;
