@@ -14,18 +14,6 @@
 namespace fathom::runtime {
 namespace {
 
-// The same for every part of a picture, at any time and with any number of threads: what the layer of costs tells
-// must not depend on these. With a time limit no more than the first sample of a pixel is certain.
-RegionOptions region_options(const Settings& settings, const RenderOptions& options) {
-  constexpr double kEvaluationsPerRay = 10;
-  const double pixels = static_cast<double>(settings.width) * settings.height;
-  const double paths = options.time_limit ? pixels : pixels * settings.spp;
-  RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
-  regions.evaluations = kEvaluationsPerRay * paths * (1 + std::min(settings.bounces, 3));
-  regions.interrupted = [cancel = options.cancel] { return cancel && cancel->load(std::memory_order_relaxed); };
-  return regions;
-}
-
 World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
   World world{scene,
               settings,
@@ -37,7 +25,8 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
               Lights(scene, options.environment),
               {}};
   if (settings.regions) {
-    RegionOptions regions = region_options(settings, options);
+    RegionOptions regions = region_options(settings);
+    regions.interrupted = [cancel = options.cancel] { return cancel && cancel->load(std::memory_order_relaxed); };
     add_regions(world.field, scene, regions);
     if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
     world.media.add_regions(scene, regions);
@@ -62,6 +51,17 @@ void check(const Settings& settings) {
 }
 
 }  // namespace
+
+// A render may be stopped after its first samples, so building takes no longer than a few samples without regions.
+RegionOptions region_options(const Settings& settings) {
+  constexpr double kEvaluationsPerRay = 10;
+  constexpr int kMaxSamples = 16;
+  const double pixels = static_cast<double>(settings.width) * settings.height;
+  const double paths = pixels * std::min(settings.spp, kMaxSamples);
+  RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
+  regions.evaluations = kEvaluationsPerRay * paths * (1 + std::min(settings.bounces, 3));
+  return regions;
+}
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options) {
   const int processors = static_cast<int>(std::thread::hardware_concurrency());

@@ -5,6 +5,7 @@
 #include "compiler/compiled_scene.h"
 #include "runtime/film.h"
 #include "runtime/options.h"
+#include "runtime/regions.h"
 #include "runtime/stats.h"
 
 namespace fathom::runtime {
@@ -18,6 +19,10 @@ struct RenderResult : PartialRender {
 // Whether a render with these settings can go on from `render`: films of others are refused before by their identity
 // (runtime/film_file.h), so a file that says no was made up.
 bool can_resume(const PartialRender& render, const Settings& settings);
+
+// How a render with these settings builds regions: the same for every part of a picture, for any number of threads
+// and any limit of time, for the layer of costs depends on it.
+RegionOptions region_options(const Settings& settings);
 
 // The film's bits depend on the scene and on the settings but for `threads` and `tile`.
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options = {});

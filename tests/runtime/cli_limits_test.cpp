@@ -1,4 +1,6 @@
 // --limit on the command line, and the limits that are the program's: file size, pictures, memory.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -64,6 +66,24 @@ TEST_CASE("cli: a file is read to the limit of its size, whatever it is") {
   CHECK(folder.run("eval ball.json --points points.txt --limit file-size=" + size).code == 0);
   folder.write("many.txt", std::string(ball.size() / 6 + 1, '\n') + std::string(2 * ball.size(), ' '));
   CHECK(folder.run("eval ball.json --points many.txt --limit file-size=" + size).code == 65);
+}
+
+// Regions get whole MiB, half of what the film leaves. The nodes of 400 balls take 1.6 MB.
+TEST_CASE("cli: regions get no more memory than the limit leaves") {
+  const Folder folder;
+  std::string balls;
+  for (int i = 0; i < 400; ++i) {
+    balls += fmt::format(R"({}{{"type": "sphere", "radius": 0.02, "translate": [{}, {}, {}]}})", i == 0 ? "" : ", ",
+                         i % 7 * 0.1, i / 7 % 7 * 0.1, i / 49 * 0.1);
+  }
+  folder.write("balls.json", R"({"version": 1, "background": [1, 1, 1], "objects": [)" + balls + "]}");
+  const std::string render = "render -v balls.json -s 4 --size 96x96 -o out.png --limit memory=";
+  const Result much = folder.run(render + "1e7"), little = folder.run(render + "1.9e6");
+  INFO(much.err << little.err);
+  CHECK(much.code == 0);
+  CHECK(little.code == 0);
+  CHECK(contains(much.err, "memory of regions"));
+  CHECK_FALSE(contains(little.err, "memory of regions"));
 }
 
 TEST_CASE("cli: memory is counted before it is taken") {

@@ -295,17 +295,25 @@ TEST_CASE("regions: rays meet what they meet without them, to the bit", "[region
   }
 }
 
+// The middle of a picture that is large enough to be worth building regions.
+RenderOptions part_of_picture() {
+  RenderOptions options;
+  options.width = 192, options.height = 128, options.spp = 2, options.threads = 1;
+  options.crop = {84, 56, 108, 72};
+  return options;
+}
+
 // With 1 and 2 threads regions met their limit of memory late enough for another attempt, with more they did not; and
 // with regions, small ones and none a picture was not the same.
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
           "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
   const std::size_t freely = with_regions(scene).regions->facts().bytes;
-  RenderOptions options;
-  options.width = 24, options.height = 16, options.spp = 2, options.threads = 1, options.regions = false;
+  RenderOptions options = part_of_picture();
+  options.regions = false;
   const std::uint64_t expected = render(scene, options).film.hash();
   options.regions = true;
-  std::size_t least = freely;
+  std::size_t least = freely, most = 0;
   for (const std::size_t memory : {freely * 2, freely * 9 / 10, freely / 2, freely / 100}) {
     std::vector<std::size_t> bytes;
     for (const int threads : {1, 2, 3, 7}) {
@@ -316,9 +324,20 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
     }
     INFO(memory << " bytes");
     CHECK(bytes == std::vector<std::size_t>(4, bytes[0]));
-    least = std::min(least, bytes[0]);
+    least = std::min(least, bytes[0]), most = std::max(most, bytes[0]);
   }
-  CHECK(least < freely);
+  CHECK(least == 0);
+  CHECK(most > 0);
+}
+
+// With a limit of time there were other regions than without, so a render that went on after it counted other costs.
+TEST_CASE("regions: a limit of time does not change them", "[regions]") {
+  const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
+  RenderOptions options = part_of_picture();
+  const std::size_t freely = render(scene, options).stats.region_bytes;
+  options.time_limit = 1000;
+  CHECK(render(scene, options).stats.region_bytes == freely);
+  CHECK(freely > 0);
 }
 
 TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[regions]") {
