@@ -9,11 +9,16 @@
 #include "compiler/knowledge.h"
 #include "compiler/limits.h"
 #include "runtime/field.h"
+#include "runtime/render.h"
 #include "vm/check.h"
 #include "vm/disassemble.h"
 
 namespace fathom::cli {
 namespace {
+
+// Regions of a program too short for them are built for at most as long as evaluating it takes, this number of
+// multiply-adds: seconds.
+constexpr double kMaxCost = 2e10;
 
 // The part as a program of its own, whose instructions keep the names that those they come from have.
 vm::VerifiedProgram as_program(const vm::Part& part, const vm::Program& whole) {
@@ -42,10 +47,10 @@ std::string size_of(std::size_t instructions, std::uint64_t cost) {
 
 std::optional<std::string> region_listing(const compiler::CompiledScene& scene, glm::dvec3 point) {
   runtime::Field field = runtime::make_field(scene, scene.settings.far);
-  runtime::RegionOptions options;
+  runtime::RegionOptions options = runtime::region_options(runtime::resolve(scene, {}));
   add_regions(field, scene, options);
   const bool used = field.regions != nullptr;
-  options.always = true;
+  options.always = true, options.evaluations = kMaxCost / static_cast<double>(scene.distance.cost());
   if (!used) add_regions(field, scene, options);
   if (!field.regions) return std::nullopt;
   const runtime::Regions::Region region = field.regions->region(point - scene.origin);

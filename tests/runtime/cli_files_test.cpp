@@ -33,8 +33,10 @@ TEST_CASE("cli files: on a full disk every verb leaves what was there", "[cli]")
       {"out.glsl", "emit glsl ball.json -o out.glsl"},
       {"out.json", "import model.vm -o out.json"},
       {"out.fbc", "compile ball.json -o out.fbc"},
+      {"out.fbc", "compile ball.json --no-text -o out.fbc"},
       {"out.fbc", "asm ball.fasm -o out.fbc"},
       {"out.png", "render ball.json -o out.png"},
+      {"out.film", "render ball.json -o out.film"},
       {"out.jpg", "render ball.json -o out.jpg"},
       {"out.bmp", "render ball.json -o out.bmp"},
       {"out.hdr", "render ball.json -o out.hdr"},
@@ -42,11 +44,13 @@ TEST_CASE("cli files: on a full disk every verb leaves what was there", "[cli]")
       {"out.exr", "render ball.json -o out.exr"},
       {"out.stats", "render ball.json -o b.pfm --stats-json out.stats"},
       {"out-evaluations.png", "render ball.json -o b.pfm --cost-map out.png"},
+      {"out/index.html", "chart ball.json -o out --rays 100 --rounds 1 --no-images"},
       {"out.png", "slice ball.json -o out.png"},
       {"out.png", "tonemap a.exr -o out.png"},
       {"out.exr", "merge a.film -o out.exr"},
       {"out.png", "diff a.exr c.exr -o out.png"},
   };
+  std::filesystem::create_directory(folder.path() / "out");
   for (const auto& [file, arguments] : writers) {
     folder.write(file, kOld);
     const Result result = folder.run_script(on_full_disk(arguments));
@@ -144,7 +148,9 @@ TEST_CASE("cli files: every verb knows -q", "[cli]") {
   for (const char* arguments :
        {"check ball.json", "dump ball.json", "compile ball.json -o a.fbc", "eval ball.json --at 0,0,0",
         "slice ball.json -o b.png --size 8x8", "tonemap a.pfm -o b.png", "diff a.pfm c.pfm -o b.png",
-        "emit cpp ball.json -o b.h", "import model.vm -o b.json", "schema", "render ball.json -o b.png"}) {
+        "emit cpp ball.json -o b.h", "import model.vm -o b.json", "schema", "render ball.json -o b.png -o b.film",
+        "merge b.film -o c.png", "chart ball.json -o charts --rays 100 --rounds 1 --no-images", "man",
+        "completion bash"}) {
     const Result result = folder.run(std::string(arguments) + " -q");
     INFO(arguments << result.err);
     CHECK(result.code == 0);
