@@ -90,7 +90,7 @@ double relmse(const Scene& scene, const Pixels& picture) {
   return compare(scene.view(picture), scene.view(scene.truth)).relmse;
 }
 
-TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noise", "[runtime]") {
+TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noise", "[runtime][released]") {
   for (const int samples : {1, 4, 16}) {
     CAPTURE(samples);
     const Scene scene = draw(96, 80, room, exponential(samples));

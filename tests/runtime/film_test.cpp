@@ -135,7 +135,7 @@ TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
 
 // Of independent samples the truth; of samples that avoid each other an upper bound, for it takes them as
 // independent. Once, the layer's description did not say so.
-TEST_CASE("film: the variance layer against the variance between seeds", "[render]") {
+TEST_CASE("film: the variance layer against the variance between seeds", "[render][released]") {
   const auto scene =
       scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 0.3, 0]}, "background": [0.2, 0.3, 0.5],
       "materials": {"lamp": {"type": "emissive", "emission": [8, 8, 8]}},

@@ -39,7 +39,7 @@ void expect(const LightScene& scene, RenderOptions options, double error) {
   CHECK(result.stats.march.invalid + result.stats.dropped_samples == 0);
 }
 
-TEST_CASE("light: closed rooms, however paths end", "[render][light]") {
+TEST_CASE("light: closed rooms, however paths end", "[render][light][released]") {
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (const int bounces : {0, 2, 5}) {
       RenderOptions options = square(24, test::few(64));
@@ -146,7 +146,7 @@ TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
 
 // Once, paths caught in the glass ended by chance however bright they were: the few that were left weighed so much
 // that most renders were 1 % too dark.
-TEST_CASE("light: paths that lose nothing are not ended by chance", "[render][light]") {
+TEST_CASE("light: paths that lose nothing are not ended by chance", "[render][light][released]") {
   const auto scene =
       scene_of(tests::furnace(R"({"type": "principled", "transmission": 1, "roughness": 0.15, "ior": 2.4})"));
   CHECK(tests::returned(scene, 16, 256) == Approx(1).margin(4e-3));
@@ -185,7 +185,7 @@ TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
   expect(scene, options, 1e-1);
 }
 
-TEST_CASE("light: a cavity gathers light by many bounces", "[render][light]") {
+TEST_CASE("light: a cavity gathers light by many bounces", "[render][light][released]") {
   for (const double albedo : {0.5, 0.9}) expect(tests::cavity(albedo, 40), square(24, test::few(128)), 3e-2);
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("light: a slab of glass passes 1 - R over 1 + R", "[render][light]") {
   expect(tests::slab(), square(24, test::few(64)), 1e-2);
 }
 
-TEST_CASE("light: Lambert's ball at every phase", "[render][light]") {
+TEST_CASE("light: Lambert's ball at every phase", "[render][light][released]") {
   for (const double degrees : {0.0, 60.0, 120.0}) {
     RenderOptions options = square(192, 4);
     const RenderResult result = render(scene_of(tests::moon(degrees).json), options);

@@ -32,7 +32,7 @@ std::string layer(double top, double bottom, const char* material) {
          std::to_string((top + bottom) / 2) + R"(, 0], "material": ")" + material + "\"}";
 }
 
-TEST_CASE("media: absorption says where one medium ends and another begins", "[render]") {
+TEST_CASE("media: absorption says where one medium ends and another begins", "[render][released]") {
   // Without refraction: through 0.4 of red glass and 0.6 of blue, which overlap.
   const std::string materials = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1], "priority": 1},
       "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
@@ -47,7 +47,7 @@ TEST_CASE("media: absorption says where one medium ends and another begins", "[r
         Approx(2 * std::exp(-2 * 0.6)).epsilon(1e-4));
 }
 
-TEST_CASE("media: where water meets glass the step of the index is that between the two", "[render]") {
+TEST_CASE("media: where water meets glass the step of the index is that between the two", "[render][released]") {
   // Air, glass 1.5, water 1.5 of another name, air: the middle surface reflects nothing, so it is one slab.
   const std::string same = R"("glass": {"type": "transparent"}, "water": {"type": "transparent"})";
   const std::string layers = layer(0.5, -0.1, "glass") + "," + layer(0, -0.5, "water");
