@@ -213,9 +213,15 @@ bool AtomicFile::seek(std::uint64_t position) {
   return true;
 }
 
-std::optional<std::string> AtomicFile::commit() {
+std::optional<std::string> AtomicFile::commit(const std::function<bool()>& may_replace) {
   if (problem_ || memory_ != nullptr) return problem_;
-  if (::fsync(file_) != 0 || !name_beside() || ::rename(beside_.c_str(), target_.c_str()) != 0) give_up(reason());
+  if (::fsync(file_) != 0 || !name_beside()) {
+    give_up(reason());
+  } else if (may_replace && !may_replace()) {
+    give_up("another file has been put there");
+  } else if (::rename(beside_.c_str(), target_.c_str()) != 0) {
+    give_up(reason());
+  }
   if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
   struct stat status {};
   if (::fstat(file_, &status) == 0) stamp_ = to_stamp(status);

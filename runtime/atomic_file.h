@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,8 +48,9 @@ class AtomicFile {
   const std::optional<std::string>& problem() const { return problem_; }  // the first failure, for people
   const std::string& name() const { return path_; }                       // for people
 
-  // The reason when the file could not be written.
-  [[nodiscard]] std::optional<std::string> commit();
+  // The reason when the file could not be written. `may_replace` is asked last, once renaming is all that is left to
+  // do.
+  [[nodiscard]] std::optional<std::string> commit(const std::function<bool()>& may_replace = {});
   // Of what commit() put there, whatever lies there now.
   const std::optional<FileStamp>& stamp() const { return stamp_; }
 

@@ -133,15 +133,16 @@ bool Checkpoint::write(const runtime::FilmHeader& header, const runtime::Partial
   return save([&](runtime::AtomicFile& file) { runtime::write_film(header, render, file); }, streams);
 }
 
-// Whoever writes to the same name at the same time is seen but for the moment between the last look and the renaming.
+// A file that another run puts there is seen, except between the last look and the renaming: syncing, which may take
+// seconds, comes before both.
 bool Checkpoint::save(const std::function<void(runtime::AtomicFile&)>& fill, const Streams& streams) {
   runtime::AtomicFile file(path_);
   bool another = replaced_by_another();
   if (!another) {
     fill(file);
-    another = replaced_by_another();
+    problem_ = file.commit([&] { return !(another = replaced_by_another()); });
   }
-  problem_ = another ? problem_of_another() : file.commit();
+  if (another) problem_ = problem_of_another();
   if (!problem_) {
     known_ = file.stamp();
     ours_ = true;

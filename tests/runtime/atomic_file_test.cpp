@@ -37,6 +37,21 @@ TEST_CASE("atomic files: what is replaced leaves its permissions, what is new ha
   CHECK(mode_of(folder.file("new")) == 0600);
 }
 
+// A checkpoint was looked at before it was synced: in the seconds that takes, another run's was replaced.
+TEST_CASE("atomic files: whether the target may be replaced is asked last") {
+  const tests::TemporaryFolder folder;
+  AtomicFile file(folder.file("target"));
+  REQUIRE(file.write(kBytes));
+  const auto another = [&] {
+    CHECK(folder.files() == 1);  // the file has a name beside the target
+    std::ofstream(folder.file("target")) << "another's";
+    return false;
+  };
+  REQUIRE(file.commit(another));
+  CHECK(fs::file_size(folder.file("target")) == 9);
+  CHECK(folder.files() == 1);
+}
+
 TEST_CASE("atomic files: of a link the target is written") {
   const tests::TemporaryFolder folder;
   fs::create_directory(folder.path() / "far");
