@@ -179,6 +179,7 @@ class Truth {
 };
 
 struct Tally {
+  // differ: hits in one of float and double, or more than 1e-3 apart.
   int rays = 0, hits = 0, contacts = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0, differ = 0;
   std::uint64_t evaluations = 0, searched = 0, most = 0;  // most: of a ray
   std::string first, report;                              // the scene's first wrong ray; those of several scenes
@@ -308,6 +309,7 @@ TEST_CASE("plateaus: rays pass what is 0 over a volume, and leave solids there",
           tally.false_in_double, tally.differ, tally.evaluations, tally.searched);
   INFO(tally.report);
   CHECK(tally.wrong() == 0);
+  CHECK(tally.differ == 0);
 }
 
 // Scenes with a ray that was lost. The plateau's derivative was that of what lies about it, so that the search took
@@ -339,6 +341,7 @@ TEST_CASE("plateaus: as many scenes as are asked for", "[nightly][.]") {
                   tally.false_in_double, tally.differ, tally.evaluations, tally.searched, tally.most));
   INFO(tally.report);
   CHECK(tally.wrong() == 0);
+  CHECK(tally.differ <= 1 + tally.rays / 100'000);
   CHECK(tally.most <= 4 * kSearchBudget);
 }
 
