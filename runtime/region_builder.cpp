@@ -30,10 +30,6 @@ constexpr float kOutsideSize = 64;
 
 }  // namespace
 
-std::size_t RegionBuilder::bytes_of(const vm::Part& part) {
-  return (part.words.size() + part.sources.size()) * sizeof(std::uint32_t) + part.wide.size() * sizeof(double);
-}
-
 RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options)
     : options_(options), plan_(plan), program_(program), regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
@@ -67,7 +63,7 @@ bool RegionBuilder::split_root() {
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->skeletons_ = {};
     regions_->facts_ = {};
-    bytes_ = regions_->constants_->bytes() + bytes_of(regions_->whole_part_);
+    bytes_ = regions_->constants_->bytes();
     work_ = 0;
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
     if (interrupted_) return false;
@@ -82,8 +78,6 @@ void RegionBuilder::split_all(std::vector<Cell> cells) {
   while (!cells.empty() && !is_in_vain()) {
     std::vector<Piece> pieces(cells.size());
     std::atomic<std::size_t> next{0};
-    std::size_t parts = 0;  // bytes of this round's
-    for (const Cell& cell : cells) parts += bytes_of(cell.part);
     const auto work = [&] {
       Splitter splitter(*this);
       for (std::size_t i = next++; i < cells.size(); i = next++) {
@@ -98,7 +92,6 @@ void RegionBuilder::split_all(std::vector<Cell> cells) {
     for (std::thread& thread : threads) thread.join();
     if (is_in_vain()) return;
     append_all(cells, pieces);
-    bytes_ -= parts;
   }
 }
 

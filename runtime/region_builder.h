@@ -48,7 +48,6 @@ class RegionBuilder {
   void append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces);
   std::uint32_t append(Piece& piece);
   bool is_in_vain() const;
-  static std::size_t bytes_of(const vm::Part& part);
   void close_outside();
   void choose_grid();
   void make_grid();
@@ -58,7 +57,7 @@ class RegionBuilder {
   RegionPlan plan_;
   vm::Code program_;
   std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
-  std::atomic<std::size_t> bytes_ = 0;  // of what is built so far, and of the parts of the cells to be split
+  std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
   std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far, in this attempt
   std::size_t most_work_;
   std::atomic<bool> interrupted_ = false;

@@ -59,7 +59,6 @@ void RegionBuilder::Splitter::go_on(const vm::Part& child, double shorter, const
   const int idle = shorter < kShorterPart || level <= builder_.options_.room ? 0 : idle_so_far + 1;
   if (idle > kMostIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {
-    builder_.bytes_ += RegionBuilder::bytes_of(child);
     piece_->pending.push_back({at, level, limit, idle, child, node});
     return;
   }
