@@ -210,7 +210,8 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     const std::optional<std::string> listing = region_listing(scene, *request.region);
     if (!listing) {
       return fail(streams, kBadScene,
-                  "the scene has no regions: it has no bounded part, or its program cannot be cut, or not soon");
+                  "the scene has no regions: it has no bounded part, its program cannot be cut, or cutting it takes too "
+                  "long");
     }
     streams.out << *listing;
   } else if (request.stage >= kBytecode) {
