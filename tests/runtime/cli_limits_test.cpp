@@ -68,7 +68,7 @@ TEST_CASE("cli: a file is read to the limit of its size, whatever it is") {
   CHECK(folder.run("eval ball.json --points many.txt --limit file-size=" + size).code == 65);
 }
 
-// Regions get whole MiB, half of what the film leaves. The nodes of 400 balls take 1.6 MB.
+// Regions get whole MiB, half of what the film leaves. The nodes of 400 balls take 2.6 MB.
 TEST_CASE("cli: regions get no more memory than the limit leaves") {
   const Folder folder;
   std::string balls;
@@ -77,8 +77,8 @@ TEST_CASE("cli: regions get no more memory than the limit leaves") {
                          i % 7 * 0.1, i / 7 % 7 * 0.1, i / 49 * 0.1);
   }
   folder.write("balls.json", R"({"version": 1, "background": [1, 1, 1], "objects": [)" + balls + "]}");
-  const std::string render = "render -v balls.json -s 4 --size 96x96 -o out.png --limit memory=";
-  const Result much = folder.run(render + "1e7"), little = folder.run(render + "1.9e6");
+  const std::string render = "render -v balls.json -s 4 --size 160x160 -o out.png --limit memory=";
+  const Result much = folder.run(render + "1e7"), little = folder.run(render + "2.6e6");
   INFO(much.err << little.err);
   CHECK(much.code == 0);
   CHECK(little.code == 0);
