@@ -58,7 +58,7 @@ void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene) {
   const double left = allowed_memory(request.scene.limits) -
                       static_cast<double>(settings.crop.pixels()) * bytes_per_pixel(settings, request);
   const auto most = static_cast<double>(request.options.region_memory);
-  // Half of it, for building them takes up to twice what they take; whole MiB, as the render's identity has it.
+  // Half of it, for building them takes more than they do; whole MiB, as the render's identity has it.
   request.options.region_memory = static_cast<std::size_t>(std::clamp(left / 2, 0.0, most)) >> 20 << 20;
 }
 
