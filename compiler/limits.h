@@ -47,8 +47,9 @@ struct LimitRow {
 
 inline constexpr double kAnySize = 1e15;
 
-// Bytes of memory per node of the graph, from its text to its programs: 200,000 balls, two nodes each, take 3,100.
-inline constexpr double kBytesPerNode = 3200;
+// Bytes of memory per node of the graph, from its text to its programs: 200,000 balls, two nodes each, take 1,600,
+// and 1,700 where regions are built.
+inline constexpr double kBytesPerNode = 1800;
 
 inline constexpr std::array<LimitRow, 16> kLimits = {{
     {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",

@@ -71,8 +71,8 @@ struct RenderOptions {
   // What an earlier render with the same settings, but for threads and tile, has done. render() takes it, and leaves
   // it empty: a film is large.
   std::shared_ptr<PartialRender> resume_from;
-  // After so many seconds no unit of work is begun, but for a pixel's first sample, and render() returns what there
-  // is.
+  // After so many seconds no unit of work is begun, except for a pixel's first sample, and render() returns what
+  // there is. Regions that are not built by then are left out, except where the costs are kept, which depend on them.
   std::optional<double> time_limit;
 
   // Called when a unit of work is done and when it shows how much is left, by one thread at a time, from the threads

@@ -20,6 +20,10 @@ constexpr int kMostGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
 // What the whole program takes as a part and as rows of constants.
 constexpr std::size_t kBytesPerWord = 24;
+// What cutting a program takes for each choice and each instruction in it (vm/specialise.h), measured.
+constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
+// How many times what regions may take is there to build them: for cutting programs, and for cells to be split.
+constexpr std::size_t kBuildShare = 2;
 // Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
 // one.
 constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
@@ -27,6 +31,11 @@ constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
 constexpr std::uint32_t kWorthShorter = 64;
 // How far outside the root rays are followed, in its edges.
 constexpr float kOutsideSize = 64;
+
+// What it takes to cut a program, and its parts for the eight children of a cell.
+std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::size_t part) {
+  return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
+}
 
 }  // namespace
 
@@ -44,6 +53,7 @@ RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, co
 std::shared_ptr<const Regions> RegionBuilder::build() {
   const auto start = std::chrono::steady_clock::now();
   if (program_.size * kBytesPerWord > options_.memory) return nullptr;
+  if (cutting_bytes(plan_.choices, plan_.instructions, 0) > kBuildShare * options_.memory) return nullptr;
   regions_->whole_part_ = vm::whole(program_);
   regions_->constants_.emplace(program_);
   if (!split_root()) return nullptr;
@@ -60,11 +70,12 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
   for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, most_work_ /= 2) {
+    if (plan_.instructions > most_work_) return false;  // of the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->skeletons_ = {};
     regions_->facts_ = {};
     bytes_ = regions_->constants_->bytes();
-    work_ = 0;
+    work_ = 0, pending_bytes_ = 0;
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
     if (interrupted_) return false;
     if (!is_in_vain()) return true;
@@ -72,11 +83,26 @@ bool RegionBuilder::split_root() {
   return false;
 }
 
-bool RegionBuilder::is_in_vain() const { return bytes_ > options_.memory || work_ > most_work_ || interrupted_; }
+bool RegionBuilder::is_in_vain() const {
+  return bytes_ > options_.memory || pending_bytes_ > kBuildShare * options_.memory || work_ > most_work_ ||
+         interrupted_;
+}
+
+// As many threads as there is memory to cut the largest of the cells' parts in each.
+std::size_t RegionBuilder::threads_for(const std::vector<Cell>& cells) const {
+  std::size_t largest = 0;
+  for (const Cell& cell : cells) {
+    largest = std::max(largest, cutting_bytes(cell.part.choices, cell.part.sources.size(), cell.part.bytes()));
+  }
+  const std::size_t affordable =
+      std::max<std::size_t>(1, kBuildShare * options_.memory / std::max<std::size_t>(1, largest));
+  return std::min({static_cast<std::size_t>(std::max(1, options_.threads)), cells.size(), affordable});
+}
 
 void RegionBuilder::split_all(std::vector<Cell> cells) {
   while (!cells.empty() && !is_in_vain()) {
     std::vector<Piece> pieces(cells.size());
+    pending_bytes_ = 0;
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
       Splitter splitter(*this);
@@ -86,10 +112,10 @@ void RegionBuilder::split_all(std::vector<Cell> cells) {
       }
     };
     std::vector<std::thread> threads;
-    const auto count = std::min<std::size_t>(static_cast<std::size_t>(std::max(1, options_.threads)), cells.size());
-    for (std::size_t i = 1; i < count; ++i) threads.emplace_back(work);
+    for (std::size_t i = threads_for(cells); i > 1; --i) threads.emplace_back(work);
     work();
     for (std::thread& thread : threads) thread.join();
+    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, pending_bytes_);
     if (is_in_vain()) return;
     append_all(cells, pieces);
   }

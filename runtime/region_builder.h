@@ -48,6 +48,7 @@ class RegionBuilder {
   void append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces);
   std::uint32_t append(Piece& piece);
   bool is_in_vain() const;
+  std::size_t threads_for(const std::vector<Cell>& cells) const;
   void close_outside();
   void choose_grid();
   void make_grid();
@@ -58,6 +59,7 @@ class RegionBuilder {
   vm::Code program_;
   std::uint32_t longer_ = 1;            // how much longer than they should be leaves are, to fit the memory
   std::atomic<std::size_t> bytes_ = 0;  // of what is built so far
+  std::atomic<std::size_t> pending_bytes_ = 0;  // of the parts of cells left for other threads, at this level
   std::atomic<std::size_t> work_ = 0;   // instructions enclosed so far, in this attempt
   std::size_t most_work_;
   std::atomic<bool> interrupted_ = false;

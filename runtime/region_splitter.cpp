@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fathom::runtime {
 namespace {
@@ -54,12 +55,13 @@ void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int l
   }
 }
 
-void RegionBuilder::Splitter::go_on(const vm::Part& child, double shorter, const Place& at, int level, float limit,
+void RegionBuilder::Splitter::go_on(vm::Part& child, double shorter, const Place& at, int level, float limit,
                                     int idle_so_far, std::uint32_t node) {
   const int idle = shorter < kShorterPart || level <= builder_.options_.room ? 0 : idle_so_far + 1;
   if (idle > kMostIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {
-    piece_->pending.push_back({at, level, limit, idle, child, node});
+    builder_.pending_bytes_ += child.bytes();
+    piece_->pending.push_back({at, level, limit, idle, std::move(child), node});
     return;
   }
   const auto grandchildren = static_cast<std::uint32_t>(piece_->nodes.size());

@@ -46,7 +46,8 @@ class RegionBuilder::Splitter {
 
   // Makes the eight children, at nodes[first] and on, of a cell; those that are no leaves are split in turn.
   void split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far, std::uint32_t first);
-  void go_on(const vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
+  // Takes the child where it is left for other threads.
+  void go_on(vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
              std::uint32_t node);
   // Up to where each child's values matter.
   Limits limits_of(const BoxArrays& boxes, float limit) const;

@@ -111,6 +111,7 @@ class Regions {
     std::size_t far = 0, programs = 0;  // leaves
     std::size_t skeletons = 0;
     std::size_t bytes = 0;
+    std::size_t building = 0;  // bytes of the parts of cells to be split, at most
     int levels = 0;
     double seconds = 0;  // to build
   };

@@ -1,6 +1,9 @@
 #include "runtime/render.h"
 
 #include <algorithm>
+#include <chrono>
+#include <functional>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -14,7 +17,20 @@
 namespace fathom::runtime {
 namespace {
 
-World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
+using Clock = SharedPicture::Clock;
+
+// Whether building regions has to end. The layer of costs tells how much of the program was evaluated, so a limit of
+// time is not looked at where it is asked for: a render that goes on has the same regions.
+std::function<bool()> interruption(const Settings& settings, const RenderOptions& options, Clock::time_point start) {
+  const std::optional<double> limit = settings.layers.cost ? std::nullopt : options.time_limit;
+  return [cancel = options.cancel, limit, start] {
+    if (cancel && cancel->load(std::memory_order_relaxed)) return true;
+    return limit && std::chrono::duration<double>(Clock::now() - start).count() >= *limit;
+  };
+}
+
+World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options,
+                 Clock::time_point start) {
   World world{scene,
               settings,
               Camera(scene.camera, settings.width, settings.height),
@@ -26,7 +42,7 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
               {}};
   if (settings.regions) {
     RegionOptions regions = region_options(settings);
-    regions.interrupted = [cancel = options.cancel] { return cancel && cancel->load(std::memory_order_relaxed); };
+    regions.interrupted = interruption(settings, options, start);
     add_regions(world.field, scene, regions);
     if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
     world.media.add_regions(scene, regions);
@@ -103,7 +119,7 @@ bool can_resume(const PartialRender& render, const Settings& settings) {
 }
 
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options) {
-  const auto start = SharedPicture::Clock::now();
+  const auto start = Clock::now();
   const Settings settings = resolve(scene, options);
   check(settings);
   RenderResult result{{}, settings, {}};
@@ -115,7 +131,7 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
     result.covered.resize(1);
   }
   const std::uint64_t resumed = options.resume_from ? result.film.samples() : 0;
-  const World world = make_world(scene, settings, options);
+  const World world = make_world(scene, settings, options, start);
   Passes passes(world, options, result, start);
   result.stats = passes.run();
   for (Coverage& covered : result.covered) covered.tidy();

@@ -20,8 +20,8 @@ struct RenderResult : PartialRender {
 // (runtime/film_file.h), so a file that says no was made up.
 bool can_resume(const PartialRender& render, const Settings& settings);
 
-// How a render with these settings builds regions: the same for every part of a picture, for any number of threads
-// and any limit of time, for the layer of costs depends on it.
+// How a render with these settings builds regions: the same for every part of a picture and for any number of
+// threads, for the layer of costs depends on it.
 RegionOptions region_options(const Settings& settings);
 
 // The film's bits depend on the scene and on the settings but for `threads` and `tile`.

@@ -20,6 +20,10 @@ struct Part {
   std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
   std::uint64_t cost = 0;  // multiply-adds per point, by the table's estimate
 
+  std::size_t bytes() const {
+    return words.size() * (sizeof(std::uint32_t) + sizeof(double)) + sources.size() * sizeof(std::uint32_t);
+  }
+
   operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 

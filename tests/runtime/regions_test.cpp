@@ -36,6 +36,17 @@ std::string place(Random& random, double half) {
                      random.uniform(-half, half));
 }
 
+// A square of side x side balls, far wider than high.
+std::string grid(int side) {
+  std::string objects;
+  for (int i = 0; i < side * side; ++i) {
+    objects +=
+        (i > 0 ? ",\n" : "") + fmt::format("{{\"type\": \"sphere\", \"radius\": 1, \"translate\": [{}, 0, {}]}}",
+                                           3 * (i % side), 3 * (i / side));
+  }
+  return "{\"version\": 1, \"objects\": [" + objects + "]}";
+}
+
 // A scene of many shapes, of four materials by turns; `blend` makes groups of three that are blended; on a ground
 // plane when asked for.
 std::string many(int count, bool blend, bool ground, bool materials) {
@@ -330,14 +341,33 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
   CHECK(most > 0);
 }
 
-// With a limit of time there were other regions than without, so a render that went on after it counted other costs.
-TEST_CASE("regions: a limit of time does not change them", "[regions]") {
+// A limit of time did not end building them, which takes up to half a minute. With another limit there were other
+// regions, so a render that went on after it counted other costs.
+TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
   RenderOptions options = part_of_picture();
-  const std::size_t freely = render(scene, options).stats.region_bytes;
+  const RenderResult freely = render(scene, options);
   options.time_limit = 1000;
-  CHECK(render(scene, options).stats.region_bytes == freely);
-  CHECK(freely > 0);
+  CHECK(render(scene, options).stats.region_bytes == freely.stats.region_bytes);
+  options.time_limit = 1e-9;
+  CHECK(render(scene, options).stats.region_bytes == 0);
+  options.layers.cost = true;
+  CHECK(render(scene, options).stats.region_bytes == freely.stats.region_bytes);
+  CHECK(freely.stats.region_bytes > 0);
+}
+
+// Building them took ten times what they may take: a cell keeps its part of the program until it is split, and in a
+// wide scene the cells of the first levels keep most of the program each.
+TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions]") {
+  const compiler::CompiledScene scene = tests::compiled(grid(100));
+  const auto facts_of = [&](std::size_t memory) {
+    const auto regions = Regions::build(scene.surface, scene.contents, {.memory = memory});
+    return regions ? regions->facts() : Regions::Facts{};
+  };
+  const Regions::Facts freely = facts_of(64u << 20), less = facts_of(freely.building * 3 / 4);
+  CHECK(freely.bytes > 0);
+  CHECK((less.bytes > 0 && less.bytes <= freely.bytes));
+  CHECK(facts_of(freely.building / 2 - 1).bytes == 0);
 }
 
 TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[regions]") {
