@@ -295,7 +295,7 @@ bool has_work(const Pass& pass, const Scene& scene) {
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
-  std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits);
+  std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits, options.definitions);
   if (!read) return std::nullopt;
   if (options.stage && wants_stage(*read)) {
     CompileOptions bare;
@@ -304,7 +304,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     if (const std::optional<CompiledScene> model = compile(source, ignored, bare)) set_stage(*read, *model);
   }
   if (options.on_syntax) options.on_syntax(*read);
-  std::optional<Elaborated> elaborated = elaborate(read->file, diagnostics, options.definitions, options.limits);
+  std::optional<Elaborated> elaborated =
+      elaborate(read->file, diagnostics, options.definitions, options.limits, std::move(read->parameters));
   if (!elaborated) return std::nullopt;
   read.reset();  // for the rest of compiling: of 200,000 balls 120 MB
   find_files(*elaborated, source, diagnostics);

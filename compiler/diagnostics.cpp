@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -93,7 +94,8 @@ std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t l
           std::string(before.size() + begin - first, ' ') + std::string(carets, '^')};
 }
 
-std::string print_text(const Diagnostic& d, const Source& source, const Style& s) {
+std::string print_text(const Diagnostic& d, const std::vector<std::string>& calls, const Source& source,
+                       const Style& s) {
   std::string out = fmt::format("{}{}[{}]{}{}: {}{}\n", d.severity == Severity::Error ? s.error : s.warning,
                                 word(d.severity), d.code, s.off, s.strong, d.message, s.off);
   std::string margin = "  ";  // as wide as the gutter: the line number and a blank on either side
@@ -117,6 +119,7 @@ std::string print_text(const Diagnostic& d, const Source& source, const Style& s
   for (const std::string& help : d.help) {
     out += fmt::format("{}{}={} {}help{}: {}\n", margin, s.gutter, s.off, s.strong, s.off, help);
   }
+  for (const std::string& call : calls) out += fmt::format("{}{}={} {}\n", margin, s.gutter, s.off, call);
   return out;
 }
 
@@ -131,7 +134,7 @@ std::string json_line(const nlohmann::ordered_json& json) {
   return vm::escape_controls(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
-std::string print_json(const Diagnostic& d, const Source& source) {
+std::string print_json(const Diagnostic& d, const std::vector<std::string>& calls, const Source& source) {
   nlohmann::ordered_json json = {
       {"severity", word(d.severity)}, {"code", d.code}, {"message", d.message}, {"file", source.name()}};
   if (!nowhere(d.span)) {
@@ -145,6 +148,7 @@ std::string print_json(const Diagnostic& d, const Source& source) {
   }
   json["label"] = d.label;
   json["help"] = d.help;
+  if (!calls.empty()) json["calls"] = calls;
   return json_line(json);
 }
 
@@ -170,15 +174,43 @@ void Diagnostics::add(Diagnostic d) {
   all_.push_back(std::move(d));
 }
 
+// One slip in a loop is reported once; what a scene shows, each time.
+bool Diagnostics::is_known(const std::string& code, Span span) const {
+  return span.trace != 0 && code != "W0407" && std::any_of(all_.begin(), all_.end(), [&](const Diagnostic& d) {
+           return d.code == code && d.span.begin == span.begin && d.span.end == span.end;
+         });
+}
+
+// The calls and loops that led to it, the innermost first.
+std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& source) const {
+  constexpr std::size_t kMostCalls = 8;
+  std::vector<std::string> lines;
+  for (std::uint32_t number = d.span.trace; number > 0; number = traces_[number - 1].outside) {
+    if (lines.size() == kMostCalls) {
+      lines.emplace_back("and more calls around these");
+      break;
+    }
+    const Trace& trace = traces_[number - 1];
+    const Position at = source.locate(trace.at.begin);
+    const std::string name = source.text().substr(trace.name.begin, trace.name.end - trace.name.begin);
+    const std::string place = fmt::format("{}:{}:{}", shown(source.name()), at.line, at.column);
+    lines.push_back(!trace.loop ? fmt::format("in `{}`, called at {}", name, place)
+                    : std::isnan(trace.value)
+                        ? fmt::format("in the loop over `{}` at {}", name, place)
+                        : fmt::format("in the loop at {}, with {} = {}", place, name, trace.value));
+  }
+  return lines;
+}
+
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
-  if (++errors_ > kMostKept) return;
+  if (++errors_ > kMostKept || is_known(code, span)) return;
   add({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
-  if (++warnings_ > kMostKept) return;
+  if (++warnings_ > kMostKept || is_known(code, span)) return;
   add({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
@@ -194,9 +226,9 @@ std::string Diagnostics::print(const Source& source, ErrorFormat format, bool co
     if (printed == kMostPrinted) continue;
     ++printed;
     if (format == ErrorFormat::Text && !out.empty()) out += "\n";
-    if (format == ErrorFormat::Text) out += print_text(*d, source, style(color));
+    if (format == ErrorFormat::Text) out += print_text(*d, calls(*d, source), source, style(color));
     if (format == ErrorFormat::Short) out += print_short(*d, source);
-    if (format == ErrorFormat::Json) out += print_json(*d, source);
+    if (format == ErrorFormat::Json) out += print_json(*d, calls(*d, source), source);
   }
   if (errors_ > printed_errors) out += print_rest(errors_ - printed_errors, source, format);
   return out;

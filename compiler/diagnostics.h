@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/source.h"
@@ -30,6 +31,18 @@ struct Diagnostic {
   std::vector<std::string> help;  // each a line after "= help:"
 };
 
+// A call of a function, or a round of a loop, that led to a place.
+struct Trace {
+  std::uint32_t outside;  // the trace of the call itself; 0: none
+  Span at;                // the call or loop
+  Span name;              // the function's, or the loop's variable
+  bool loop;
+  double value;  // of the loop's variable; not a number when it is none
+};
+
+// What the source is written in, which remedies are worded for.
+enum class Notation { Json, Text };
+
 enum class ErrorFormat { Text, Short, Json };
 
 class Diagnostics {
@@ -38,6 +51,18 @@ class Diagnostics {
              std::vector<std::string> help = {});
   void warning(std::string code, Span span, std::string message, std::string label = "",
                std::vector<std::string> help = {});
+
+  void set_notation(Notation notation) { notation_ = notation; }
+  // The remedy in the source's notation.
+  std::string spelled(std::string json, std::string text) const {
+    return notation_ == Notation::Json ? std::move(json) : std::move(text);
+  }
+
+  // The number by which spans name it.
+  std::uint32_t add_trace(const Trace& trace) {
+    traces_.push_back(trace);
+    return static_cast<std::uint32_t>(traces_.size());
+  }
 
   bool has_errors() const { return errors_ > 0; }
   std::size_t errors() const { return errors_; }
@@ -52,10 +77,14 @@ class Diagnostics {
 
  private:
   void add(Diagnostic d);
+  bool is_known(const std::string& code, Span span) const;
+  std::vector<std::string> calls(const Diagnostic& d, const Source& source) const;
 
   static constexpr std::size_t kMostKept = 100;
 
   std::vector<Diagnostic> all_;
+  std::vector<Trace> traces_;
+  Notation notation_ = Notation::Json;
   std::size_t errors_ = 0, warnings_ = 0;
 };
 

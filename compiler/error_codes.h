@@ -77,11 +77,27 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0614", "a box whose edges are rounded in ways that are not known here"},
     // E07xx: compiled scenes and their listings
     {"E0701", "a compiled scene or a listing that is none, of no sound program, or beyond a limit"},
+    // E08xx: scenes in Fathom's own notation
+    {"E0801", "a statement was expected"},
+    {"E0802", "a name declared twice"},
+    {"E0803", "unknown name"},
+    {"E0804", "unknown function"},
+    {"E0805", "arguments that a function does not take"},
+    {"E0806", "a name that is made of itself, or a function that calls itself"},
+    {"E0807", "a value of the wrong kind"},
+    {"E0808", "a condition that varies with x, y and z"},
+    {"E0809", "a range of fractions"},
+    {"E0811", "what a scene requires does not hold"},
+    {"E0812", "a line that goes on with a statement and is not indented"},
+    {"E0813", "operators that need parentheses"},
     // W04xx: warnings
     {"W0401", "unused material"},
     {"W0402", "unused named node"},
     {"W0403", "large numbers cancel in float"},
     {"W0404", "unused parameter"},
+    {"W0405", "unused name"},
+    {"W0406", "a function in the place of a built-in one"},
+    {"W0407", "a value that the scene shows"},
     // W05xx: warnings about what is sound but surely not meant, or dear (compiler/lints.h)
     {"W0501", "a part that never shows"},
     {"W0502", "an operation that leaves nothing"},

@@ -22,6 +22,7 @@ struct Limits {
   double tokens = 4e6;
   double nesting = 4096;
   double formula_nesting = 1000;
+  double steps = 1e7;
   double nodes = 1e6;
   double copies = 512;
   double iterations = 256;
@@ -51,13 +52,15 @@ inline constexpr double kAnySize = 1e15;
 // and 1,700 where regions are built.
 inline constexpr double kBytesPerNode = 1800;
 
-inline constexpr std::array<LimitRow, 16> kLimits = {{
+inline constexpr std::array<LimitRow, 17> kLimits = {{
     {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",
      "places in a text have 32 bits"},
     {"tokens", &Limits::tokens, 1 << 30, "values and names", "a scene's text", "places in a text have 32 bits"},
     {"nesting", &Limits::nesting, 4096, "levels", "lists and objects within each other", "the stack's size"},
     {"formula-nesting", &Limits::formula_nesting, 1000, "levels", "parentheses and signs within each other",
      "the stack's size"},
+    {"steps", &Limits::steps, kAnySize, "expressions", "the evaluation of a text's functions and loops",
+     "no machine has the time"},
     {"nodes", &Limits::nodes, 1e9, "nodes",
      "the graph before it is optimised, each node in every object that paints it anew",
      "nodes are numbered in 32 bits"},

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compiler/box.h"
-#include "vm/program.h"
+#include "vm/verify.h"
 
 namespace fathom::compiler {
 

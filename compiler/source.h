@@ -12,6 +12,7 @@ namespace fathom::compiler {
 struct Span {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
+  std::uint32_t trace = 0;  // the call or loop that led there (Diagnostics::add_trace); 0: none
 };
 
 struct Position {

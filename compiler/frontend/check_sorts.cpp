@@ -80,9 +80,11 @@ class SortChecker {
                        {"only outlines are moved by two numbers [x, y]"});
   }
 
-  static std::string help_for_outline() {
-    return "draw it out with {\"type\": \"extrude\", \"half_depth\": 0.1, \"of\": {...}}, or turn it about the y "
-           "axis with {\"type\": \"revolve\", \"of\": {...}}";
+  std::string help_for_outline() const {
+    return diagnostics_.spelled(
+        "draw it out with {\"type\": \"extrude\", \"half_depth\": 0.1, \"of\": {...}}, or turn it about the y axis "
+        "with {\"type\": \"revolve\", \"of\": {...}}",
+        "draw it out with .extrude(0.1), or turn it about the y axis with .revolve()");
   }
 
   void flatten(CheckedNode& node) {

@@ -58,15 +58,19 @@ void warn_of_unused(const CheckedScene& scene, Diagnostics& diagnostics) {
     diagnostics.warning(
         "W0401", scene.material_names.span(i), fmt::format("unused material `{}`", scene.material_names.name(i)),
         "no node has it",
-        {fmt::format("give it to a node with \"material\": \"{}\", or remove it", scene.material_names.name(i))});
+        {diagnostics.spelled(
+            fmt::format("give it to a node with \"material\": \"{}\", or remove it", scene.material_names.name(i)),
+            fmt::format("give it to a node with .material({}), or remove it", scene.material_names.name(i)))});
   }
   const std::vector<bool> in_scene = reached(scene);
   for (std::uint32_t i = 0; i < scene.node_names.size(); ++i) {
     if (in_scene[i]) continue;
     const bool elsewhere = scene.node_names.used(i);
-    diagnostics.warning("W0402", scene.node_names.span(i), fmt::format("unused node `{}`", scene.node_names.name(i)),
-                        elsewhere ? "only unused nodes use it" : "nothing uses it",
-                        {fmt::format("place it with {{\"use\": \"{}\"}}, or remove it", scene.node_names.name(i))});
+    diagnostics.warning(
+        "W0402", scene.node_names.span(i), fmt::format("unused node `{}`", scene.node_names.name(i)),
+        elsewhere ? "only unused nodes use it" : "nothing uses it",
+        {diagnostics.spelled(fmt::format("place it with {{\"use\": \"{}\"}}, or remove it", scene.node_names.name(i)),
+                             fmt::format("place it with `object {}`, or remove it", scene.node_names.name(i)))});
   }
 }
 
@@ -143,7 +147,7 @@ void check_render_limits(const syntax::Record& record, const Elaborated& scene, 
 }  // namespace
 
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions, const Limits& limits) {
+                                    const Definitions& definitions, const Limits& limits, std::optional<Scope> read) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
     diagnostics.error(
@@ -152,7 +156,9 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
     return std::nullopt;
   }
   const syntax::Property* params = record->find("params");
-  const Scope parameters = read_parameters(params ? params->value.get() : nullptr, definitions, limits, diagnostics);
+  const Scope parameters =
+      read ? *std::move(read)
+           : read_parameters(params ? params->value.get() : nullptr, definitions, limits, diagnostics);
   const RecordReader reader(scene_record(), *record, opening(file.root.span), parameters, diagnostics);
   check_version(reader, diagnostics);
   Elaborated out = read_settings(reader, parameters, diagnostics);

@@ -21,8 +21,9 @@ struct Elaborated : SceneTables {
 };
 
 // Reports every semantic error of the file; nullopt when there was any. `definitions` are values for the scene's
-// parameters in place of its own.
+// parameters in place of its own; `parameters` are what they came to, where the file was read with them.
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions = {}, const Limits& limits = {});
+                                    const Definitions& definitions = {}, const Limits& limits = {},
+                                    std::optional<Scope> parameters = std::nullopt);
 
 }  // namespace fathom::compiler

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "compiler/frontend/formula_evaluate.h"
@@ -31,7 +32,7 @@ void read_definition(const FormulaText& text, FormulaContext& context) {
 
 std::optional<Formula> finish(FormulaContext& context, std::optional<FormulaId> root) {
   if (!root || !context.good) return std::nullopt;
-  return std::move(context.builder).finish(*root);
+  return context.builder.finish(*root);
 }
 
 std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& context) {
@@ -54,6 +55,7 @@ std::optional<Formula> read_lines(const syntax::List& lines, FormulaContext& con
 
 std::optional<Formula> read_formula(const syntax::Value& value, const Scope& scope,
                                     std::span<const FunctionSpec> functions, Diagnostics& diagnostics) {
+  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) return **formula;
   FormulaContext context{scope, formula_functions(functions), true, diagnostics};
   const auto* lines = std::get_if<syntax::List>(&value.data);
   if (lines && !lines->empty()) return read_lines(*lines, context);
@@ -67,6 +69,14 @@ std::optional<Formula> read_formula(const syntax::Value& value, const Scope& sco
 
 std::optional<double> read_number(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics,
                                   bool may_vary) {
+  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
+    const auto axis = std::ranges::find_if((*formula)->nodes, [](const Formula::Node& node) {
+      return node.function == "x" || node.function == "y" || node.function == "z";
+    });
+    if (axis == (*formula)->nodes.end()) return evaluate(**formula);
+    report_no_point(axis->function, axis->span, diagnostics);
+    return std::nullopt;
+  }
   FormulaContext context{scope, formula_functions(constant_functions()), false, diagnostics};
   context.may_have_point = may_vary;
   const FormulaText text{std::get<std::string>(value.data), value.span};

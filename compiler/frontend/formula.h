@@ -58,6 +58,9 @@ std::optional<double> read_number(const syntax::Value& value, const Scope& scope
 // The value of a formula that has no x, y and z in it.
 double evaluate(const Formula& formula);
 
+// The value of a constant of formulas, such as pi; nullopt when the name is none.
+std::optional<double> formula_constant(std::string_view name);
+
 // What is wrong with giving this name to a parameter or a definition where formulas have these functions
 // (compiler/frontend/formula_functions.h); empty when nothing is.
 std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions);

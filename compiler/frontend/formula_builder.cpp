@@ -1,7 +1,10 @@
 #include "compiler/frontend/formula_builder.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <unordered_map>
 #include <utility>
 
 #include "compiler/frontend/formula_evaluate.h"
@@ -29,10 +32,10 @@ FormulaId FormulaBuilder::coordinate(char axis, Span span) {
 FormulaId FormulaBuilder::call(std::string_view function, std::span<const FormulaId> arguments, Span span) {
   std::vector<double> values;
   for (const FormulaId argument : arguments) {
-    if (const auto value = known(argument)) values.push_back(*value);
+    if (const auto known = value(argument)) values.push_back(*known);
   }
   if (values.size() == arguments.size()) {
-    if (const auto value = call_function(function, values)) return constant(*value, span);
+    if (const auto result = call_function(function, values)) return constant(*result, span);
   }
   nodes_.push_back({function, 0, {arguments.begin(), arguments.end()}, span});
   return static_cast<FormulaId>(nodes_.size() - 1);
@@ -40,7 +43,7 @@ FormulaId FormulaBuilder::call(std::string_view function, std::span<const Formul
 
 FormulaId FormulaBuilder::power(FormulaId base, FormulaId exponent, Span span) {
   const FormulaMaker make{*this, span};
-  const auto n = known(exponent);
+  const auto n = value(exponent);
   if (!n) return make("power", {base, exponent});
   const double size = std::abs(*n);
   const bool whole = size <= kLargestUnrolledPower && size == std::floor(size);
@@ -61,24 +64,25 @@ FormulaId FormulaBuilder::whole_power(FormulaId base, unsigned exponent, Span sp
   return result;
 }
 
-std::optional<double> FormulaBuilder::known(FormulaId node) const {
+std::optional<double> FormulaBuilder::value(FormulaId node) const {
   return nodes_[node].function == "const" ? std::optional(nodes_[node].value) : std::nullopt;
 }
 
-Formula FormulaBuilder::finish(FormulaId root) && {
-  std::vector<bool> needed(root + 1, false);
-  needed[root] = true;
-  for (FormulaId id = root + 1; id-- > 0;) {
-    if (!needed[id]) continue;
-    for (const FormulaId argument : nodes_[id].arguments) needed[argument] = true;
-  }
+// Depth first, so that equal formulas are equal lists whatever order their parts were made in.
+Formula FormulaBuilder::finish(FormulaId root) const {
+  std::unordered_map<FormulaId, FormulaId> places;
+  std::vector<FormulaId> open = {root};
   Formula formula;
-  std::vector<FormulaId> places(root + 1, 0);
-  for (FormulaId id = 0; id <= root; ++id) {
-    if (!needed[id]) continue;
-    places[id] = static_cast<FormulaId>(formula.nodes.size());
-    Formula::Node& node = formula.nodes.emplace_back(std::move(nodes_[id]));
-    for (FormulaId& argument : node.arguments) argument = places[argument];
+  while (!open.empty()) {
+    const FormulaId id = open.back();
+    const std::vector<FormulaId>& arguments = nodes_[id].arguments;
+    const auto waits = [&](FormulaId argument) { return !places.contains(argument); };
+    std::copy_if(arguments.rbegin(), arguments.rend(), std::back_inserter(open), waits);
+    if (open.back() != id) continue;
+    open.pop_back();
+    if (!places.emplace(id, static_cast<FormulaId>(formula.nodes.size())).second) continue;
+    Formula::Node& copied = formula.nodes.emplace_back(nodes_[id]);
+    for (FormulaId& argument : copied.arguments) argument = places[argument];
   }
   return formula;
 }

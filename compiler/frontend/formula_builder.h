@@ -24,13 +24,13 @@ class FormulaBuilder {
 
   std::size_t size() const { return nodes_.size(); }
   Span span(FormulaId node) const { return nodes_[node].span; }
+  std::optional<double> value(FormulaId node) const;  // of a constant
 
   // The formula whose result is `root`.
-  Formula finish(FormulaId root) &&;
+  Formula finish(FormulaId root) const;
 
  private:
   FormulaId whole_power(FormulaId base, unsigned exponent, Span span);
-  std::optional<double> known(FormulaId node) const;
 
   std::vector<Formula::Node> nodes_;
 };

@@ -42,6 +42,7 @@ FormulaId expand_length(const FormulaMaker& make, Arguments a) {
 FormulaId expand_pow(const FormulaMaker& make, Arguments a) { return make.builder.power(a[0], a[1], make.span); }
 
 FormulaId expand_tan(const FormulaMaker& make, Arguments a) {
+  if (make.builder.value(a[0])) return make("tan", {a[0]});
   return make("divide", {make("sin", {a[0]}), make("cos", {a[0]})});
 }
 

@@ -203,8 +203,7 @@ FormulaId FormulaParser::resolve(const Token& name) {
   if (const NamedConstant* row = find_constant(name.text)) return context_.builder.constant(row->value, span(name));
   if (is_axis(name.text)) {
     if (context_.has_point) return context_.builder.coordinate(name.text[0], span(name));
-    report("E0405", span(name), fmt::format("`{}` has no value here", name.text), "",
-           {"x, y and z are known only in the formula of a node, and in those of materials that may vary"});
+    report_no_point(name.text, span(name), context_.diagnostics);
     return stand_in(name);
   }
   const Scope::Entry* entry = context_.scope.use(name.text);
@@ -318,6 +317,16 @@ void FormulaParser::report(const char* code, Span span, std::string message, std
   context_.good = false;
   std::erase(help, "");
   context_.diagnostics.error(code, span, std::move(message), std::move(label), std::move(help));
+}
+
+void report_no_point(std::string_view axis, Span span, Diagnostics& diagnostics) {
+  diagnostics.error("E0405", span, fmt::format("`{}` has no value here", axis), "",
+                    {"x, y and z are known only in the formula of a node, and in those of materials that may vary"});
+}
+
+std::optional<double> formula_constant(std::string_view name) {
+  const NamedConstant* row = find_constant(name);
+  return row ? std::optional(row->value) : std::nullopt;
 }
 
 std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions) {

@@ -91,4 +91,7 @@ class FormulaParser {
   int depth_ = 0;
 };
 
+// Reports that x, y or z is used where there is no point.
+void report_no_point(std::string_view axis, Span span, Diagnostics& diagnostics);
+
 }  // namespace fathom::compiler

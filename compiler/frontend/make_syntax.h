@@ -26,6 +26,9 @@ inline syntax::Value make_value(Span span, const glm::dvec3& v) {
 class RecordMaker {
  public:
   explicit RecordMaker(Span span) : span_(span) {}
+  // Goes on with a record.
+  explicit RecordMaker(syntax::Value record)
+      : span_(record.span), record_(std::get<syntax::Record>(std::move(record.data))) {}
 
   // The value's place is the record's.
   template <class T>
@@ -34,6 +37,9 @@ class RecordMaker {
   }
   RecordMaker& add(std::string_view name, syntax::Value value) {
     const Span span = value.span;
+    return add(name, span, std::move(value));
+  }
+  RecordMaker& add(std::string_view name, Span span, syntax::Value value) {
     record_.properties.push_back({std::string(name), span, std::make_unique<syntax::Value>(std::move(value))});
     return *this;
   }

@@ -95,18 +95,28 @@ void read_entry(const syntax::Property& property, const Definitions& definitions
                     "", std::move(help));
 }
 
+}  // namespace
+
 void check_definitions(const Definitions& definitions, const Scope& scope, Diagnostics& diagnostics) {
   std::vector<std::string_view> known;
   for (const Scope::Entry& entry : scope.entries()) known.push_back(entry.parameter.name);
   for (const auto& [name, value] : definitions) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    diagnostics.error("E0501", {}, fmt::format("-D: the scene has no parameter `{}`", name), "",
-                      {known.empty() ? "parameters are declared in the scene: \"params\": {\"r\": 0.5}"
-                                     : did_you_mean(name, known)});
+    diagnostics.error(
+        "E0501", {}, fmt::format("-D: the scene has no parameter `{}`", name), "",
+        {known.empty() ? diagnostics.spelled("parameters are declared in the scene: \"params\": {\"r\": 0.5}",
+                                             "parameters are declared in the scene: param r = 0.5")
+                       : did_you_mean(name, known)});
   }
 }
 
-}  // namespace
+const Scope::Entry& read_parameter(const syntax::Property& property, const Definitions& definitions, Scope& scope,
+                                   Diagnostics& diagnostics) {
+  scope.declare(property.name, property.name_span);
+  Scope::Entry& entry = scope.at(scope.entries().size() - 1);
+  read_entry(property, definitions, scope, entry, diagnostics);
+  return entry;
+}
 
 Scope read_parameters(const syntax::Value* params, const Definitions& definitions, const Limits& limits,
                       Diagnostics& diagnostics) {
@@ -127,8 +137,10 @@ void warn_of_unused(const Scope& scope, Diagnostics& diagnostics) {
   for (const Scope::Entry& entry : scope.entries()) {
     if (entry.used) continue;
     const std::string& name = entry.parameter.name;
-    diagnostics.warning("W0404", entry.span, fmt::format("unused parameter `{}`", name), "no formula has it",
-                        {fmt::format("a number of the scene can be a formula, as in \"radius\": \"2*{}\"", name)});
+    diagnostics.warning(
+        "W0404", entry.span, fmt::format("unused parameter `{}`", name), "no formula has it",
+        {diagnostics.spelled(fmt::format("a number of the scene can be a formula, as in \"radius\": \"2*{}\"", name),
+                             fmt::format("it stands for its value, as in sphere(2*{})", name))});
   }
 }
 

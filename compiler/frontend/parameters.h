@@ -19,6 +19,12 @@ using Definitions = std::vector<std::pair<std::string, double>>;
 Scope read_parameters(const syntax::Value* params, const Definitions& definitions, const Limits& limits,
                       Diagnostics& diagnostics);
 
+// The same a parameter at a time: declares it and reads its value. What goes beyond all of them is checked at the
+// end.
+const Scope::Entry& read_parameter(const syntax::Property& property, const Definitions& definitions, Scope& scope,
+                                   Diagnostics& diagnostics);
+void check_definitions(const Definitions& definitions, const Scope& scope, Diagnostics& diagnostics);
+
 void warn_of_unused(const Scope& scope, Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler

@@ -7,16 +7,23 @@
 #include "compiler/frontend/expression_list.h"
 #include "compiler/frontend/json.h"
 #include "compiler/frontend/nested_nodes.h"
+#include "compiler/frontend/text/read_text.h"
 
 namespace fathom::compiler {
 
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits,
+                                    const Definitions& definitions) {
   const auto size = static_cast<double>(source.text().size());
   if (size > limits.file_size) {
     diagnostics.error("E0008", {},
                       fmt::format("the file is {} bytes long; at most {} are read", size, limits.file_size), "",
                       {"move repeated parts to `nodes`", raise(&Limits::file_size, size)});
     return std::nullopt;
+  }
+  if (is_text_scene(source.text())) {
+    auto read = read_text_scene(source, definitions, limits, diagnostics);
+    if (!read) return std::nullopt;
+    return ReadScene{SceneFormat::Text, std::move(read->first), std::move(read->second)};
   }
   if (is_expression_list(source.text())) {
     std::optional<syntax::File> file = read_expression_list(source, diagnostics, limits);

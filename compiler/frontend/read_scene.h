@@ -5,19 +5,22 @@
 #include <optional>
 
 #include "compiler/diagnostics.h"
+#include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
 #include "compiler/limits.h"
 
 namespace fathom::compiler {
 
-enum class SceneFormat { Scene, ExpressionList, NestedNodes };
+enum class SceneFormat { Scene, Text, ExpressionList, NestedNodes };
 
 struct ReadScene {
   SceneFormat format;
   syntax::File file;  // what an ordinary scene file would have said
+  std::optional<Scope> parameters = {};  // of a text, which is read with their values
 };
 
 // nullopt after reporting an error.
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits = {});
+std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits = {},
+                                    const Definitions& definitions = {});
 
 }  // namespace fathom::compiler

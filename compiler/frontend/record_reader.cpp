@@ -16,7 +16,7 @@ namespace {
 
 using syntax::Value;
 
-std::string_view expected(ValueType type) {
+std::string expected(ValueType type, const Diagnostics& diagnostics) {
   switch (type) {
     case ValueType::Number:
     case ValueType::Version:
@@ -30,7 +30,7 @@ std::string_view expected(ValueType type) {
     case ValueType::Points:
       return "a list of three or more points [[x, y], ...]";
     case ValueType::Formula:
-      return "a formula \"...\" or a list of them";
+      return diagnostics.spelled("a formula \"...\" or a list of them", "a number or a formula of x, y and z");
     case ValueType::Color:
       return "a number or three numbers [red, green, blue]";
     case ValueType::Boolean:
@@ -39,21 +39,24 @@ std::string_view expected(ValueType type) {
     case ValueType::Choice:
       return "a string";
     case ValueType::Record:
-      return "an object {...}";
+      return diagnostics.spelled("an object {...}", "a record (name = value, ...)");
     case ValueType::Named:
       return "an object {\"name\": {...}, ...}";
     case ValueType::Node:
-      return "a node {...}";
+      return diagnostics.spelled("a node {...}", "a node");
     case ValueType::Nodes:
-      return "a list of nodes [{...}, ...]";
+      return diagnostics.spelled("a list of nodes [{...}, ...]", "a list of nodes");
     case ValueType::Scale:
       return "a number or three numbers [x, y, z]";
     case ValueType::Translation:
       return "three numbers [x, y, z], or two of an outline";
     case ValueType::Rotation:
-      return "three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}";
+      return diagnostics.spelled("three angles [x, y, z] or {\"axis\": [x, y, z], \"angle\": degrees}",
+                                 "three angles [x, y, z] or axis = [x, y, z], angle = degrees");
     case ValueType::Background:
-      return "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}, a sky or an image";
+      return diagnostics.spelled(
+          "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}, a sky or an image",
+          "a colour [red, green, blue], (bottom = colour, top = colour), a sky or an image");
     case ValueType::Anything:
       break;
   }
@@ -72,7 +75,7 @@ bool is_pair(const Value& value) {
 bool is_points(const Value& value) { return is_list(value, 3, is_pair); }
 bool is_formula(const Value& value) {
   const auto text = [](const Value& item) { return std::holds_alternative<std::string>(item.data); };
-  return text(value) || is_list(value, 1, text);
+  return is_formula_text(value) || is_list(value, 1, text);
 }
 
 bool has_type(const Value& value, ValueType type) {
@@ -214,12 +217,14 @@ bool misnamed(const PropertySpec& missing, const RecordSpec& spec, const syntax:
 }
 
 // The other row of the same family that has the property: "`ior` is a property of transparent materials".
-std::string owner(const RecordSpec& spec, std::string_view property) {
+std::string owner(const RecordSpec& spec, std::string_view property, const Diagnostics& diagnostics) {
   for (const auto* family : {&camera_records(), &material_records(), &light_records(), &background_records()}) {
     const auto same = [&](const RecordSpec& row) { return &row == &spec; };
     if (std::none_of(family->begin(), family->end(), same)) continue;
     for (const RecordSpec& row : *family) {
-      if (row.find(property)) return fmt::format("`{}` goes with \"type\": \"{}\"", property, row.type);
+      if (!row.find(property)) continue;
+      return diagnostics.spelled(fmt::format("`{}` goes with \"type\": \"{}\"", property, row.type),
+                                 fmt::format("`{}` goes with {}(...)", property, row.type));
     }
   }
   return "";
@@ -249,6 +254,7 @@ std::string describe(const Value& value) {
       return numbers ? fmt::format("a list of {} numbers", list.size()) : "a list";
     }
     std::string operator()(const syntax::Record&) const { return "an object"; }
+    std::string operator()(const syntax::ReadFormula&) const { return "a formula"; }
   };
   return std::visit(Describer{}, value.data);
 }
@@ -284,7 +290,7 @@ RecordReader::RecordReader(const RecordSpec& spec, const syntax::Record& record,
   for (const PropertySpec& row : spec.properties) {
     if (diagnostics.full() || !row.required || record.find(row.name) || misnamed(row, spec, record)) continue;
     diagnostics.error("E0103", place, fmt::format("{} has no `{}`", spec.title, row.name),
-                      fmt::format("needs `{}`: {}", row.name, expected(row.type)), about(row));
+                      fmt::format("needs `{}`: {}", row.name, expected(row.type, diagnostics)), about(row));
   }
   check_aliases(record);
   good_ = good_ && diagnostics.errors() == before;
@@ -294,7 +300,7 @@ void RecordReader::check(const syntax::Property& property) {
   const PropertySpec* row = spec_.find(property.name);
   if (row == nullptr) {
     std::vector<std::string> help = {did_you_mean(property.name, known_properties(spec_))};
-    const std::string elsewhere = owner(spec_, property.name);
+    const std::string elsewhere = owner(spec_, property.name, diagnostics_);
     if (!elsewhere.empty()) help.insert(help.begin(), elsewhere);
     diagnostics_.error("E0102", property.name_span,
                        fmt::format("unknown property `{}` in {}", property.name, spec_.title),
@@ -326,8 +332,9 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
   if (!has_type(value, row.type)) {
     const std::string formula = explain(written, value);
     const std::string instead = formula.empty() ? ", not " + describe(value) : formula;
-    diagnostics_.error("E0101", value.span, fmt::format("`{}` must be {}{}", row.name, expected(row.type), instead),
-                       "", retype(value, written, row));
+    diagnostics_.error("E0101", value.span,
+                       fmt::format("`{}` must be {}{}", row.name, expected(row.type, diagnostics_), instead), "",
+                       retype(value, written, row));
   } else if (const std::optional<Broken> broken = first_broken(value, row, scope_.limits())) {
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",

@@ -39,7 +39,7 @@ void add_stage(syntax::File& file, double ground) {
 }  // namespace
 
 bool wants_stage(const ReadScene& scene) {
-  if (scene.format == SceneFormat::Scene) return false;
+  if (scene.format == SceneFormat::Scene || scene.format == SceneFormat::Text) return false;
   const auto& root = std::get<syntax::Record>(scene.file.root.data);
   const syntax::Property* camera = root.find("camera");
   return camera && !std::get<syntax::Record>(camera->value->data).find("type");

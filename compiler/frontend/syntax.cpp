@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "compiler/frontend/formula_text.h"
+
 namespace fathom::compiler::syntax {
 namespace {
 
@@ -22,7 +24,9 @@ std::string in_quotes(std::string_view text) {
   return out + "\"";
 }
 
-bool is_scalar(const Value& value) { return value.data.index() < 4; }
+bool is_scalar(const Value& value) {
+  return value.data.index() < 4 || std::holds_alternative<ReadFormula>(value.data);
+}
 
 // Whether a value fits on its property's line: scalars, lists of scalars, and what is empty.
 bool is_short(const Value& value) {
@@ -43,6 +47,11 @@ std::string print_short(const Value& value) {
       return "[" + out + "]";
     }
     std::string operator()(const Record&) const { return "{}"; }
+    std::string operator()(const ReadFormula& formula) const {
+      std::string out;
+      for (const std::string& line : formula_lines(*formula)) out += (out.empty() ? "" : ", ") + in_quotes(line);
+      return "[" + out + "]";
+    }
   };
   return std::visit(Printer{}, value.data);
 }

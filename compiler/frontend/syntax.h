@@ -13,6 +13,10 @@
 
 #include "compiler/source.h"
 
+namespace fathom::compiler {
+struct Formula;
+}
+
 namespace fathom::compiler::syntax {
 
 struct Value;
@@ -30,9 +34,12 @@ struct Record {
 
 using List = std::vector<Value>;
 
+// A formula that a front end has read itself; one of a JSON scene is a string until someone wants a formula there.
+using ReadFormula = std::shared_ptr<const Formula>;
+
 struct Value {
   Span span;
-  std::variant<std::monostate, bool, double, std::string, List, Record> data;  // monostate: null
+  std::variant<std::monostate, bool, double, std::string, List, Record, ReadFormula> data;  // monostate: null
 };
 
 // The whole file: one record with the properties camera, film, objects, ...

@@ -127,7 +127,7 @@ std::optional<std::uint32_t> TextureReader::add_formula(const syntax::Value& val
   std::optional<Formula> formula;
   if (const double* number = std::get_if<double>(&value.data)) {
     formula = Formula{{{"const", *number, {}, value.span}}};
-  } else if (std::holds_alternative<std::string>(value.data)) {
+  } else if (is_formula_text(value)) {
     formula = read_formula(value, scope_, machine_functions(), diagnostics_);
   } else {
     diagnostics_.error("E0101", value.span,

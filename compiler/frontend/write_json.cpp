@@ -8,6 +8,9 @@
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
+
+#include "compiler/frontend/formula_text.h"
 
 namespace fathom::compiler {
 namespace {
@@ -31,6 +34,12 @@ std::string scalar(const syntax::Value& value) {
     return *number == 0 && std::signbit(*number) ? "-0.0" : fmt::format("{}", *number);
   }
   if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
+  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
+    const std::vector<std::string> lines = formula_lines(**formula);
+    std::string out;
+    for (const std::string& line : lines) out += (out.empty() ? "" : ", ") + quoted(line);
+    return lines.size() == 1 ? out : "[" + out + "]";
+  }
   return "null";
 }
 

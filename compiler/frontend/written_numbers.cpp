@@ -28,7 +28,7 @@ bool may_be_numbers(ValueType type) {
 
 bool has_text(const Value& value) {
   const auto* list = std::get_if<syntax::List>(&value.data);
-  return list ? std::any_of(list->begin(), list->end(), has_text) : std::holds_alternative<std::string>(value.data);
+  return list ? std::any_of(list->begin(), list->end(), has_text) : is_formula_text(value);
 }
 
 // Whether there are but numbers and strings, in lists.
@@ -36,7 +36,7 @@ bool is_arithmetic(const Value& value) {
   if (const auto* list = std::get_if<syntax::List>(&value.data)) {
     return std::all_of(list->begin(), list->end(), is_arithmetic);
   }
-  return std::holds_alternative<std::string>(value.data) || std::holds_alternative<double>(value.data);
+  return is_formula_text(value) || std::holds_alternative<double>(value.data);
 }
 
 // The scalar of the value that begins at a place in the text; nullptr when there is none.
@@ -52,7 +52,7 @@ const Value* scalar_at(const Value& value, std::uint32_t begin) {
 }  // namespace
 
 bool has_formulas(const Value& value, ValueType type) {
-  if (std::holds_alternative<std::string>(value.data)) return may_be_number(type);
+  if (is_formula_text(value)) return may_be_number(type);
   return may_be_numbers(type) && has_text(value) && is_arithmetic(value);
 }
 
@@ -74,6 +74,7 @@ std::optional<Value> evaluated(const Value& value, const Scope& scope, Diagnosti
 bool varies(const Value& value) {
   if (const auto* list = std::get_if<syntax::List>(&value.data))
     return std::any_of(list->begin(), list->end(), varies);
+  if (std::holds_alternative<syntax::ReadFormula>(value.data)) return true;
   const auto* text = std::get_if<std::string>(&value.data);
   if (text == nullptr) return std::holds_alternative<syntax::Record>(value.data);
   FormulaLexer lexer(*text);

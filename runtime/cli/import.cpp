@@ -55,7 +55,8 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   compiler::Diagnostics ignored;  // compiling it read it without any
   std::optional<compiler::ReadScene> model = compiler::read_scene(source, ignored, scene_arguments.limits);
-  const bool foreign = model && model->format != compiler::SceneFormat::Scene;
+  const bool foreign =
+      model && model->format != compiler::SceneFormat::Scene && model->format != compiler::SceneFormat::Text;
   if (!foreign && !compiled_file) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
   }

@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "compiler/frontend/formula_evaluate.h"
 #include "compiler/frontend/formula_functions.h"
+#include "compiler/frontend/formula_nodes.h"
+#include "compiler/frontend/text/read_text.h"
 #include "tests/compiler/formula_texts.h"
 
 namespace fathom::formula_test {
@@ -27,7 +30,35 @@ Formula read(const Value& value) {
   REQUIRE(diagnostics.all().empty());
   return *formula;
 }
-Formula read(const std::string& text) { return read(in_quotes(text)); }
+
+// The same in a text's notation.
+void check_in_text(const std::string& expression, const Formula& expected) {
+  const Source source("a.fathom", fmt::format("fathom 1\nparam r = 0.5\nparam n = 3\nlet unused = r*n\n"
+                                              "object expression({})\n",
+                                              expression));
+  Diagnostics diagnostics;
+  const auto scene = read_text_scene(source, {}, {}, diagnostics);
+  INFO(diagnostics.print(source, ErrorFormat::Text));
+  REQUIRE(scene);
+  const auto& root = std::get<syntax::Record>(scene->first.root.data);
+  const auto& object = std::get<syntax::List>(root.find("objects")->value->data)[0];
+  const Value& made = *std::get<syntax::Record>(object.data).find("formula")->value;
+  const auto formula = read_formula(made, some_scope(), machine_functions(), diagnostics);
+  REQUIRE(formula->nodes.size() == expected.nodes.size());
+  for (std::size_t i = 0; i < expected.nodes.size(); ++i) {
+    CHECK(formula->nodes[i].function == expected.nodes[i].function);
+    CHECK(std::bit_cast<std::uint64_t>(formula->nodes[i].value) ==
+          std::bit_cast<std::uint64_t>(expected.nodes[i].value));
+    CHECK(formula->nodes[i].arguments == expected.nodes[i].arguments);
+  }
+}
+
+Formula read(const std::string& text) {
+  Diagnostics diagnostics;
+  const auto formula = read_formula(in_quotes(text), some_scope(), machine_functions(), diagnostics);
+  if (formula) check_in_text(text, *formula);
+  return read(in_quotes(text));
+}
 
 Formula read_lines(const std::vector<std::string>& lines) {
   syntax::List list;
@@ -41,6 +72,8 @@ double value_of(const std::string& text) {
   const auto number = read_number(in_quotes(text), some_scope(), diagnostics);
   INFO(diagnostics.print(Source(), ErrorFormat::Short));
   REQUIRE(number.has_value());
+  const auto formula = read_formula(in_quotes(text), some_scope(), machine_functions(), diagnostics);
+  if (formula) check_in_text(text, *formula);
   return *number;
 }
 

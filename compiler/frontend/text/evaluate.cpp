@@ -1,0 +1,501 @@
+#include "compiler/frontend/text/evaluate.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "compiler/frontend/make_syntax.h"
+#include "compiler/frontend/text/evaluator.h"
+
+namespace fathom::compiler::text {
+
+namespace {
+
+std::uint32_t depth_of(const Value& value) {
+  return value.is(Value::Type::List) ? value.list->depth : value.is(Value::Type::Record) ? value.record->depth : 0;
+}
+
+}  // namespace
+
+std::string describe(const Value& value) {
+  switch (value.type) {
+    case Value::Type::Truth:
+      return value.truth ? "true" : "false";
+    case Value::Type::Number:
+      return fmt::format("{}", value.number);
+    case Value::Type::Formula:
+      return "a formula of x, y and z";
+    case Value::Type::Text:
+      return "a text";
+    case Value::Type::List:
+      return value.list->of.empty() ? "an empty list" : fmt::format("a list of {}", value.list->of.size());
+    case Value::Type::Record:
+      return value.record->word ? fmt::format("a `{}`", value.record->word->text) : "a record";
+    case Value::Type::Node:
+      break;
+  }
+  return "a node";
+}
+
+Evaluator::Evaluator(const Tree& tree, const Definitions& definitions, const Limits& limits, bool keep_formulas,
+                     Diagnostics& diagnostics)
+    : tree_(tree),
+      definitions_(definitions),
+      limits_(limits),
+      keep_formulas_(keep_formulas),
+      diagnostics_(diagnostics) {}
+
+Evaluated Evaluator::run(const std::vector<std::uint32_t>& order) {
+  out_.values.resize(tree_.statements.size());
+  out_.parameters = Scope(limits_);
+  for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
+    if (tree_.statements[i].kind == Statement::Kind::Param) run_statement(i);
+  }
+  check_definitions(definitions_, out_.parameters, diagnostics_);
+  for (const std::uint32_t number : order) {
+    const Statement::Kind kind = tree_.statements[number].kind;
+    if (kind != Statement::Kind::Param && kind != Statement::Kind::Def && !diagnostics_.full()) run_statement(number);
+  }
+  return std::move(out_);
+}
+
+void Evaluator::run_statement(std::uint32_t number) {
+  const Statement& statement = tree_.statements[number];
+  locals_.assign(statement.slots, {});
+  base_ = 0, depth_ = 0, trace_ = 0;
+  try {
+    Value value = statement.kind == Statement::Kind::Param ? run_parameter(statement) : evaluate(*statement.value);
+    if (statement.kind == Statement::Kind::Let) {
+      if (value.is(Type::Node) && statement.value->kind == Expr::Kind::Name) value = another_name(*value.node);
+      bind(value, statement.name);
+    }
+    out_.values[number] = statement.kind == Statement::Kind::Object ? object(statement, value) : value;
+  } catch (const Failure&) {
+    // Reported. What uses the name fails without a word.
+  }
+}
+
+// A node of its own that is the same node.
+Value Evaluator::another_name(const Node& of) {
+  Node made;
+  made.span = of.span, made.word_span = of.word_span;
+  made.of = {&of};
+  return node(std::move(made));
+}
+
+// A node, or a list of nodes where they are objects each.
+Value Evaluator::object(const Statement& statement, const Value& value) {
+  const auto as_node = [&](const Value& one) {
+    Value made = blank(Type::Node, one.span);
+    made.node = node_of(one, "an object");
+    return made;
+  };
+  if (!statement.is_spread) return as_node(value);
+  std::vector<Value> nodes;
+  for (const Value& one : list_of(value, "`...`").of) nodes.push_back(as_node(one));
+  return list(std::move(nodes), value.span);
+}
+
+// As if a JSON scene had it; its value is the command line's where that gives one.
+Value Evaluator::run_parameter(const Statement& statement) {
+  const auto constant_value = [&](const Expr& expr) {
+    const Value value = evaluate(expr);
+    if (value.is(Type::Text)) return make_value(value.span, *value.text);
+    const double known = constant(value, "a parameter");
+    out_.frozen.clear();  // it is written as a formula
+    return make_value(value.span, known);
+  };
+  syntax::Property property{statement.label.empty() ? std::string(statement.name) : statement.label,
+                            statement.name_span, nullptr};
+  RecordMaker record(statement.name_span);
+  record.add("default", constant_value(*statement.value));
+  const Value own = keep_formulas_ ? evaluate(*statement.value) : Value{};
+  for (const Argument& field : statement.fields) record.add(field.name, constant_value(*field.value));
+  property.value = std::make_unique<syntax::Value>(record.take());
+  const Scope::Entry& entry = read_parameter(property, definitions_, out_.parameters, diagnostics_);
+  if (entry.state != Scope::State::Known) throw Failure();
+  Value value = number(entry.parameter.value, statement.value->span);
+  value.spelling = own.spelling;
+  return value;
+}
+
+void Evaluator::take_step(Span span) {
+  if (++steps_ <= limits_.steps) return;
+  const double most = limits_.steps;
+  steps_ = 0;  // for what is reported of other statements
+  fail("E0312", span, fmt::format("the scene takes more than {} steps to evaluate", most),
+       {raise(&Limits::steps, 2 * most)}, "evaluated when there were too many");
+}
+
+Value Evaluator::evaluate(const Expr& expr) {
+  using enum Expr::Kind;
+  take_step(expr.span);
+  if (++depth_ > limits_.formula_nesting + 8) {  // levels beside those of a formula
+    fail("E0406", expr.span, fmt::format("calls and expressions are nested more than {} deep", limits_.formula_nesting),
+         {"give inner parts names of their own with `let`"});
+  }
+  const auto by_kind = [&]() -> Value {
+    switch (expr.kind) {
+      case Number: {
+        Value value = number(expr.number, expr.span);
+        spell_number(value, expr.name);
+        return value;
+      }
+      case Text:
+        return text(expr.text, expr.span);
+      case Truth:
+        return truth(expr.number != 0, expr.span);
+      case Name:
+        return evaluate_name(expr);
+      case List:
+        return evaluate_list(expr);
+      case Record:
+        return evaluate_record(expr);
+      case Call:
+        return call(expr);
+      case Index:
+        return evaluate_index(expr);
+      case Member:
+        return evaluate_member(expr);
+      case Row:
+        return evaluate_row(expr);
+      case Negate:
+        return negate(evaluate(*expr.of[0]), expr.span);
+      case Not:
+        return truth(!condition(*expr.of[0]), expr.span);
+      case Power: {
+        const Value base = evaluate(*expr.of[0]);
+        return power(base, evaluate(*expr.of[1]), expr.span);
+      }
+      case Compare:
+        return compare(expr);
+      case And:
+        return truth(condition(*expr.of[0]) && condition(*expr.of[1]), expr.span);
+      case Or:
+        return truth(condition(*expr.of[0]) || condition(*expr.of[1]), expr.span);
+      case Range:
+        return evaluate_range(expr);
+      case If:
+        return evaluate_if(expr);
+      case Let:
+        return evaluate_let(expr);
+      case Fold:
+        return evaluate_fold(expr);
+      case For:
+      case Guard:
+      case Spread:
+        break;
+    }
+    fail("E0807", expr.span, "a list is spread where one value is expected");
+  };
+  Value value = by_kind();
+  for (int i = 0; i < expr.groups && keep_formulas_; ++i) spell_group(value);
+  --depth_;
+  return value;
+}
+
+Value Evaluator::evaluate_name(const Expr& expr) {
+  switch (expr.reference.kind) {
+    case Reference::Kind::Local: {
+      Value value = local(expr.reference.number);
+      if (is_number(value)) value.span = here(expr.span);
+      return value;
+    }
+    case Reference::Kind::Global: {
+      const Statement& statement = tree_.statements[expr.reference.number];
+      if (statement.kind == Statement::Kind::Param) {
+        out_.parameters.use(statement.label.empty() ? std::string_view(statement.name) : statement.label);
+      }
+      if (!out_.values[expr.reference.number]) throw Failure();
+      Value value = *out_.values[expr.reference.number];
+      if (is_number(value)) value.span = here(expr.span);
+      if (statement.kind == Statement::Kind::Param) spell_name(value, statement.name, true);
+      return value;
+    }
+    case Reference::Kind::Coordinate: {
+      Value value = formula(out_.store.formulas.coordinate(expr.name[0], here(expr.span)), expr.span);
+      spell_name(value, expr.name, false);
+      return value;
+    }
+    case Reference::Kind::Constant: {
+      Value value = number(expr.reference.value, expr.span);
+      spell_name(value, expr.name, false);
+      return value;
+    }
+    case Reference::Kind::Definition:
+    case Reference::Kind::None:
+      break;
+  }
+  throw Failure();  // reported when names were resolved
+}
+
+Value Evaluator::evaluate_if(const Expr& expr) {
+  return evaluate(condition(*expr.of[0]) ? *expr.of[1] : *expr.of[2]);
+}
+
+Value Evaluator::evaluate_let(const Expr& expr) {
+  std::uint32_t slot = expr.reference.number;
+  for (const Argument& binding : expr.arguments) {
+    Value value = evaluate(*binding.value);
+    bind(value, binding.name);
+    spell_line(value, binding.name);
+    local(slot++) = value;
+  }
+  Value value = evaluate(*expr.of[0]);
+  if (keep_formulas_) {
+    const std::vector<Value> bindings(&local(expr.reference.number), &local(slot - 1) + 1);
+    keep_lines(value, bindings);
+  }
+  return value;
+}
+
+// Numbers the loops that surround what is evaluated, for messages.
+void Evaluator::enter(const Expr& by, Span name, const Value* element) {
+  const bool loop = by.kind != Expr::Kind::Call;
+  const double value = element && element->is(Type::Number) ? element->number : std::nan("");
+  trace_ = diagnostics_.add_trace({trace_, by.span, name, loop, value});
+}
+
+Value Evaluator::evaluate_fold(const Expr& expr) {
+  Value result = evaluate(*expr.of[0]);
+  const Value over = evaluate(*expr.of[1]);
+  const std::uint32_t outside = trace_;
+  for (const Value& element : list_of(over, "`fold`").of) {
+    trace_ = outside;
+    enter(expr, expr.arguments[0].name_span, &element);
+    bind(result, expr.name), bind(element, expr.arguments[0].name);
+    local(expr.reference.number) = result;
+    local(expr.reference.number + 1) = element;
+    result = evaluate(*expr.of[2]);
+  }
+  trace_ = outside;
+  return result;
+}
+
+Value Evaluator::evaluate_list(const Expr& expr) {
+  std::vector<Value> items;
+  for (const Expr* item : expr.of) add_items(*item, items);
+  return list(std::move(items), expr.span);
+}
+
+void Evaluator::add_items(const Expr& item, std::vector<Value>& to) {
+  switch (item.kind) {
+    case Expr::Kind::For:
+      return add_each(item, to);
+    case Expr::Kind::Guard:
+      if (condition(*item.of[0])) add_items(*item.of[1], to);
+      return;
+    case Expr::Kind::Spread: {
+      const Value spread = evaluate(*item.of[0]);
+      for (const Value& value : list_of(spread, "`...`").of) {
+        take_step(item.span);
+        to.push_back(value);
+      }
+      return;
+    }
+    default:
+      to.push_back(evaluate(item));
+  }
+}
+
+void Evaluator::add_each(const Expr& loop, std::vector<Value>& to) {
+  const Value over = evaluate(*loop.of[0]);
+  const std::uint32_t outside = trace_;
+  for (const Value& element : list_of(over, "`for`").of) {
+    trace_ = outside;
+    enter(loop, loop.name_span, &element);
+    bind(element, loop.name);
+    local(loop.reference.number) = element;
+    add_items(*loop.of[1], to);
+  }
+  trace_ = outside;
+}
+
+Value Evaluator::evaluate_index(const Expr& expr) {
+  const Value of = evaluate(*expr.of[0]);
+  const List& list = list_of(of, "`[...]`");
+  const double index = constant(evaluate(*expr.of[1]), "an index");
+  if (index >= 0 && index < static_cast<double>(list.of.size()) && index == std::floor(index)) {
+    return list.of[static_cast<std::size_t>(index)];
+  }
+  fail("E0807", expr.of[1]->span, fmt::format("there is no element {} in {}", index, describe(of)),
+       {list.of.empty() ? "" : fmt::format("elements are numbered from 0 to {}", list.of.size() - 1)});
+}
+
+// .x, .y and .z of a vector, and fields of records.
+Value Evaluator::evaluate_member(const Expr& expr) {
+  const Value of = evaluate(*expr.of[0]);
+  if (of.is(Type::List) && expr.name.size() == 1 && expr.name[0] >= 'x' && expr.name[0] <= 'z') {
+    const auto axis = static_cast<std::size_t>(expr.name[0] - 'x');
+    if (axis < of.list->of.size()) return of.list->of[axis];
+  }
+  if (of.is(Type::Record)) {
+    for (const Field& field : of.record->fields) {
+      if (field.name == expr.name) return field.value;
+    }
+  }
+  std::vector<std::string> help;
+  if (find_word(expr.name)) help = {fmt::format("`{0}` is a function: .{0}(...)", expr.name)};
+  fail("E0807", expr.name_span, fmt::format("{} has no `{}`", describe(of), expr.name), std::move(help));
+}
+
+Field Evaluator::field_of(const Argument& argument) {
+  const Value value = evaluate(*argument.value);
+  return {argument.name, here(argument.name_span), value};
+}
+
+Value Evaluator::evaluate_record(const Expr& expr) {
+  text::Record made;
+  made.span = here(expr.span);
+  for (const Argument& argument : expr.arguments) {
+    for (const Field& before : made.fields) {
+      if (before.name == argument.name) {
+        fail("E0010", argument.name_span, fmt::format("`{}` is given twice", argument.name), {"keep one of them"});
+      }
+    }
+    made.fields.push_back(field_of(argument));
+  }
+  return record(std::move(made));
+}
+
+Value Evaluator::evaluate_range(const Expr& expr) {
+  const double from = constant(evaluate(*expr.of[0]), "a range's begin"),
+               to = constant(evaluate(*expr.of[1]), "a range's end");
+  if (from != std::floor(from) || to != std::floor(to) || std::abs(from) > 1e15 || std::abs(to) > 1e15) {
+    fail("E0809", expr.span, fmt::format("a range from {} to {}", from, to),
+         {"ranges are of whole numbers; for fractions divide: [for i in 0..10: i/10]"});
+  }
+  // Too many are refused before there are any.
+  steps_ += std::max(0.0, to - from);
+  take_step(expr.span);
+  std::vector<Value> numbers;
+  for (double i = from; i < to; ++i) {
+    numbers.push_back(number(i, expr.span));
+  }
+  return list(std::move(numbers), expr.span);
+}
+
+const List& Evaluator::list_of(const Value& value, const char* what) {
+  if (value.is(Type::List)) return *value.list;
+  fail("E0807", value.span, fmt::format("{} takes a list, not {}", what, describe(value)),
+       {value.is(Type::Number) ? "the whole numbers up to n are 0..n" : ""});
+}
+
+void Evaluator::bind(const Value& value, std::string_view name) {
+  if (value.is(Type::Node) && value.node->name.empty()) value.node->name = name;
+  if (value.is(Type::Record) && value.record->name.empty()) value.record->name = name;
+}
+
+// What reads a value recurses as deep.
+void Evaluator::check_depth(std::uint32_t depth, Span span) {
+  if (depth <= limits_.formula_nesting) return;
+  fail("E0406", span, fmt::format("lists are nested more than {} deep", limits_.formula_nesting),
+       {"to add to a list spread it: [...list, element]"});
+}
+
+Value Evaluator::number(double value, Span span) const {
+  Value made = blank(Type::Number, here(span));
+  made.number = value;
+  return made;
+}
+Value Evaluator::truth(bool value, Span span) const {
+  Value made = blank(Type::Truth, here(span));
+  made.truth = value;
+  return made;
+}
+
+// What came out constant is a number.
+Value Evaluator::formula(FormulaId id, Span span) {
+  if (const auto known = out_.store.formulas.value(id)) return number(*known, span);
+  if (static_cast<double>(out_.store.formulas.size()) > limits_.nodes) {
+    fail("E0312", span, fmt::format("the formulas have more than {} operations and numbers", limits_.nodes),
+         {raise(&Limits::nodes, 2 * limits_.nodes)});
+  }
+  Value made = blank(Type::Formula, here(span));
+  made.formula = id;
+  return made;
+}
+Value Evaluator::text(std::string value, Span span) {
+  Value made = blank(Type::Text, here(span));
+  made.text = &out_.store.texts.emplace_back(std::move(value));
+  return made;
+}
+Value Evaluator::list(std::vector<Value> of, Span span) {
+  text::List stored{std::move(of)};
+  for (const Value& part : stored.of) stored.depth = std::max(stored.depth, depth_of(part) + 1);
+  check_depth(stored.depth, span);
+  Value made = blank(Type::List, here(span));
+  made.list = &out_.store.lists.emplace_back(std::move(stored));
+  return made;
+}
+Value Evaluator::record(text::Record from) {
+  for (const Field& field : from.fields) from.depth = std::max(from.depth, depth_of(field.value) + 1);
+  check_depth(from.depth, from.span);
+  Value made = blank(Type::Record, from.span);
+  made.record = &out_.store.records.emplace_back(std::move(from));
+  return made;
+}
+Value Evaluator::node(Node from) {
+  if (static_cast<double>(out_.store.nodes.size()) >= limits_.nodes) {
+    fail("E0312", from.span, fmt::format("the scene has more than {} nodes here", limits_.nodes),
+         {raise(&Limits::nodes, 2 * limits_.nodes)});
+  }
+  Value made = blank(Type::Node, from.span);
+  made.node = &out_.store.nodes.emplace_back(std::move(from));
+  return made;
+}
+
+FormulaId Evaluator::formula_of(const Value& value) {
+  return value.is(Type::Formula) ? value.formula : out_.store.formulas.constant(value.number, value.span);
+}
+
+// A node, or a list of them, which is their union.
+bool Evaluator::is_node(const Value& value) {
+  return value.is(Type::Node) ||
+         (value.is(Type::List) && !value.list->of.empty() && is_node(value.list->of.front()));
+}
+
+const Node* Evaluator::node_of(const Value& value, const char* what) {
+  if (value.is(Type::Node)) return value.node;
+  if (!value.is(Type::List)) {
+    fail("E0807", value.span, fmt::format("{} takes a node, not {}", what, describe(value)),
+         {"such as sphere(1)"});
+  }
+  if (value.list->of.empty()) {
+    fail("E0107", value.span, fmt::format("{} takes a node, and this list has none", what), {});
+  }
+  Node made;
+  made.spec = find_node("union");
+  made.span = made.word_span = value.span;
+  for (const Value& part : value.list->of) {
+    take_step(value.span);
+    made.of.push_back(node_of(part, what));
+  }
+  return node(std::move(made)).node;
+}
+
+double Evaluator::constant(const Value& value, const char* what) {
+  freeze(value, value.span);
+  if (value.is(Type::Number)) return value.number;
+  if (value.is(Type::Formula)) {
+    fail("E0405", value.span, fmt::format("{} cannot vary with x, y and z", what),
+         {"x, y and z are known only in the formula of a node, and in those of materials that may vary"});
+  }
+  fail("E0807", value.span, fmt::format("{} must be a number, not {}", what, describe(value)));
+}
+
+void Evaluator::fail(const char* code, Span span, std::string message, std::vector<std::string> help,
+                     std::string label) {
+  std::erase(help, "");
+  if (span.trace == 0) span = here(span);
+  diagnostics_.error(code, span, std::move(message), std::move(label), std::move(help));
+  throw Failure();
+}
+
+Evaluated evaluate(const Tree& tree, const std::vector<std::uint32_t>& order, const Definitions& definitions,
+                   const Limits& limits, Diagnostics& diagnostics, bool keep_formulas) {
+  return Evaluator(tree, definitions, limits, keep_formulas, diagnostics).run(order);
+}
+
+}  // namespace fathom::compiler::text

@@ -1,0 +1,18 @@
+// What the names in a scene's text stand for, found before anything is evaluated: so that a misspelt name is an error
+// in a branch that is not taken, too, and a function that calls itself is found without calling it.
+// Tested by: tests/compiler/text_evaluate_test.cpp, tests/golden/diagnostics (E0802, E0803, E0804, E0806)
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/text/tree.h"
+
+namespace fathom::compiler::text {
+
+// Fills in the references, words and slots of the tree, and returns its statements with a value in an order in which
+// each comes after those it uses; reports what is wrong.
+std::vector<std::uint32_t> resolve_names(Tree& tree, Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler::text

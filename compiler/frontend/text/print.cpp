@@ -1,0 +1,445 @@
+#include "compiler/frontend/text/print.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "compiler/frontend/color_text.h"
+#include "compiler/frontend/formula.h"
+#include "compiler/frontend/formula_lexer.h"
+#include "compiler/frontend/formula_text.h"
+#include "compiler/frontend/text/vocabulary.h"
+
+namespace fathom::compiler::text {
+namespace {
+
+using syntax::Property;
+using SyntaxRecord = syntax::Record;
+using SyntaxValue = syntax::Value;
+
+constexpr std::size_t kWidestText = 120;  // columns of a line, where there is a choice
+constexpr std::size_t kMostOperands = 8;  // of a row; longer ones are calls
+
+// Words that no name can be.
+const std::set<std::string_view> kNoNames = {"let", "in", "if", "then", "else", "for", "fold", "true", "false",
+                                             "x",   "y",  "z",  "pi",   "e",    "tau"};
+
+struct InfixWord {
+  std::string_view type;
+  char mark;
+  std::string_view blend;  // {} of its width
+};
+constexpr InfixWord kInfixWords[] = {
+    {"union", '+', ""},           {"subtraction", '-', ""},           {"intersection", '&', ""},
+    {"smooth_union", '+', "k"},   {"smooth_subtraction", '-', "k"},   {"smooth_intersection", '&', "k"},
+    {"chamfer_union", '+', "chamfer"}, {"chamfer_subtraction", '-', "chamfer"}, {"chamfer_intersection", '&', "chamfer"},
+    {"round_union", '+', "round"}, {"round_subtraction", '-', "round"}, {"round_intersection", '&', "round"},
+    {"stairs_union", '+', "stairs"}, {"stairs_subtraction", '-', "stairs"}, {"stairs_intersection", '&', "stairs"},
+};
+
+std::string quoted_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+const SyntaxRecord* as_record(const SyntaxValue* value) { return value ? std::get_if<SyntaxRecord>(&value->data) : nullptr; }
+const SyntaxValue* find_value(const SyntaxRecord& record, std::string_view name) {
+  const Property* found = record.find(name);
+  return found ? found->value.get() : nullptr;
+}
+std::string text_in(const SyntaxRecord& record, std::string_view name) {
+  const SyntaxValue* value = find_value(record, name);
+  const auto* text = value ? std::get_if<std::string>(&value->data) : nullptr;
+  return text ? *text : "";
+}
+
+// An expression, and whether it is a row, which needs parentheses within others.
+struct Printed {
+  std::string text;
+  bool is_row = false;
+  std::string atom() const { return is_row ? "(" + text + ")" : text; }
+};
+
+struct PrintedStatement {
+  std::string_view group;  // the property of the scene that it is from
+  std::string text;
+  Span span;                          // in the source
+  std::vector<std::string> comments;  // on lines before it
+  std::string aside;                  // a comment at its end
+};
+
+class TextPrinter {
+ public:
+  explicit TextPrinter(const SyntaxRecord& root) : root_(root) {
+    choose_names("params", params_);
+    choose_names("materials", materials_);
+    choose_names("nodes", nodes_);
+  }
+
+  std::vector<PrintedStatement> statements() {
+    add_params();
+    for (const char* part : {"camera", "film", "render", "background"}) add_part(part);
+    add_entries("materials", materials_, [&](const SyntaxValue& value) { return call_text(*as_record(&value)); });
+    add_lights();
+    add_entries("nodes", nodes_, [&](const SyntaxValue& value) { return node(value).text; });
+    const SyntaxValue* objects = find_value(root_, "objects");
+    for (const SyntaxValue& object : std::get<syntax::List>(objects->data)) add_object(object);
+    return std::move(out_);
+  }
+
+ private:
+  using Chosen = std::map<std::string, std::string, std::less<>>;
+
+  void choose_names(const char* table, Chosen& chosen) {
+    const SyntaxRecord* record = as_record(find_value(root_, table));
+    if (record == nullptr) return;
+    for (const Property& entry : record->properties) chosen.emplace(entry.name, free_name(entry.name));
+  }
+
+  std::string free_name(const std::string& label) {
+    std::string name;
+    for (const char c : label) {
+      const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (c >= '0' && c <= '9');
+      if (fits || (!name.empty() && name.back() != '_')) name += fits ? c : '_';
+    }
+    if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "_" + name;
+    if (kNoNames.contains(name)) name += "_";
+    std::string candidate = name;
+    for (int i = 2; !taken_.insert(candidate).second; ++i) candidate = fmt::format("{}_{}", name, i);
+    return candidate;
+  }
+
+  // `let name "label"`, the label where it is not the name.
+  static std::string head(const char* word, const std::string& label, const std::string& name) {
+    return label == name ? fmt::format("{} {}", word, name) : fmt::format("{} {} {}", word, name, quoted_text(label));
+  }
+
+  void add(std::string_view group, std::string text, Span span) { out_.push_back({group, std::move(text), span, {}, {}}); }
+
+  void add_params() {
+    const SyntaxRecord* params = as_record(find_value(root_, "params"));
+    if (params == nullptr) return;
+    for (const Property& entry : params->properties) {
+      std::string line = head("param", entry.name, params_.at(entry.name));
+      const SyntaxValue* value = entry.value.get();
+      if (const SyntaxRecord* record = as_record(value)) {
+        std::string fields;
+        for (const Property& field : record->properties) {
+          if (field.name == "default") continue;
+          fields += (fields.empty() ? "" : ", ") + field.name + " = " + value_text(*field.value, field.name == "doc");
+        }
+        line += "(" + fields + ")";
+        value = find_value(*record, "default");
+      }
+      add("params", line + " = " + value_text(*value), {entry.name_span.begin, entry.value->span.end});
+    }
+  }
+
+  void add_part(const char* part) {
+    const Property* property = root_.find(part);
+    if (property == nullptr) return;
+    const SyntaxRecord* record = as_record(property->value.get());
+    const std::string text = record ? call_text(*record) : value_text(*property->value);
+    add(part, fmt::format("{} {}", part, text), {property->name_span.begin, property->value->span.end});
+  }
+
+  template <class Print>
+  void add_entries(const char* table, const Chosen& chosen, const Print& print) {
+    const SyntaxRecord* record = as_record(find_value(root_, table));
+    if (record == nullptr) return;
+    for (const Property& entry : record->properties) {
+      add(table, head("let", entry.name, chosen.at(entry.name)) + " = " + print(*entry.value),
+          {entry.name_span.begin, entry.value->span.end});
+    }
+  }
+
+  void add_lights() {
+    const SyntaxRecord* record = as_record(find_value(root_, "lights"));
+    if (record == nullptr) return;
+    for (const Property& entry : record->properties) {
+      add("lights", fmt::format("light {} {}", quoted_text(entry.name), call_text(*as_record(entry.value.get()))),
+          {entry.name_span.begin, entry.value->span.end});
+    }
+  }
+
+  void add_object(const SyntaxValue& object) {
+    const SyntaxRecord& record = *as_record(&object);
+    const std::string name = text_in(record, "name");
+    const std::string text = node(object, true).text;
+    add("objects", name.empty() ? "object " + text : fmt::format("object {} {}", quoted_text(name), text), object.span);
+  }
+
+  // word(name = value, ...), or (name = value, ...) of a record without a type.
+  std::string call_text(const SyntaxRecord& record) {
+    std::string word = text_in(record, "type"), fields;
+    const std::string pattern = text_in(record, "pattern");
+    if (!pattern.empty()) word = pattern;
+    for (const Property& property : record.properties) {
+      if (property.name == "type" || property.name == "pattern") continue;
+      const bool is_text = property.name == "file" || property.name == "preset";
+      fields += (fields.empty() ? "" : ", ") + property.name + " = " + value_text(*property.value, is_text || is_choice(record, property));
+    }
+    return word + "(" + fields + ")";
+  }
+
+  // Whether the property's string is a word and no formula.
+  static bool is_choice(const SyntaxRecord& record, const Property& property) {
+    for (const auto* family : {&camera_records(), &light_records(), &background_records(), &material_records(), &pattern_records()}) {
+      for (const RecordSpec& row : *family) {
+        if (text_in(record, "type") != row.type && text_in(record, "pattern") != row.type) continue;
+        const PropertySpec* spec = row.find(property.name);
+        if (spec) return spec->type == ValueType::Choice || spec->type == ValueType::Text;
+      }
+    }
+    for (const RecordSpec* row : {&film_record(), &render_record()}) {
+      const PropertySpec* spec = row->find(property.name);
+      if (spec && spec->type == ValueType::Choice) return true;
+    }
+    return false;
+  }
+
+  std::string value_text(const SyntaxValue& value, bool is_text = false) {
+    if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
+    if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+    if (const auto* text = std::get_if<std::string>(&value.data)) {
+      return is_text || text->starts_with('#') ? quoted_text(*text) : formula_text(*text);
+    }
+    if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) return lines_text(formula_lines(**formula));
+    if (const auto* record = std::get_if<SyntaxRecord>(&value.data)) return call_text(*record);
+    std::string out;
+    for (const SyntaxValue& part : std::get<syntax::List>(value.data)) out += (out.empty() ? "" : ", ") + value_text(part, is_text);
+    return "[" + out + "]";
+  }
+
+  // The names of parameters may be others here.
+  std::string formula_text(const std::string& formula) const {
+    std::string out;
+    std::size_t copied = 0;
+    FormulaLexer lexer(formula);
+    for (compiler::Token token = lexer.next(); token.kind != compiler::Token::Kind::End; token = lexer.next()) {
+      const auto found = token.kind == compiler::Token::Kind::Name ? params_.find(token.text) : params_.end();
+      if (found == params_.end()) continue;
+      const auto at = static_cast<std::size_t>(token.text.data() - formula.data());
+      out += formula.substr(copied, at - copied) + found->second;
+      copied = at + token.text.size();
+    }
+    return out + formula.substr(copied);
+  }
+
+  std::string lines_text(const std::vector<std::string>& lines) const {
+    std::string out;
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) out += fmt::format("let {} ", formula_text(lines[i]));
+    return out.empty() ? formula_text(lines[0]) : out + "in " + formula_text(lines.back());
+  }
+
+  // A node's formula: a string, or lines.
+  std::string formula_value(const SyntaxValue& value) {
+    const auto* list = std::get_if<syntax::List>(&value.data);
+    if (list == nullptr) return value_text(value);
+    std::vector<std::string> lines;
+    for (const SyntaxValue& line : *list) lines.push_back(std::get<std::string>(line.data));
+    return lines_text(lines);
+  }
+
+  Printed node(const SyntaxValue& value, bool is_object = false) {
+    const SyntaxRecord& record = *as_record(&value);
+    Printed out = record.find("use") ? Printed{nodes_.at(text_in(record, "use"))} : made(record);
+    for (const char* placement : {"scale", "rotate", "translate"}) {
+      const SyntaxValue* given = find_value(record, placement);
+      if (given == nullptr) continue;
+      const SyntaxRecord* turn = as_record(given);
+      const std::string argument = turn ? call_text(*turn) : "(" + value_text(*given) + ")";
+      out = {out.atom() + "." + placement + argument};
+    }
+    const std::string material = text_in(record, "material"), name = text_in(record, "name");
+    if (!material.empty()) {
+      const auto known = materials_.find(material);
+      out = {fmt::format("{}.material({})", out.atom(), known == materials_.end() ? quoted_text(material) : known->second)};
+    }
+    if (!name.empty() && !is_object) out = {fmt::format("{}.name({})", out.atom(), quoted_text(name))};
+    return out;
+  }
+
+  // A node of a type, before it is placed.
+  Printed made(const SyntaxRecord& record) {
+    const std::string type = text_in(record, "type");
+    const NodeSpec& spec = *find_node(type);
+    const SyntaxValue* of = find_value(record, "of");
+    const auto* list = of ? std::get_if<syntax::List>(&of->data) : nullptr;
+    if (list) return combined(record, spec, *list);
+    std::string arguments;
+    const std::vector<std::string_view>& order = positional(spec);
+    std::size_t without_name = 0;
+    while (without_name < order.size() && record.find(order[without_name])) ++without_name;
+    for (std::size_t i = 0; i < without_name; ++i) {
+      if (order[i] != "of") arguments += (arguments.empty() ? "" : ", ") + parameter(spec, *record.find(order[i]));
+    }
+    arguments += named(record, spec, std::span(order).first(without_name), !arguments.empty());
+    return {of ? fmt::format("{}.{}({})", node(*of).atom(), type, arguments) : fmt::format("{}({})", type, arguments)};
+  }
+
+  std::string parameter(const NodeSpec& spec, const Property& property) {
+    const auto found = std::ranges::find(spec.params, property.name, &ParamSpec::name);
+    const bool formula = found != spec.params.end() && found->type == ParamType::Formula;
+    return formula ? formula_value(*property.value) : value_text(*property.value);
+  }
+
+  // The properties with a name, without those that every node may have.
+  std::string named(const SyntaxRecord& record, const NodeSpec& spec, std::span<const std::string_view> done, bool comma) {
+    constexpr std::string_view kCommon[] = {"type", "of", "scale", "rotate", "translate", "material", "name"};
+    std::string out;
+    for (const Property& property : record.properties) {
+      if (std::ranges::find(kCommon, property.name) != std::end(kCommon)) continue;
+      if (std::ranges::find(done, property.name) != done.end()) continue;
+      out += (comma || !out.empty() ? ", " : "") + property.name + " = " + parameter(spec, property);
+    }
+    return out;
+  }
+
+  Printed combined(const SyntaxRecord& record, const NodeSpec& spec, const syntax::List& of) {
+    std::vector<std::string> operands;
+    for (const SyntaxValue& part : of) operands.push_back(node(part).atom());
+    const auto* row = std::ranges::find(kInfixWords, spec.name, &InfixWord::type);
+    if (row != std::end(kInfixWords) && operands.size() > 1 && operands.size() <= kMostOperands) {
+      const std::string blend = blend_text(record, spec, *row);
+      return {fmt::format("{}", fmt::join(operands, fmt::format(" {}{} ", row->mark, blend))), true};
+    }
+    return {fmt::format("{}({}{})", spec.name, fmt::join(operands, ", "), named(record, spec, {}, true))};
+  }
+
+  // {0.1}, {round = 0.1}, {stairs = 0.1, steps = 3}
+  std::string blend_text(const SyntaxRecord& record, const NodeSpec& spec, const InfixWord& row) {
+    if (row.blend.empty()) return "";
+    std::string out;
+    for (const Property& property : record.properties) {
+      const bool width = property.name == "k" || property.name == "radius";
+      if (!width && std::ranges::find(spec.params, property.name, &ParamSpec::name) == spec.params.end()) continue;
+      const std::string name = width && row.blend == "k" ? "" : (width ? std::string(row.blend) : property.name) + " = ";
+      out += (out.empty() ? "" : ", ") + name + value_text(*property.value);
+    }
+    return "{" + out + "}";
+  }
+
+  const SyntaxRecord& root_;
+  Chosen params_, materials_, nodes_;  // the names here, by those in the scene
+  std::set<std::string> taken_;
+  std::vector<PrintedStatement> out_;
+};
+
+// The places in a statement where a line may begin: before the operators outside all brackets; where there is none
+// before the dots; and where there is none after the commas and the opening bracket.
+std::vector<std::size_t> breaks(std::string_view text) {
+  std::vector<std::size_t> operators, dots, commas;
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
+      continue;
+    }
+    if (c == ')' || c == ']' || c == '}') --depth;
+    if (c == '(' || c == '[' || c == '{') ++depth;
+    const char next = i + 2 < text.size() ? text[i + 2] : ' ';
+    const bool joint = c == ' ' && i + 1 < text.size() && std::string_view("+-&").find(text[i + 1]) != std::string_view::npos;
+    if (depth == 0 && joint && (next == ' ' || next == '{')) operators.push_back(i + 1);
+    const bool calls = c == '.' && i + 1 < text.size() && text[i + 1] >= 'a' && text[i + 1] <= 'z';
+    if (depth == 0 && calls) dots.push_back(i);
+    if (depth == 1 && c == ',') commas.push_back(i + 2);
+    if (depth == 1 && (c == '(' || c == '[')) commas.push_back(i + 1);
+  }
+  return !operators.empty() ? operators : !dots.empty() ? dots : commas;
+}
+
+// In lines of at most kWidestText columns where that is possible.
+std::string in_lines(const std::string& text) {
+  if (text.size() <= kWidestText) return text;
+  std::string out;
+  std::size_t copied = 0;
+  for (const std::size_t at : breaks(text)) {
+    std::string_view part = std::string_view(text).substr(copied, at - copied);
+    if (part.ends_with(' ')) part.remove_suffix(1);
+    out += std::string(part) + "\n  ";
+    copied = at;
+  }
+  return out + text.substr(copied);
+}
+
+struct SourceComment {
+  Span span;
+  bool is_first;  // on its line
+};
+
+std::vector<SourceComment> comments_of_json(std::string_view text) {
+  std::vector<SourceComment> comments;
+  bool first = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
+    } else if (text.substr(i).starts_with("//") || text.substr(i).starts_with("/*")) {
+      const bool block = text[i + 1] == '*';
+      std::size_t end = block ? text.find("*/", i + 2) + 2 : std::min(text.find('\n', i), text.size());
+      const std::size_t next = end - (block ? 1 : 1);
+      while (!block && end > i && (text[end - 1] == ' ' || text[end - 1] == '\r')) --end;
+      comments.push_back({{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end)}, first});
+      i = next;
+      continue;
+    }
+    first = text[i] == '\n' || (first && (text[i] == ' ' || text[i] == '\t' || text[i] == '\r' || text[i] == '{'));
+  }
+  return comments;
+}
+
+// Gives each comment to the statement it stands before or beside in the source; returns those behind the last.
+std::vector<std::string> share_out(const Source& source, std::vector<PrintedStatement>& statements) {
+  std::vector<std::string> rest;
+  for (const SourceComment& comment : comments_of_json(source.text())) {
+    const std::string text = source.text().substr(comment.span.begin, comment.span.end - comment.span.begin);
+    PrintedStatement *next = nullptr, *last = nullptr;
+    for (PrintedStatement& statement : statements) {
+      const std::uint32_t begin = statement.span.begin;
+      if (begin >= comment.span.end && (!next || begin < next->span.begin)) next = &statement;
+      if (begin < comment.span.begin && (!last || begin > last->span.begin)) last = &statement;
+    }
+    const bool beside = !comment.is_first && text.starts_with("//");
+    if (beside && last && last->aside.empty()) {
+      last->aside = text;
+    } else if (beside && last) {
+      last->comments.push_back(text);
+    } else if (next) {
+      next->comments.push_back(text);
+    } else {
+      rest.push_back(text);
+    }
+  }
+  return rest;
+}
+
+}  // namespace
+
+std::string print_text(const syntax::File& file, const Source& source) {
+  std::vector<PrintedStatement> statements = TextPrinter(*as_record(&file.root)).statements();
+  const bool json = source.text().find_first_not_of(" \t\r\n") != std::string::npos &&
+                    std::string_view("{/\xEF").find(source.text()[source.text().find_first_not_of(" \t\r\n")]) != std::string_view::npos;
+  const std::vector<std::string> rest = json ? share_out(source, statements) : std::vector<std::string>{};
+  std::string out = "fathom 1\n";
+  std::string_view group;
+  for (const PrintedStatement& statement : statements) {
+    if (statement.group != group || !statement.comments.empty()) out += '\n';
+    group = statement.group;
+    for (const std::string& comment : statement.comments) out += comment + "\n";
+    out += in_lines(statement.text) + (statement.aside.empty() ? "" : "  " + statement.aside) + "\n";
+  }
+  for (const std::string& comment : rest) out += "\n" + comment + "\n";
+  return out;
+}
+
+}  // namespace fathom::compiler::text

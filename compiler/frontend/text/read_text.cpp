@@ -1,0 +1,51 @@
+#include "compiler/frontend/text/read_text.h"
+
+#include "compiler/frontend/json_error.h"
+#include "compiler/frontend/text/emit.h"
+#include "compiler/frontend/text/evaluate.h"
+#include "compiler/frontend/text/lexer.h"
+#include "compiler/frontend/text/names.h"
+#include "compiler/frontend/text/parser.h"
+
+namespace fathom::compiler {
+
+namespace {
+
+struct ReadText {
+  syntax::File file;
+  text::Evaluated evaluated;
+};
+
+std::optional<ReadText> read(const Source& source, const Definitions& definitions, const Limits& limits,
+                             bool keep_formulas, Diagnostics& diagnostics) {
+  diagnostics.set_notation(Notation::Text);
+  if (!check_text(source, diagnostics)) return std::nullopt;
+  text::Tree tree = text::parse(source, diagnostics, limits);
+  const std::vector<std::uint32_t> order = text::resolve_names(tree, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  text::Evaluated evaluated = text::evaluate(tree, order, definitions, limits, diagnostics, keep_formulas);
+  if (diagnostics.has_errors()) return std::nullopt;
+  syntax::File file = text::to_syntax(tree, evaluated, limits, diagnostics);
+  if (diagnostics.has_errors()) return std::nullopt;
+  return ReadText{std::move(file), std::move(evaluated)};
+}
+
+}  // namespace
+
+bool is_text_scene(std::string_view text) { return text::first_word(text) == "fathom"; }
+
+std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
+                                                              const Limits& limits, Diagnostics& diagnostics) {
+  std::optional<ReadText> made = read(source, definitions, limits, false, diagnostics);
+  if (!made) return std::nullopt;
+  return std::pair(std::move(made->file), std::move(made->evaluated.parameters));
+}
+
+std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,
+                                                 Diagnostics& diagnostics) {
+  std::optional<ReadText> made = read(source, {}, limits, true, diagnostics);
+  if (!made) return std::nullopt;
+  return KeptScene{std::move(made->file), std::move(made->evaluated.frozen)};
+}
+
+}  // namespace fathom::compiler

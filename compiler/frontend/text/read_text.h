@@ -1,0 +1,39 @@
+// Scenes in Fathom's own notation (docs/LANGUAGE.md), such as
+//
+//     fathom 1
+//     def post(height) = cylinder(0.1, height/2).translate([0, height/2, 0])
+//     object "posts" [for i in 0..5: post(1 + i/4).translate([i, 0, 0])]
+//
+// Tested by: tests/compiler/text_evaluate_test.cpp, tests/golden/diagnostics (E08xx)
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/parameters.h"
+#include "compiler/frontend/syntax.h"
+#include "compiler/limits.h"
+
+namespace fathom::compiler {
+
+// Whether a text is in this notation: its first word is `fathom`.
+bool is_text_scene(std::string_view text);
+
+// The scene that a JSON file would have said, and its parameters; nullopt after an error.
+std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
+                                                              const Limits& limits, Diagnostics& diagnostics);
+
+// A text whose numbers are formulas of its parameters where they can be, and where they cannot.
+struct KeptScene {
+  syntax::File file;
+  std::vector<Span> frozen;  // what the parameters' values decided: conditions, ranges, indices
+};
+
+// The same scene as a JSON file that keeps the parameters.
+std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,
+                                                 Diagnostics& diagnostics);
+
+}  // namespace fathom::compiler

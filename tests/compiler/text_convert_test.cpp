@@ -1,0 +1,76 @@
+// From JSON to text and back: nothing is lost.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "compiler/artefact/compiled_file.h"
+#include "compiler/compile.h"
+#include "compiler/frontend/read_scene.h"
+#include "compiler/frontend/text/print.h"
+#include "compiler/frontend/text/read_text.h"
+#include "compiler/frontend/write_json.h"
+#include "tests/support/effort.h"
+#include "tests/support/golden.h"
+#include "tests/support/random_document.h"
+
+namespace fathom::text_convert_test {
+
+namespace {
+
+using namespace fathom::compiler;
+using fathom::test::canonical;
+
+// What JSON comes to by way of text.
+std::string there_and_back(const syntax::File& file, const std::string& json) {
+  const std::string text = text::print_text(file, Source("a.json", json));
+  const Source source("a.fathom", text);
+  Diagnostics diagnostics;
+  const auto kept = read_text_with_formulas(source, {}, diagnostics);
+  INFO(text);
+  INFO(diagnostics.print(source, ErrorFormat::Text));
+  REQUIRE(kept);
+  return canonical(kept->file.root);
+}
+
+TEST_CASE("text: documents come back from text as they were", "[text]") {
+  const char* count = std::getenv("FATHOM_DOCUMENTS");  // 10,000 take 20 seconds
+  const int documents = count ? std::atoi(count) : test::few(1000);
+  for (int i = 0; i < documents; ++i) {
+    test::Random random(static_cast<std::uint64_t>(i));
+    const syntax::File file = test::random_document(random);
+    const std::string expected = canonical(file.root);
+    CAPTURE(i);
+    REQUIRE(there_and_back(file, write_json(file)) == expected);
+  }
+}
+
+std::string digest_of(const Source& source) {
+  Diagnostics diagnostics;
+  const auto scene = compile(source, diagnostics, {});
+  INFO(diagnostics.print(source, ErrorFormat::Text));
+  REQUIRE(scene);
+  const vm::Digest digest = scene_digest(*scene);
+  return std::string(reinterpret_cast<const char*>(&digest), sizeof(digest));
+}
+
+TEST_CASE("text: the project's scenes come back as they were, and are one scene in both notations", "[text]") {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    const Source json(entry.path().string(), tests::read_file(entry.path()));
+    CAPTURE(entry.path().string());
+    Diagnostics diagnostics;
+    const auto read = read_scene(json, diagnostics);
+    REQUIRE(read);
+    CHECK(there_and_back(read->file, json.text()) == canonical(read->file.root));
+    const Source text(entry.path().string() + ".fathom", text::print_text(read->file, json));
+    CHECK(digest_of(text) == digest_of(json));
+    ++scenes;
+  }
+  CHECK(scenes > 20);
+}
+
+}  // namespace
+
+}  // namespace fathom::text_convert_test
