@@ -34,13 +34,16 @@ std::string scalar(const syntax::Value& value) {
     return *number == 0 && std::signbit(*number) ? "-0.0" : fmt::format("{}", *number);
   }
   if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
-  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
-    const std::vector<std::string> lines = formula_lines(**formula);
-    std::string out;
-    for (const std::string& line : lines) out += (out.empty() ? "" : ", ") + quoted(line);
-    return lines.size() == 1 ? out : "[" + out + "]";
-  }
   return "null";
+}
+
+// A formula that was read already, as a string or a list of them.
+syntax::Value as_strings(const Formula& formula, Span span) {
+  std::vector<std::string> lines = formula_lines(formula);
+  if (lines.size() == 1) return {span, std::move(lines[0])};
+  syntax::List list;
+  for (std::string& line : lines) list.push_back({span, std::move(line)});
+  return {span, std::move(list)};
 }
 
 // The parts of a record or list, and what goes before each.
@@ -64,6 +67,9 @@ bool is_scalar(const syntax::Value& value) {
 
 // On one line, when that has at most `room` columns.
 std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t room) {
+  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
+    return on_one_line(as_strings(**formula, value.span), room);
+  }
   std::string out;
   if (is_scalar(value)) {
     out = scalar(value);
@@ -82,6 +88,9 @@ std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t r
 }
 
 void write(const syntax::Value& value, std::size_t indent, std::size_t used, std::string& out) {
+  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
+    return write(as_strings(**formula, value.span), indent, used, out);
+  }
   const std::size_t room = kWidestLine - std::min(kWidestLine, indent + used);
   // The file itself is easier to read in lines.
   const auto line = indent == 0 ? std::nullopt : on_one_line(value, room);

@@ -26,6 +26,7 @@ int run_chart(std::span<const std::string> args, const Streams& streams);
 int run_emit(std::span<const std::string> args, const Streams& streams);
 int run_import(std::span<const std::string> args, const Streams& streams);
 int run_convert(std::span<const std::string> args, const Streams& streams);
+int run_fmt(std::span<const std::string> args, const Streams& streams);
 int run_schema(std::span<const std::string> args, const Streams& streams);
 int run_completion(std::span<const std::string> args, const Streams& streams);
 int run_man(std::span<const std::string> args, const Streams& streams);
@@ -51,6 +52,7 @@ inline constexpr std::array kVerbs = {
     Verb{"emit", "cpp scene.json -o scene.h", "writes the field as C++ or GLSL", run_emit},
     Verb{"import", "model.vm -o scene.json", "writes a model of another format as a scene file", run_import},
     Verb{"convert", "scene.json -o scene.fathom", "writes a JSON scene as text, or a text as JSON", run_convert},
+    Verb{"fmt", "scene.fathom", "lays out a text: blanks and indentation", run_fmt},
     Verb{"schema", "", "prints the JSON Schema of scene files", run_schema},
     Verb{"completion", "bash", "prints the completion script of a shell", run_completion},
     Verb{"man", "", "prints the manual page", run_man},

@@ -19,6 +19,8 @@ void run_formula(Bytes input);
 std::vector<Input> seeds_of_formula();
 void run_import(Bytes input);
 std::vector<Input> seeds_of_import();
+void run_text(Bytes input);
+std::vector<Input> seeds_of_text();
 void run_picture(Bytes input);
 std::vector<Input> seeds_of_picture();
 void run_film(Bytes input);
@@ -35,6 +37,7 @@ std::span<const Target> targets() {
       {"scene", 8192, run_scene, seeds_of_scene},
       {"formula", 1024, run_formula, seeds_of_formula},
       {"import", 8192, run_import, seeds_of_import},
+      {"text", 4096, run_text, seeds_of_text},
       {"assembly", 16384, run_assembly, seeds_of_assembly},
       {"program", 16384, run_program, seeds_of_program},
       {"picture", 8192, run_picture, seeds_of_picture},

@@ -160,7 +160,7 @@ Value Evaluator::apply_function(const FormulaFunction& function, Values argument
 Value Evaluator::call_builtin(const Expr& expr, Values arguments) {
   const Builtin which = expr.word->builtin;
   if (which == Builtin::Random) return call_random(expr, arguments);
-  const std::size_t wanted = which == Builtin::Dot || which == Builtin::Cross ? 2 : 1;
+  const std::size_t wanted = which == Builtin::Dot ? 2 : 1;
   if (arguments.size() != wanted) {
     fail("E0805", expr.span, fmt::format("`{}` takes {}, not {}", expr.name, arguments_of(wanted), arguments.size()));
   }
@@ -182,23 +182,10 @@ Value Evaluator::call_builtin(const Expr& expr, Values arguments) {
     return sum;
   };
   if (which == Builtin::Dot) return sum_of_products(a, list_of(arguments[1], what.c_str()));
-  if (which == Builtin::Normalize) {
-    const Value square = sum_of_products(a, a);
-    const double length = std::sqrt(constant(square, "a vector's length"));
-    if (!(length > 0)) fail("E0807", expr.span, "a vector of length 0 has no direction");
-    return operate('/', arguments[0], number(length, expr.span), expr.span);
-  }
-  const List& b = list_of(arguments[1], what.c_str());
-  if (a.of.size() != 3 || b.of.size() != 3) {
-    fail("E0807", expr.span, fmt::format("{} of {} and {}", what, describe(arguments[0]), describe(arguments[1])),
-         {"it takes two vectors of three"});
-  }
-  std::vector<Value> parts;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    parts.push_back(operate('-', times(a.of[j], b.of[k]), times(a.of[k], b.of[j]), expr.span));
-  }
-  return list(std::move(parts), expr.span);
+  const Value square = sum_of_products(a, a);
+  const double length = std::sqrt(constant(square, "a vector's length"));
+  if (!(length > 0)) fail("E0807", expr.span, "a vector of length 0 has no direction");
+  return operate('/', arguments[0], number(length, expr.span), expr.span);
 }
 
 // In [0, 1), of whole numbers: the same on every machine, in any order.

@@ -15,12 +15,17 @@ struct Named {
   Builtin builtin;
 };
 constexpr Named kOwnWords[] = {
-    {"scale", Placement::Scale, Builtin::None},         {"rotate", Placement::Rotate, Builtin::None},
-    {"translate", Placement::Translate, Builtin::None}, {"material", Placement::Material, Builtin::None},
-    {"name", Placement::Name, Builtin::None},           {"len", Placement::None, Builtin::Len},
-    {"dot", Placement::None, Builtin::Dot},             {"cross", Placement::None, Builtin::Cross},
-    {"normalize", Placement::None, Builtin::Normalize}, {"random", Placement::None, Builtin::Random},
-    {"require", Placement::None, Builtin::Require},     {"show", Placement::None, Builtin::Show},
+    {"scale", Placement::Scale, Builtin::None},
+    {"rotate", Placement::Rotate, Builtin::None},
+    {"translate", Placement::Translate, Builtin::None},
+    {"material", Placement::Material, Builtin::None},
+    {"name", Placement::Name, Builtin::None},
+    {"len", Placement::None, Builtin::Len},
+    {"dot", Placement::None, Builtin::Dot},
+    {"normalize", Placement::None, Builtin::Normalize},
+    {"random", Placement::None, Builtin::Random},
+    {"require", Placement::None, Builtin::Require},
+    {"show", Placement::None, Builtin::Show},
 };
 
 class Vocabulary {

@@ -12,7 +12,7 @@
 
 namespace fathom::compiler::text {
 
-enum class Builtin : std::uint8_t { None, Len, Dot, Cross, Normalize, Random, Require, Show };
+enum class Builtin : std::uint8_t { None, Len, Dot, Normalize, Random, Require, Show };
 enum class Placement : std::uint8_t { None, Scale, Rotate, Translate, Material, Name };
 
 // What a word before `(` can mean. It has several meanings when tables have it in common: `round` is of nodes and of
