@@ -21,7 +21,7 @@ std::string scene_of(const std::string& text, const Definitions& definitions = {
   Diagnostics diagnostics;
   const auto read = read_text_scene(source, definitions, {}, diagnostics);
   INFO(diagnostics.print(source, ErrorFormat::Text));
-  REQUIRE(read);
+  REQUIRE((read && !diagnostics.has_errors()));
   std::string json = write_json(read->first);
   std::erase(json, '\n');
   for (std::size_t at = json.find("  "); at != std::string::npos; at = json.find("  ")) json.erase(at, 1);

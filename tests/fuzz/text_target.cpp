@@ -4,6 +4,7 @@
 
 #include "compiler/compile.h"
 #include "compiler/frontend/text/format.h"
+#include "compiler/frontend/text/parser.h"
 #include "compiler/frontend/text/read_text.h"
 #include "compiler/frontend/write_json.h"
 #include "tests/fuzz/check_scene.h"
@@ -37,11 +38,14 @@ void run_text(Bytes input) {
   const compiler::Source source("a.fathom", text);
   compiler::Diagnostics diagnostics;
   const auto read = compiler::read_text_scene(source, {}, small_limits(), diagnostics);
-  promise(read.has_value() != diagnostics.has_errors(), "there is a scene exactly when there is no error");
+  promise(read.has_value() || diagnostics.has_errors(), "a scene or an error");
   diagnostics.print(source, compiler::ErrorFormat::Text);
+  compiler::Diagnostics syntax;
+  compiler::text::parse(source, syntax, small_limits());
   const std::string once = compiler::text::format_text(source);
-  promise(compiler::text::format_text(compiler::Source("b.fathom", once)) == once, "what is laid out stays");
-  if (!read) return;
+  promise(syntax.has_errors() || compiler::text::format_text(compiler::Source("b.fathom", once)) == once,
+          "what is laid out stays");
+  if (!read || diagnostics.has_errors()) return;
   compiler::Diagnostics none;
   const auto kept = compiler::read_text_with_formulas(source, small_limits(), none);
   promise(kept.has_value(), "what is read once is read again");

@@ -35,12 +35,11 @@ std::vector<Block> blocks_of(const std::string& page) {
   return blocks;
 }
 
-// The file `name` of scene blocks that begin with "// name.json".
+// The file of scene blocks that begin with "// file" or "// file: ...".
 std::string file_name(const std::string& scene) {
-  const std::size_t end = scene.find(".json");
   REQUIRE(scene.starts_with("// "));
-  REQUIRE(end != std::string::npos);
-  return scene.substr(3, end + 2);
+  const std::size_t end = scene.find_first_of(":\n");
+  return scene.substr(3, end - 3);
 }
 
 // Runs each "$ command" of a console block and compares what it prints with the lines that follow. "..." ends what is
@@ -71,7 +70,7 @@ int check_console(const Folder& folder, const std::string& block) {
 int check_page(const Folder& folder, const std::string& page) {
   int commands = 0;
   for (const Block& block : blocks_of(page)) {
-    if (block.language == "json") folder.write(file_name(block.text), block.text);
+    if (block.language == "json" || block.language == "fathom") folder.write(file_name(block.text), block.text);
     if (block.language == "console") commands += check_console(folder, block.text);
   }
   return commands;
@@ -83,11 +82,31 @@ TEST_CASE("docs: the tutorial's commands print what it shows", "[docs]") {
   CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/TUTORIAL.md")) >= 5);
 }
 
-TEST_CASE("docs: README shows scenes/melt.json and its listing", "[docs]") {
-  const std::string melt = read_file(FATHOM_SOURCE_DIR "/scenes/melt.json");
-  CHECK(melt.starts_with("// melt.json"));
+TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[docs]") {
+  const Folder folder;
+  folder.write("small.fathom",
+               "fathom 1\ndef gear(teeth) =\n  let radius = require(teeth >= 6, \"a gear needs 6 teeth or more\", "
+               "teeth/10)\n  in cylinder(radius, 0.2)\nobject gear(4)\n");
+  const std::string page = read_file(FATHOM_SOURCE_DIR "/docs/LANGUAGE.md");
+  CHECK(check_page(folder, page) == 1);
+  int scenes = 0;
+  for (const Block& block : blocks_of(page)) {
+    if (block.language != "fathom") continue;
+    const std::string name = file_name(block.text);
+    CAPTURE(name);
+    CHECK(folder.run("check " + name).err == "");
+    CHECK(folder.run("fmt --check " + name).code == 0);
+    CHECK(folder.run("render " + name + " -o a.png --size 32x18 -s 1").code == 0);
+    ++scenes;
+  }
+  CHECK(scenes >= 5);
+}
+
+TEST_CASE("docs: README shows scenes/melt.fathom and its listing", "[docs]") {
+  const std::string melt = read_file(FATHOM_SOURCE_DIR "/scenes/melt.fathom");
+  CHECK(melt.starts_with("// melt.fathom"));
   const std::string page = read_file(FATHOM_SOURCE_DIR "/README.md");
-  CHECK(page.find("```json\n" + melt + "```\n") != std::string::npos);
+  CHECK(page.find("```fathom\n" + melt + "```\n") != std::string::npos);
   CHECK(check_page(Folder(), page) >= 1);
 }
 

@@ -31,11 +31,10 @@ class Emitter {
       : tree_(tree), evaluated_(evaluated), limits_(limits), diagnostics_(diagnostics) {}
 
   syntax::File run() {
-    const std::size_t errors = diagnostics_.errors();
     reserve_names();
     collect();
     syntax::Value root = scene();
-    if (objects_.empty() && diagnostics_.errors() == errors) {
+    if (objects_.empty() && !diagnostics_.has_errors()) {
       diagnostics_.error("E0103", {}, "the scene has no object", "", {"such as: object sphere(1)"});
     }
     return {std::move(root)};

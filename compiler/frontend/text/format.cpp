@@ -82,7 +82,7 @@ class Formatter {
     if (by == nullptr || by->token == nullptr) return;
     // A comment before a token on its line is indented as the line.
     const std::uint32_t column = by == &items_[i] || by->lines > 0 || i == 0 ? by->column : items_[i].column;
-    const bool starts = !by->closes() && (levels_.empty() || column <= levels_.front());
+    const bool starts = levels_.empty() || (!by->closes() && column <= levels_.front());
     if (starts) {
       levels_ = {column};
       begins_statement_ = by->token;
@@ -116,9 +116,9 @@ class Formatter {
     return token.is("-") && (before == nullptr || !ends_value(*before));
   }
 
-  // Whether an operator, an index or arguments may follow.
+  // Whether an operator, an index or arguments may follow. After the } of +{0.1} an operand does.
   bool ends_value(const Token& token) const {
-    if (token.kind == Token::Kind::Mark) return token.is(")") || token.is("]") || token.is("}");
+    if (token.kind == Token::Kind::Mark) return token.is(")") || token.is("]");
     if (token.kind != Token::Kind::Name) return true;
     const bool word = std::ranges::find(kWords, token.text) != std::end(kWords);
     const bool opener = &token == begins_statement_ && std::ranges::find(kOpeners, token.text) != std::end(kOpeners);

@@ -24,11 +24,12 @@ class Resolver {
  public:
   Resolver(Tree& tree, Diagnostics& diagnostics) : tree_(tree), diagnostics_(diagnostics) {}
 
-  std::vector<std::uint32_t> run() {
+  std::optional<std::vector<std::uint32_t>> run() {
     uses_.resize(tree_.statements.size());
     for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) declare_global(i);
     for (current_ = 0; current_ < tree_.statements.size(); ++current_) resolve_statement(tree_.statements[current_]);
-    return in_order();
+    std::vector<std::uint32_t> order = in_order();
+    return has_circle_ ? std::nullopt : std::optional(std::move(order));
   }
 
  private:
@@ -270,6 +271,7 @@ class Resolver {
   }
 
   void report_circle(const std::vector<std::uint32_t>& circle, Span span) {
+    has_circle_ = true;
     std::string names;
     for (const std::uint32_t number : circle) names += fmt::format("`{}` uses ", tree_.statements[number].name);
     names += fmt::format("`{}`", tree_.statements[circle[0]].name);
@@ -286,11 +288,12 @@ class Resolver {
   std::uint32_t current_ = 0;
   std::vector<Local> locals_;
   std::uint32_t slots_ = 0;
+  bool has_circle_ = false;
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> resolve_names(Tree& tree, Diagnostics& diagnostics) {
+std::optional<std::vector<std::uint32_t>> resolve_names(Tree& tree, Diagnostics& diagnostics) {
   return Resolver(tree, diagnostics).run();
 }
 

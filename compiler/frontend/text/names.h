@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compiler/diagnostics.h"
@@ -12,7 +13,7 @@
 namespace fathom::compiler::text {
 
 // Fills in the references, words and slots of the tree, and returns its statements with a value in an order in which
-// each comes after those it uses; reports what is wrong.
-std::vector<std::uint32_t> resolve_names(Tree& tree, Diagnostics& diagnostics);
+// each comes after those it uses; reports what is wrong. nullopt when there is no such order.
+std::optional<std::vector<std::uint32_t>> resolve_names(Tree& tree, Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler::text

@@ -21,12 +21,15 @@ std::optional<ReadText> read(const Source& source, const Definitions& definition
   diagnostics.set_notation(Notation::Text);
   if (!check_text(source, diagnostics)) return std::nullopt;
   text::Tree tree = text::parse(source, diagnostics, limits);
-  const std::vector<std::uint32_t> order = text::resolve_names(tree, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
-  text::Evaluated evaluated = text::evaluate(tree, order, definitions, limits, diagnostics, keep_formulas);
-  if (diagnostics.has_errors()) return std::nullopt;
+  // What is wrong with names and values does not hide what is wrong with the rest.
+  const std::optional<std::vector<std::uint32_t>> order = text::resolve_names(tree, diagnostics);
+  if (!order) return std::nullopt;
+  text::Evaluated evaluated = text::evaluate(tree, *order, definitions, limits, diagnostics, keep_formulas);
+  const std::size_t errors = diagnostics.errors();
   syntax::File file = text::to_syntax(tree, evaluated, limits, diagnostics);
-  if (diagnostics.has_errors()) return std::nullopt;
+  const auto& objects = std::get<syntax::Record>(file.root.data).find("objects")->value->data;
+  if (std::get<syntax::List>(objects).empty() || diagnostics.errors() > errors) return std::nullopt;
   return ReadText{std::move(file), std::move(evaluated)};
 }
 
@@ -44,7 +47,7 @@ std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& sour
 std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,
                                                  Diagnostics& diagnostics) {
   std::optional<ReadText> made = read(source, {}, limits, true, diagnostics);
-  if (!made) return std::nullopt;
+  if (!made || diagnostics.has_errors()) return std::nullopt;
   return KeptScene{std::move(made->file), std::move(made->evaluated.frozen)};
 }
 

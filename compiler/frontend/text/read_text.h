@@ -22,7 +22,8 @@ namespace fathom::compiler {
 // Whether a text is in this notation: its first word is `fathom`.
 bool is_text_scene(std::string_view text);
 
-// The scene that a JSON file would have said, and its parameters; nullopt after an error.
+// The scene that a JSON file would have said, and its parameters; nullopt when the text is not understood. After
+// other errors it is what is left of the scene.
 std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
                                                               const Limits& limits, Diagnostics& diagnostics);
 
