@@ -116,6 +116,12 @@ TEST_CASE("text: deep chains of nodes are named on the way", "[text]") {
   CHECK(compile(source, diagnostics, {}).has_value());
 }
 
+TEST_CASE("text: chains of names are as long as they like", "[text]") {
+  std::string text;
+  for (int i = 0; i < 20000; ++i) text += fmt::format("let a{} = a{}\n", i, i + 1);
+  CHECK(radius("a0", text + "let a20000 = 7") == "7");
+}
+
 std::string digest_of(const Source& source) {
   Diagnostics diagnostics;
   const auto scene = compile(source, diagnostics, {});

@@ -51,6 +51,12 @@ class Emitter {
     int height = 0;
   };
 
+  // The names of a table, and which number to try next beside each.
+  struct Names {
+    std::unordered_set<std::string> taken;
+    std::unordered_map<std::string, int> next;
+  };
+
   // Those of the file itself are as they are written; others make room.
   void reserve_names() {
     for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
@@ -64,15 +70,18 @@ class Emitter {
       }
     }
   }
-  void reserve(std::unordered_set<std::string>& names, const Statement& statement) {
-    if (names.insert(label_of(statement)).second) return;
+  void reserve(Names& names, const Statement& statement) {
+    if (names.taken.insert(label_of(statement)).second) return;
     diagnostics_.error("E0802", statement.name_span, fmt::format("`{}` is declared twice", label_of(statement)), "",
                        {"labels are names in listings and messages: choose another"});
   }
 
-  static std::string unique(std::unordered_set<std::string>& names, const std::string& wanted) {
+  static std::string unique(Names& names, const std::string& wanted) {
     std::string name = wanted;
-    for (int i = 2; !names.insert(name).second; ++i) name = fmt::format("{} {}", wanted, i);
+    for (int& i = names.next[wanted]; !names.taken.insert(name).second; ++i) {
+      i = std::max(i, 2);
+      name = fmt::format("{} {}", wanted, i);
+    }
     return name;
   }
 
@@ -392,7 +401,7 @@ class Emitter {
   std::vector<std::uint32_t> pending_;  // entries in the order they are written in
   std::vector<std::pair<const Node*, const Statement*>> objects_, globals_;
   double values_ = 0;  // written out
-  std::unordered_set<std::string> node_names_, material_names_, light_names_;
+  Names node_names_, material_names_, light_names_;
   std::unordered_map<const Record*, std::string> material_labels_;
   std::unordered_map<std::string, std::string> equal_materials_;  // as they are written out
   RecordMaker params_{Span{}}, lights_{Span{}}, materials_{Span{}}, nodes_{Span{}};

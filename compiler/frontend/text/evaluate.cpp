@@ -12,6 +12,9 @@ namespace fathom::compiler::text {
 
 namespace {
 
+// An element that no expression made takes memory all the same.
+constexpr double kStepsPerElement = 2;
+
 std::uint32_t depth_of(const Value& value) {
   return value.is(Value::Type::List) ? value.list->depth : value.is(Value::Type::Record) ? value.record->depth : 0;
 }
@@ -143,7 +146,7 @@ Value Evaluator::evaluate(const Expr& expr) {
         return value;
       }
       case Text:
-        return text(expr.text, expr.span);
+        return text(expr.text, expr.span);  // the tree keeps it
       case Truth:
         return truth(expr.number != 0, expr.span);
       case Name:
@@ -289,6 +292,7 @@ void Evaluator::add_items(const Expr& item, std::vector<Value>& to) {
     case Expr::Kind::Spread: {
       const Value spread = evaluate(*item.of[0]);
       for (const Value& value : list_of(spread, "`...`").of) {
+        steps_ += kStepsPerElement - 1;
         take_step(item.span);
         to.push_back(value);
       }
@@ -367,9 +371,10 @@ Value Evaluator::evaluate_range(const Expr& expr) {
          {"ranges are of whole numbers; for fractions divide: [for i in 0..10: i/10]"});
   }
   // Too many are refused before there are any.
-  steps_ += std::max(0.0, to - from);
+  steps_ += kStepsPerElement * std::max(0.0, to - from);
   take_step(expr.span);
   std::vector<Value> numbers;
+  numbers.reserve(static_cast<std::size_t>(std::max(0.0, to - from)));
   for (double i = from; i < to; ++i) {
     numbers.push_back(number(i, expr.span));
   }
@@ -416,9 +421,9 @@ Value Evaluator::formula(FormulaId id, Span span) {
   made.formula = id;
   return made;
 }
-Value Evaluator::text(std::string value, Span span) {
+Value Evaluator::text(const std::string& value, Span span) {
   Value made = blank(Type::Text, here(span));
-  made.text = &out_.store.texts.emplace_back(std::move(value));
+  made.text = &value;
   return made;
 }
 Value Evaluator::list(std::vector<Value> of, Span span) {

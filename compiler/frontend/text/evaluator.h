@@ -94,7 +94,7 @@ class Evaluator {
   Value number(double value, Span span) const;
   Value truth(bool value, Span span) const;
   Value formula(FormulaId id, Span span);
-  Value text(std::string value, Span span);
+  Value text(const std::string& value, Span span);
   Value list(std::vector<Value> of, Span span);
   Value record(Record made);
   Value node(Node made);

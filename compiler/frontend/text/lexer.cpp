@@ -56,6 +56,17 @@ class TextLexer {
     return std::move(out_);
   }
 
+  // Where the first token begins that is one too many; nothing when there is none.
+  std::optional<Span> find_excess(double most) {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+    for (double count = 0; skip_blanks(); ++count) {
+      out_ = {};
+      read();
+      if (count >= most && !out_.tokens.empty()) return out_.tokens.back().span;
+    }
+    return std::nullopt;
+  }
+
  private:
   std::string_view rest() const { return text_.substr(at_); }
 
@@ -205,6 +216,19 @@ std::optional<unsigned> escaped_character(std::string_view& rest) {
 }  // namespace
 
 Tokens read_tokens(const Source& source, Diagnostics& diagnostics) { return TextLexer(source, diagnostics).run(); }
+
+bool check_tokens(const Source& source, const Limits& limits, Diagnostics& diagnostics) {
+  // A text has fewer tokens than bytes.
+  if (static_cast<double>(source.text().size()) <= limits.tokens) return true;
+  Diagnostics ignored;
+  const std::optional<Span> excess = TextLexer(source, ignored).find_excess(limits.tokens);
+  if (!excess) return true;
+  diagnostics.error(
+      "E0008", *excess, fmt::format("the text has more than {} values, names and marks", limits.tokens),
+      "one too many",
+      {"what repeats itself is a list: [for i in 0..10: ...]", raise(&Limits::tokens, 2 * limits.tokens)});
+  return false;
+}
 
 std::string_view first_word(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/diagnostics.h"
+#include "compiler/limits.h"
 #include "compiler/source.h"
 
 namespace fathom::compiler::text {
@@ -40,6 +41,9 @@ struct Tokens {
 
 // All tokens of the text; what is no token is reported and left out. The tokens' texts are parts of the source's.
 Tokens read_tokens(const Source& source, Diagnostics& diagnostics);
+
+// Whether there are no more tokens than `limits` allow, before any is kept; reports it.
+bool check_tokens(const Source& source, const Limits& limits, Diagnostics& diagnostics);
 
 // The name that the text begins with, after blanks and comments; empty when it begins with something else.
 std::string_view first_word(std::string_view text);

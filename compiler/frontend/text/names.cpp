@@ -16,6 +16,9 @@ namespace {
 
 using Kind = Statement::Kind;
 
+// Errors that are printed: of a file of many names looking for the nearest takes a while.
+constexpr std::size_t kMostSuggestions = 20;
+
 bool has_name(const Statement& statement) {
   return statement.kind == Kind::Param || statement.kind == Kind::Let || statement.kind == Kind::Def;
 }
@@ -183,12 +186,11 @@ class Resolver {
   }
 
   void report_unknown(const Expr& expr) {
-    std::vector<std::string_view> known = known_names();
     std::vector<std::string> help;
     if (find_word(expr.name)) {
       help = {fmt::format("`{0}` is a function: {0}(...)", expr.name)};
-    } else {
-      help = {did_you_mean(expr.name, known)};
+    } else if (diagnostics_.errors() < kMostSuggestions) {
+      help = {did_you_mean(expr.name, known_names())};
     }
     diagnostics_.error("E0803", expr.span, fmt::format("unknown name `{}`", expr.name), "", std::move(help));
   }
@@ -221,6 +223,7 @@ class Resolver {
                        std::ranges::any_of(locals_, [&](const Local& local) { return local.name == expr.name; });
     std::vector<std::string_view> known = all_words();
     for (const Statement& statement : tree_.statements) {
+      if (diagnostics_.full()) break;
       if (statement.kind == Kind::Def) known.push_back(statement.name);
     }
     diagnostics_.error("E0804", expr.name_span, fmt::format("unknown function `{}`", expr.name), "",

@@ -19,7 +19,7 @@ struct ReadText {
 std::optional<ReadText> read(const Source& source, const Definitions& definitions, const Limits& limits,
                              bool keep_formulas, Diagnostics& diagnostics) {
   diagnostics.set_notation(Notation::Text);
-  if (!check_text(source, diagnostics)) return std::nullopt;
+  if (!check_text(source, diagnostics) || !text::check_tokens(source, limits, diagnostics)) return std::nullopt;
   text::Tree tree = text::parse(source, diagnostics, limits);
   if (diagnostics.has_errors()) return std::nullopt;
   // What is wrong with names and values does not hide what is wrong with the rest.

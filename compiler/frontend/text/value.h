@@ -94,7 +94,6 @@ struct Node {
 };
 
 struct Store {
-  std::deque<std::string> texts;
   std::deque<List> lists;
   std::deque<Record> records;
   std::deque<Node> nodes;
