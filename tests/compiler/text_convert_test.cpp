@@ -7,6 +7,7 @@
 #include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
 #include "compiler/frontend/read_scene.h"
+#include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/print.h"
 #include "compiler/frontend/text/read_text.h"
 #include "compiler/frontend/write_json.h"
@@ -69,6 +70,22 @@ TEST_CASE("text: the project's scenes come back as they were, and are one scene 
     ++scenes;
   }
   CHECK(scenes > 20);
+}
+
+TEST_CASE("text: the project's texts are one scene as JSON", "[text]") {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".fathom") continue;
+    const Source text(entry.path().string(), tests::read_file(entry.path()));
+    CAPTURE(entry.path().string());
+    Diagnostics diagnostics;
+    const auto kept = read_text_with_formulas(text, {}, diagnostics);
+    REQUIRE(kept);
+    CHECK(digest_of(Source("a.json", write_json(kept->file))) == digest_of(text));
+    CHECK(text::format_text(text) == text.text());
+    ++scenes;
+  }
+  CHECK(scenes >= 2);
 }
 
 }  // namespace

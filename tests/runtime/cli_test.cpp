@@ -74,7 +74,7 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
 TEST_CASE("cli: the scenes that come with the program have no errors and no warnings but one", "[heavy]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
-    if (entry.path().extension() != ".json") continue;
+    if (entry.path().extension() != ".json" && entry.path().extension() != ".fathom") continue;
     const Result result = Folder().run("check '" + entry.path().string() + "'");
     INFO(entry.path());
     CHECK(result.code == 0);

@@ -26,7 +26,8 @@ constexpr std::size_t kValues = kColumns * kRows * 3;
 std::vector<fs::path> scene_files() {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "scenes")) {
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+    const fs::path& path = entry.path();
+    if (path.extension() == ".json" || path.extension() == ".fathom") files.push_back(path);
   }
   std::sort(files.begin(), files.end());
   return files;
