@@ -1,0 +1,64 @@
+// Expressions of a text, by recursive descent (frontend/text/parser.h).
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "compiler/frontend/text/token_cursor.h"
+#include "compiler/frontend/text/tree.h"
+#include "compiler/limits.h"
+
+namespace fathom::compiler::text {
+
+struct Operator;
+
+// Functions return nullptr after they reported what is wrong.
+class ExpressionParser : public TokenCursor {
+ public:
+  ExpressionParser(const Source& source, Diagnostics& diagnostics, const Limits& limits)
+      : TokenCursor(source, diagnostics), limits_(limits) {}
+
+ protected:
+  Expr* expression();
+  Expr* record();
+
+  Tree tree_;
+
+ private:
+  Expr* make(Expr::Kind kind, Span span, std::vector<Expr*> of = {});
+  static Span join(Span a, Span b);
+  Expr* bounded(Expr* made);
+  std::nullptr_t too_deep(Span span);
+  Expr* choice();
+  Expr* choice(Span begin, Expr* condition);
+  Expr* bindings();
+  Expr* fold();
+  Expr* operation(int least);
+  Expr* missing_operator(Expr* left);
+  Expr* pair(Expr* left, const Operator& row);
+  Expr* gather(Expr* first, int precedence);
+  bool is_clear(const std::vector<Joint>& joints);
+  Expr* blend();
+  bool add(Expr& to, Argument argument);
+  bool close(Expr& made, std::string_view bracket);
+  Expr* sign();
+  Expr* inner_sign();
+  Expr* postfix();
+  Expr* member(Expr* of);
+  bool call(Expr& made);
+  Expr* primary();
+  bool is_field() const;
+  Expr* number();
+  Expr* word();
+  Expr* group();
+  Expr* list();
+  Expr* item();
+  Expr* spread();
+  Expr* loop();
+  Expr* guard();
+
+  const Limits& limits_;
+  double depth_ = 0;  // of what is being read
+};
+
+}  // namespace fathom::compiler::text
