@@ -1,5 +1,6 @@
-// The evaluator's class, whose parts are in evaluate.cpp (expressions), arithmetic.cpp (operators) and calls.cpp
-// (functions). An error ends the statement it is in, by an exception that does not leave evaluate().
+// The evaluator's class, whose parts are in evaluate.cpp (expressions), arithmetic.cpp (operators), calls.cpp
+// (functions), values.cpp and spelling.cpp. An error ends the statement it is in, by an exception that does not leave
+// evaluate().
 #pragma once
 
 #include <span>
@@ -89,7 +90,7 @@ class Evaluator {
   void freeze(const Value& value, Span span);
   const Spelling* spelling_of(const Value& value);
 
-  // Values.
+  // values.cpp
   Span here(Span span) const { return {span.begin, span.end, trace_}; }
   Value number(double value, Span span) const;
   Value truth(bool value, Span span) const;
