@@ -1,10 +1,16 @@
-// fathom schema: the JSON Schema of scene files, for editors that complete and check while one types.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// fathom schema: what editors want to know of scene files: the JSON Schema, and the words of the notation.
+// Tested by: tests/runtime/cli_dump_test.cpp, tests/runtime/cli_editor_test.cpp
 #include "compiler/frontend/schema.h"
 
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
 #include <ostream>
 
 #include "runtime/cli/arguments.h"
+#include "runtime/cli/editor_files.h"
+#include "runtime/cli/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
@@ -12,15 +18,47 @@ namespace {
 
 constexpr const char* kSchemaExamples =
     "fathom schema > scene.schema.json\n"
+    "fathom schema --editor vim > ~/.vim/syntax/fathom.vim\n"
+    "fathom schema --editor vscode -o ~/.vscode/extensions/fathom\n"
     "\n"
-    "A scene names it in its first property: \"$schema\": \"./scene.schema.json\"";
+    "A JSON scene names its schema in its first property: \"$schema\": \"./scene.schema.json\"";
+
+ExitCode write_extension(const std::string& folder, const Streams& streams) {
+  for (const EditorFile& file : vscode_extension()) {
+    const std::filesystem::path path = std::filesystem::path(folder) / file.path;
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    if (error) return fail(streams, kIo, fmt::format("cannot make {}: {}", quoted(folder), error.message()));
+    if (const auto problem = write_text(file.text, path.string())) return fail(streams, kIo, *problem);
+  }
+  say(streams, fmt::format("wrote {}", folder));
+  return kDone;
+}
 
 }  // namespace
 
 int run_schema(std::span<const std::string> args, const Streams& streams) {
-  Arguments arguments("schema", "Prints the JSON Schema (draft 2020-12) of scene files.", kSchemaExamples);
+  int editor = 0;
+  std::optional<std::string> output;
+  Arguments arguments("schema", "Prints the JSON Schema (draft 2020-12) of scene files, or what an editor reads.",
+                      kSchemaExamples);
+  arguments.option("--editor", "NAME",
+                   "Print in its place how texts are coloured: vim, or vscode, an extension with a problem matcher",
+                   one_of({"none", "vim", "vscode"}, editor));
+  arguments.option("-o,--output", "PATH", "File to write (standard output); with --editor vscode a folder",
+                   any_text(output));
   if (const auto code = arguments.parse(args, streams)) return *code;
-  streams.out << compiler::scene_schema();
+  if (editor == 2) {
+    if (!output) return fail(streams, kUsage, "--editor vscode writes a folder: -o names it");
+    return write_extension(*output, streams);
+  }
+  const std::string text = editor == 1 ? vim_syntax() : compiler::scene_schema();
+  if (!output) {
+    streams.out << text;
+    return kDone;
+  }
+  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
+  say(streams, fmt::format("wrote {}", *output));
   return kDone;
 }
 
