@@ -61,7 +61,7 @@ int run_fmt(std::span<const std::string> args, const Streams& streams) {
   compiler::Limits limits;
   bool write = false, check = false;
   Arguments arguments("fmt", "Lays out scenes in Fathom's own notation.", kFmtExamples);
-  arguments.positionals("scene", "Scene file that begins with `fathom 1`; - is standard input", paths);
+  arguments.positionals("file", "Scene that begins with `fathom 1`; - is standard input", paths);
   arguments.flag("-w,--write", "Write the files that change", write);
   arguments.flag("--check", "Write nothing, and end with 1 when a file would change", check);
   add_limit_option(arguments, limits);

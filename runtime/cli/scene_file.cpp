@@ -171,7 +171,7 @@ bool about_definitions(const compiler::Diagnostics& diagnostics) {
 namespace {
 
 constexpr const char* kAboutScene =
-    "Scene file: JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input";
+    "Scene file: text or JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input";
 
 void add_scene_options(Arguments& arguments, SceneArguments& scene) {
   arguments.option("-D,--define", "NAME=VALUE",

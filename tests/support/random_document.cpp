@@ -57,7 +57,7 @@ class Drawer {
   // Names of parameters are those of formulas.
   Value params() {
     RecordMaker record{Span{}};
-    for (const char* name : {"r", "t1", "gap", "diffuse", "ball"}) {
+    for (const char* name : {"r", "t1", "gap", "diffuse", "ball", "for", "in"}) {
       if (!record.empty() && random_.chance(0.5)) continue;
       if (random_.chance(0.5)) {
         record.add(name, finite());

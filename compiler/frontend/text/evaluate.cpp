@@ -183,13 +183,12 @@ Value Evaluator::evaluate_name(const Expr& expr) {
     }
     case Reference::Kind::Global: {
       const Statement& statement = tree_.statements[expr.reference.number];
-      if (statement.kind == Statement::Kind::Param) {
-        out_.parameters.use(statement.label.empty() ? std::string_view(statement.name) : statement.label);
-      }
+      const std::string_view label = statement.label.empty() ? statement.name : std::string_view(statement.label);
+      if (statement.kind == Statement::Kind::Param) out_.parameters.use(label);
       if (!out_.values[expr.reference.number]) throw Failure();
       Value value = *out_.values[expr.reference.number];
       if (is_number(value)) value.span = here(expr.span);
-      if (statement.kind == Statement::Kind::Param) spell_name(value, statement.name, true);
+      if (statement.kind == Statement::Kind::Param) spell_name(value, label, true);
       return value;
     }
     case Reference::Kind::Coordinate: {
