@@ -87,34 +87,68 @@ std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t r
   return out.size() <= room ? std::optional(std::move(out)) : std::nullopt;
 }
 
-void write(const syntax::Value& value, std::size_t indent, std::size_t used, std::string& out) {
-  if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
-    return write(as_strings(**formula, value.span), indent, used, out);
-  }
-  const std::size_t room = kWidestLine - std::min(kWidestLine, indent + used);
-  // The file itself is easier to read in lines.
-  const auto line = indent == 0 ? std::nullopt : on_one_line(value, room);
-  if (line || is_scalar(value)) {
-    out += line ? *line : scalar(value);
-    return;
-  }
-  out += is_record(value) ? "{\n" : "[\n";
-  for (std::size_t i = 0; i < parts(value); ++i) {
-    out.append(indent + 2, ' ');
-    const std::string name = lead(value, i);
-    out += name;
-    write(part(value, i), indent + 2, name.size() + 1, out);
-    out += i + 1 < parts(value) ? ",\n" : "\n";
-  }
-  out.append(indent, ' ');
-  out += is_record(value) ? '}' : ']';
+// Where part i begins in the source.
+std::uint32_t place_of_part(const syntax::Value& value, std::size_t i) {
+  const auto* record = std::get_if<syntax::Record>(&value.data);
+  return record ? record->properties[i].name_span.begin : part(value, i).span.begin;
 }
+
+class JsonWriter {
+ public:
+  explicit JsonWriter(JsonComments comments) : comments_(std::move(comments)) {}
+
+  void write(const syntax::Value& value, std::size_t indent, std::size_t used, std::string& out) {
+    if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
+      return write(as_strings(**formula, value.span), indent, used, out);
+    }
+    const std::size_t room = kWidestLine - std::min(kWidestLine, indent + used);
+    // The file itself is easier to read in lines.
+    const auto line = indent == 0 || is_commented(value, indent) ? std::nullopt : on_one_line(value, room);
+    if (line || is_scalar(value)) {
+      out += line ? *line : scalar(value);
+      return;
+    }
+    out += is_record(value) ? "{\n" : "[\n";
+    for (std::size_t i = 0; i < parts(value); ++i) {
+      if (indent <= kDeepestComment) write_comments(place_of_part(value, i), indent + 2, out);
+      out.append(indent + 2, ' ');
+      const std::string name = lead(value, i);
+      out += name;
+      write(part(value, i), indent + 2, name.size() + 1, out);
+      out += i + 1 < parts(value) ? ",\n" : "\n";
+    }
+    out.append(indent, ' ');
+    out += is_record(value) ? '}' : ']';
+  }
+
+ private:
+  static constexpr std::size_t kDeepestComment = 2;  // columns: of the tables of the scene
+
+  bool is_commented(const syntax::Value& value, std::size_t indent) const {
+    if (indent > kDeepestComment || comments_.empty()) return false;
+    for (std::size_t i = 0; i < parts(value); ++i) {
+      if (comments_.contains(place_of_part(value, i))) return true;
+    }
+    return false;
+  }
+
+  void write_comments(std::uint32_t place, std::size_t indent, std::string& out) {
+    const auto [first, last] = comments_.equal_range(place);
+    for (auto comment = first; comment != last; ++comment) {
+      out.append(indent, ' ');
+      out += comment->second + "\n";
+    }
+    comments_.erase(first, last);
+  }
+
+  JsonComments comments_;  // still to be written
+};
 
 }  // namespace
 
-std::string write_json(const syntax::File& file) {
+std::string write_json(const syntax::File& file, const JsonComments& comments) {
   std::string out;
-  write(file.root, 0, 0, out);
+  JsonWriter(comments).write(file.root, 0, 0, out);
   return out + "\n";
 }
 

@@ -2,12 +2,18 @@
 // Tested by: tests/compiler/nested_nodes_test.cpp, tests/compiler/expression_list_test.cpp
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 
 #include "compiler/frontend/syntax.h"
 
 namespace fathom::compiler {
 
-std::string write_json(const syntax::File& file);
+// Comments with their marks, by where the property or the element of a list that each stands before begins in the
+// source: of the scene's own properties and of what its tables and lists hold.
+using JsonComments = std::multimap<std::uint32_t, std::string>;
+
+std::string write_json(const syntax::File& file, const JsonComments& comments = {});
 
 }  // namespace fathom::compiler

@@ -64,7 +64,7 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   if (compiler::is_text_scene(source.text())) {
     const auto kept = compiler::read_text_with_formulas(source, scene_arguments.limits, ignored);
     note_frozen(kept->frozen, source, streams);
-    text = compiler::write_json(kept->file);
+    text = compiler::write_json(kept->file, compiler::comments_of_text(source, kept->file));
   } else {
     const auto scene = compiler::read_scene(source, ignored, scene_arguments.limits);
     text = compiler::text::print_text(scene->file, source);

@@ -44,7 +44,8 @@ TEST_CASE("cli: convert goes from JSON to text and back") {
   CHECK(folder.read("a.fathom") ==
         "fathom 1\n\n// A ball.\nparam r = 0.5\n\nbackground [1, 1, 1]  // white\n\nobject \"a ball\" sphere(2*r)\n");
   CHECK(folder.run("convert a.fathom").out ==
-        "{\n  \"version\": 1,\n  \"params\": {\"r\": 0.5},\n  \"background\": [1, 1, 1],\n"
+        "{\n  \"version\": 1,\n  \"params\": {\n    // A ball.\n    \"r\": 0.5\n  },\n  // white\n"
+        "  \"background\": [1, 1, 1],\n"
         "  \"objects\": [{\"type\": \"sphere\", \"radius\": \"2*r\", \"name\": \"a ball\"}]\n}\n");
   folder.write("posts.fathom", kPosts);
   const Result posts = folder.run("convert posts.fathom");

@@ -1,5 +1,8 @@
 #include "compiler/frontend/text/read_text.h"
 
+#include <iterator>
+#include <set>
+
 #include "compiler/frontend/json_error.h"
 #include "compiler/frontend/text/emit.h"
 #include "compiler/frontend/text/evaluate.h"
@@ -42,6 +45,31 @@ std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& sour
   std::optional<ReadText> made = read(source, definitions, limits, false, diagnostics);
   if (!made) return std::nullopt;
   return std::pair(std::move(made->file), std::move(made->evaluated.parameters));
+}
+
+JsonComments comments_of_text(const Source& source, const syntax::File& file) {
+  std::set<std::uint32_t> places;  // that can have comments
+  for (const syntax::Property& property : std::get<syntax::Record>(file.root.data).properties) {
+    if (property.name_span.end > 0) places.insert(property.name_span.begin);
+    if (property.name == "objects") {
+      for (const syntax::Value& part : std::get<syntax::List>(property.value->data)) places.insert(part.span.begin);
+    }
+    const auto* record = std::get_if<syntax::Record>(&property.value->data);
+    for (std::size_t i = 0; record && i < record->properties.size(); ++i) {
+      places.insert(record->properties[i].name_span.begin);
+    }
+  }
+  places.erase(0);
+  JsonComments comments;
+  Diagnostics none;
+  for (const text::Comment& comment : text::read_tokens(source, none).comments) {
+    const auto next = places.lower_bound(comment.span.begin);
+    if (places.empty()) break;
+    const bool beside = !comment.first_on_line && next != places.begin();
+    const auto at = beside || next == places.end() ? std::prev(next) : next;
+    comments.emplace(*at, source.text().substr(comment.span.begin, comment.span.end - comment.span.begin));
+  }
+  return comments;
 }
 
 std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,

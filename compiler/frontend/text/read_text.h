@@ -15,6 +15,7 @@
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/frontend/write_json.h"
 #include "compiler/limits.h"
 
 namespace fathom::compiler {
@@ -26,6 +27,9 @@ bool is_text_scene(std::string_view text);
 // other errors it is what is left of the scene.
 std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
                                                               const Limits& limits, Diagnostics& diagnostics);
+
+// The text's comments, by what of the scene each stands before or beside; those of functions before what comes next.
+JsonComments comments_of_text(const Source& source, const syntax::File& file);
 
 // A text whose numbers are formulas of its parameters where they can be, and where they cannot.
 struct KeptScene {
