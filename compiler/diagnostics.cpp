@@ -185,7 +185,9 @@ bool Diagnostics::is_known(const std::string& code, Span span) const {
 std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& source) const {
   constexpr std::size_t kMostCalls = 8;
   std::vector<std::string> lines;
-  for (std::uint32_t number = d.span.trace; number > 0; number = traces_[number - 1].outside) {
+  // A span may come from what another collection of diagnostics was made with.
+  for (std::uint32_t number = d.span.trace; number > 0 && number <= traces_.size();
+       number = traces_[number - 1].outside) {
     if (lines.size() == kMostCalls) {
       lines.emplace_back("and more calls around these");
       break;

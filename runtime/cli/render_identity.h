@@ -13,7 +13,7 @@ namespace fathom::cli {
 
 // The version of what the renderer makes of a scene: films of another are of another render. Raised by whoever
 // changes a bit of a picture; tests/runtime/renderer_bits_test.cpp fails until it is.
-inline constexpr int kRendererBits = 7;
+inline constexpr int kRendererBits = 8;
 
 // Digests in hexadecimal: of all that the scene was compiled to, but for its film and settings; of its programs.
 std::string scene_hash(const compiler::CompiledScene& scene);
