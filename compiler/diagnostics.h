@@ -40,7 +40,7 @@ struct Trace {
   double value;  // of the loop's variable; not a number when it is none
 };
 
-// What the source is written in, which remedies are worded for.
+// Notation of the source; remedies are worded for it.
 enum class Notation { Json, Text };
 
 enum class ErrorFormat { Text, Short, Json };

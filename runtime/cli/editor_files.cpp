@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "compiler/frontend/text/lexer.h"
 #include "compiler/frontend/text/vocabulary.h"
 
 namespace fathom::cli {
@@ -12,10 +13,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kStatements[] = {"fathom", "param", "let",    "def",    "object",
-                                            "light",  "camera", "film", "render", "background"};
-constexpr std::string_view kWords[] = {"in", "if", "then", "else", "for", "fold"};
-constexpr std::string_view kValues[] = {"true", "false", "pi", "e", "tau", "x", "y", "z"};
+using compiler::text::kReservedWords, compiler::text::kStatementWords;
+
+constexpr std::string_view kValues[] = {"pi", "e", "tau", "x", "y", "z"};
 
 constexpr std::string_view kNumber = R"((\d+(\.(?!\.)\d*)?|\.\d+)([eE][+-]?\d+)?)";
 
@@ -34,9 +34,9 @@ Json grammar() {
                       {"begin", "\""},
                       {"end", "\"|$"},
                       {"patterns", Json::array({rule("constant.character.escape.fathom", "\\\\.")})}});
-  patterns.push_back(rule("keyword.other.statement.fathom", fmt::format("^({})\\b", alternatives(kStatements))));
   patterns.push_back(
-      rule("keyword.control.fathom", fmt::format("\\b({}|let)\\b", alternatives(kWords))));
+      rule("keyword.other.statement.fathom", fmt::format("^(fathom|{})\\b", alternatives(kStatementWords))));
+  patterns.push_back(rule("keyword.control.fathom", fmt::format("\\b({})\\b", alternatives(kReservedWords))));
   patterns.push_back(rule("support.function.fathom",
                           fmt::format("\\b({})(?=\\s*\\()", alternatives(compiler::text::all_words()))));
   patterns.push_back(rule("entity.name.function.fathom", "\\b[A-Za-z_]\\w*(?=\\()"));
@@ -91,8 +91,8 @@ std::string vim_syntax() {
   std::string out =
       "\" Vim syntax of Fathom's scenes, written by `fathom schema --editor vim`.\n"
       "if exists(\"b:current_syntax\")\n  finish\nendif\n\n";
-  out += fmt::format("syn match fathomStatement /^\\({}\\)\\>/\n", fmt::join(kStatements, "\\|"));
-  out += fmt::format("syn keyword fathomKeyword let {}\n", fmt::join(kWords, " "));
+  out += fmt::format("syn match fathomStatement /^\\(fathom\\|{}\\)\\>/\n", fmt::join(kStatementWords, "\\|"));
+  out += fmt::format("syn keyword fathomKeyword {}\n", fmt::join(kReservedWords, " "));
   out += fmt::format("syn keyword fathomConstant {}\n", fmt::join(kValues, " "));
   // No keywords: a value may have the name of a function.
   for (const std::string_view word : compiler::text::all_words()) {

@@ -80,7 +80,7 @@ Value Evaluator::formula_of_pair(char mark, const Value& a, const Value& b, Span
   return formula(out_.store.formulas.call(function_of(mark), arguments, here(span)), span);
 }
 
-// Of two vectors, or of a vector and a number.
+// Operation on two vectors, or on a vector and a number.
 Value Evaluator::elementwise(char mark, const Value& a, const Value& b, Span span) {
   const std::size_t count = a.is(Type::List) ? a.list->of.size() : b.list->of.size();
   if (a.is(Type::List) && b.is(Type::List) && b.list->of.size() != count) {

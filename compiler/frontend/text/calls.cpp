@@ -62,7 +62,7 @@ Value Evaluator::call(const Expr& expr) {
   return word.formula ? call_formula(expr, arguments) : call_builtin(expr, arguments);
 }
 
-// Those without a name.
+// Arguments without a name.
 std::vector<Value> Evaluator::positional_arguments(const Expr& expr) {
   std::vector<Value> values;
   for (const Argument& argument : expr.arguments) {

@@ -57,7 +57,7 @@ class Emitter {
     std::unordered_map<std::string, int> next;
   };
 
-  // Those of the file itself are as they are written; others make room.
+  // Names of the file stay as written; generated names avoid them.
   void reserve_names() {
     for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
       const Statement& statement = tree_.statements[i];

@@ -16,7 +16,7 @@
 
 namespace fathom::compiler::text {
 
-// What the statements came to.
+// Values of the statements.
 struct Evaluated {
   Store store;
   std::vector<std::optional<Value>> values;  // [statement] nothing of a function, and after an error

@@ -11,10 +11,6 @@ namespace {
 
 constexpr std::size_t kIndentation = 2;  // columns
 
-constexpr std::string_view kWords[] = {"let", "in", "if", "then", "else", "for", "fold"};
-constexpr std::string_view kOpeners[] = {"param", "let",    "def",    "object",    "light",
-                                         "camera", "film", "render", "background"};
-
 // A token or a comment, in the order of the text.
 struct Item {
   const Token* token;  // nullptr of a comment
@@ -120,8 +116,10 @@ class Formatter {
   bool ends_value(const Token& token) const {
     if (token.kind == Token::Kind::Mark) return token.is(")") || token.is("]");
     if (token.kind != Token::Kind::Name) return true;
-    const bool word = std::ranges::find(kWords, token.text) != std::end(kWords);
-    const bool opener = &token == begins_statement_ && std::ranges::find(kOpeners, token.text) != std::end(kOpeners);
+    const bool value = token.text == "true" || token.text == "false";
+    const bool word = !value && std::ranges::find(kReservedWords, token.text) != std::end(kReservedWords);
+    const bool opener =
+        &token == begins_statement_ && std::ranges::find(kStatementWords, token.text) != std::end(kStatementWords);
     return !word && !opener;
   }
 

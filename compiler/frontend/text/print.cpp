@@ -13,6 +13,7 @@
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_lexer.h"
 #include "compiler/frontend/formula_text.h"
+#include "compiler/frontend/text/token_cursor.h"
 #include "compiler/frontend/text/vocabulary.h"
 
 namespace fathom::compiler::text {
@@ -25,9 +26,9 @@ using SyntaxValue = syntax::Value;
 constexpr std::size_t kWidestText = 120;  // columns of a line, where there is a choice
 constexpr std::size_t kMostOperands = 8;  // of a row; longer ones are calls
 
-// Words that no name can be.
-const std::set<std::string_view> kNoNames = {"let", "in", "if", "then", "else", "for", "fold", "true", "false",
-                                             "x",   "y",  "z",  "pi",   "e",    "tau"};
+bool is_no_name(std::string_view word) {
+  return is_reserved(word) || word == "x" || word == "y" || word == "z" || formula_constant(word);
+}
 
 struct InfixWord {
   std::string_view type;
@@ -112,7 +113,7 @@ class TextPrinter {
       if (fits || (!name.empty() && name.back() != '_')) name += fits ? c : '_';
     }
     if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "_" + name;
-    if (kNoNames.contains(name)) name += "_";
+    if (is_no_name(name)) name += "_";
     std::string candidate = name;
     for (int i = 2; !taken_.insert(candidate).second; ++i) candidate = fmt::format("{}_{}", name, i);
     return candidate;

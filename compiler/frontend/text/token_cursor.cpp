@@ -8,8 +8,7 @@
 namespace fathom::compiler::text {
 
 bool is_reserved(std::string_view word) {
-  constexpr std::string_view kReserved[] = {"let", "in", "if", "then", "else", "for", "fold", "true", "false"};
-  return std::ranges::find(kReserved, word) != std::end(kReserved);
+  return std::ranges::find(kReservedWords, word) != std::end(kReservedWords);
 }
 
 TokenCursor::TokenCursor(const Source& source, Diagnostics& diagnostics)
