@@ -295,7 +295,9 @@ bool has_work(const Pass& pass, const Scene& scene) {
 }
 
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
-  std::optional<ReadScene> read = read_scene(source, diagnostics, options.limits, options.definitions);
+  std::optional<ReadScene> read =
+      read_scene(source, diagnostics, options.limits, options.definitions, options.imports);
+  if (options.on_source) options.on_source(source);
   if (!read) return std::nullopt;
   if (options.stage && wants_stage(*read)) {
     CompileOptions bare;

@@ -25,12 +25,17 @@ struct CompileOptions {
   Limits limits;
   // Values for the scene's parameters in place of its own.
   Definitions definitions;
+  // Reads the files that the scene imports; without it only those that its source has are found.
+  ImportReader imports;
   // Warn of what is sound but surely not meant, or dear (compiler/lints.h).
   bool lint = false;
   // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
   bool lint_picture = false;
   // A model from elsewhere gets a ground, a lamp and a camera that has it in the picture (compiler/frontend/stage.h).
   bool stage = false;
+  // Called with the source and the files that it imports, in which the spans of all diagnostics are; also when it is
+  // not understood.
+  std::function<void(const Source& source)> on_source;
   // Called with what the front end read, its stage with it.
   std::function<void(const ReadScene& scene)> on_syntax;
 };

@@ -103,14 +103,15 @@ std::string print_text(const Diagnostic& d, const std::vector<std::string>& call
     out += fmt::format("{}{}-->{} {}\n", margin, s.gutter, s.off, shown(source.name()));
     margin += ' ';
   } else {
+    const Source& file = source.file(d.span.begin);
     const Position at = source.locate(d.span.begin);
-    const std::uint32_t start = static_cast<std::uint32_t>(source.line(at.line).data() - source.text().data());
-    const auto [line, carets] = quote(source.line(at.line), start, d.span);
+    const std::uint32_t start =
+        file.base() + static_cast<std::uint32_t>(file.line(at.line).data() - file.text().data());
+    const auto [line, carets] = quote(file.line(at.line), start, d.span);
     const std::string number = std::to_string(at.line);
     margin = std::string(number.size() + 2, ' ');
     const std::string_view severity = d.severity == Severity::Error ? s.error : s.warning;
-    out += fmt::format("{}{}-->{} {}:{}:{}\n", margin.substr(1), s.gutter, s.off, shown(source.name()), at.line,
-                       at.column);
+    out += fmt::format("{}{}-->{} {}\n", margin.substr(1), s.gutter, s.off, shown(source.place(d.span.begin)));
     out += fmt::format("{}{}|{}\n", margin, s.gutter, s.off);
     out += fmt::format("{} {} |{}{}{}\n", s.gutter, number, s.off, line.empty() ? "" : " ", line);
     out += fmt::format("{}{}|{} {}{}{}{}{}\n", margin, s.gutter, s.off, severity, carets, d.label.empty() ? "" : " ",
@@ -124,10 +125,8 @@ std::string print_text(const Diagnostic& d, const std::vector<std::string>& call
 }
 
 std::string print_short(const Diagnostic& d, const Source& source) {
-  const std::string name = shown(source.name());
-  if (nowhere(d.span)) return fmt::format("{}: {}: {} [{}]\n", name, word(d.severity), d.message, d.code);
-  const Position at = source.locate(d.span.begin);
-  return fmt::format("{}:{}:{}: {}: {} [{}]\n", name, at.line, at.column, word(d.severity), d.message, d.code);
+  const std::string place = nowhere(d.span) ? source.name() : source.place(d.span.begin);
+  return fmt::format("{}: {}: {} [{}]\n", shown(place), word(d.severity), d.message, d.code);
 }
 
 std::string json_line(const nlohmann::ordered_json& json) {
@@ -135,16 +134,19 @@ std::string json_line(const nlohmann::ordered_json& json) {
 }
 
 std::string print_json(const Diagnostic& d, const std::vector<std::string>& calls, const Source& source) {
-  nlohmann::ordered_json json = {
-      {"severity", word(d.severity)}, {"code", d.code}, {"message", d.message}, {"file", source.name()}};
+  nlohmann::ordered_json json = {{"severity", word(d.severity)},
+                                 {"code", d.code},
+                                 {"message", d.message},
+                                 {"file", source.file(d.span.begin).name()}};
   if (!nowhere(d.span)) {
     const Position begin = source.locate(d.span.begin), end = source.locate(d.span.end);
+    const std::uint32_t base = source.file(d.span.begin).base();
     json["line"] = begin.line;
     json["column"] = begin.column;
     json["end_line"] = end.line;
     json["end_column"] = end.column;
-    json["begin_byte"] = d.span.begin;
-    json["end_byte"] = d.span.end;
+    json["begin_byte"] = d.span.begin - base;
+    json["end_byte"] = d.span.end - base;
   }
   json["label"] = d.label;
   json["help"] = d.help;
@@ -193,9 +195,8 @@ std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& s
       break;
     }
     const Trace& trace = traces_[number - 1];
-    const Position at = source.locate(trace.at.begin);
-    const std::string name = source.text().substr(trace.name.begin, trace.name.end - trace.name.begin);
-    const std::string place = fmt::format("{}:{}:{}", shown(source.name()), at.line, at.column);
+    const std::string_view name = source.excerpt(trace.name);
+    const std::string place = shown(source.place(trace.at.begin));
     lines.push_back(!trace.loop ? fmt::format("in `{}`, called at {}", name, place)
                     : std::isnan(trace.value)
                         ? fmt::format("in the loop over `{}` at {}", name, place)
@@ -214,6 +215,13 @@ void Diagnostics::warning(std::string code, Span span, std::string message, std:
                           std::vector<std::string> help) {
   if (++warnings_ > kMostKept || is_known(code, span)) return;
   add({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
+}
+
+void Diagnostics::append(const Diagnostics& of_text, std::uint32_t base) {
+  for (const Diagnostic& d : of_text.all_) {
+    if (d.severity == Severity::Warning) continue;
+    error(d.code, {d.span.begin + base, d.span.end + base}, d.message, d.label, d.help);
+  }
 }
 
 std::string Diagnostics::print(const Source& source, ErrorFormat format, bool color) const {

@@ -58,6 +58,9 @@ class Diagnostics {
     return notation_ == Notation::Json ? std::move(json) : std::move(text);
   }
 
+  // Adds the errors of a text that stands at `base` among the source's, without their calls.
+  void append(const Diagnostics& of_text, std::uint32_t base);
+
   // The number by which spans name it.
   std::uint32_t add_trace(const Trace& trace) {
     traces_.push_back(trace);

@@ -87,6 +87,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0807", "a value of the wrong kind"},
     {"E0808", "a condition that varies with x, y and z"},
     {"E0809", "a range of fractions"},
+    {"E0810", "a file that cannot be imported"},
     {"E0811", "what a scene requires does not hold"},
     {"E0812", "a line that goes on with a statement and is not indented"},
     {"E0813", "operators that need parentheses"},

@@ -45,8 +45,7 @@ std::string print_origin(const Origin& origin, const Source& source, bool place)
   std::string out;
   if (!origin.name.empty()) out += fmt::format(" \"{}\"", origin.name);
   if (place && origin.span.end > 0) {
-    const Position at = source.locate(origin.span.begin);
-    out += fmt::format(" {}:{}:{}", source.name(), at.line, at.column);
+    out += ' ' + source.place(origin.span.begin);
   }
   return out.empty() ? out : ";" + out;
 }
@@ -60,7 +59,7 @@ class PlaceNames {
     std::string name(spec(kind).name);
     if (origin.span.end > 0) {
       const Position at = source_.locate(origin.span.begin);
-      name += fmt::format("@{}:{}", at.line, at.column);
+      name += fmt::format("@{}:{}{}", at.line, at.column, source_.in_import(origin.span.begin));
     }
     const int count = ++counts_[name];
     return count == 1 ? name : fmt::format("{}.{}", name, count);

@@ -61,7 +61,9 @@ GraphJson params_json(const Graph& graph, NodeId id) {
 GraphJson source_json(const Origin& origin, const Source& source) {
   if (origin.span.end == 0) return nullptr;
   const Position at = source.locate(origin.span.begin);
-  return {{"line", at.line}, {"column", at.column}};
+  GraphJson json = {{"line", at.line}, {"column", at.column}};
+  if (const Source& file = source.file(origin.span.begin); &file != &source) json["file"] = file.name();
+  return json;
 }
 
 GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const Knowledge& known, const Source& source) {
@@ -88,7 +90,9 @@ std::vector<std::string> label(const Graph& graph, NodeId id, const Source& sour
     for (const double number : param.values) numbers += fmt::format(" {:.6g}", number);
     lines.push_back(fmt::format("{}{}", param.name, numbers));
   }
-  if (origin.span.end > 0) lines.push_back(fmt::format("line {}", source.locate(origin.span.begin).line));
+  if (origin.span.end > 0)
+    lines.push_back(
+        fmt::format("line {}{}", source.locate(origin.span.begin).line, source.in_import(origin.span.begin)));
   return lines;
 }
 

@@ -345,6 +345,7 @@ class Lowering {
     }
     entry.symbol = std::string(spec(graph_.kind(node)).name);
     if (!origin.name.empty()) entry.symbol += fmt::format(" \"{}\"", origin.name);
+    entry.symbol += source_.in_import(origin.span.begin);
     program_.append(instruction.opcode, instruction.operand, instruction.immediates, std::move(entry));
   }
 

@@ -107,7 +107,8 @@ Span span_of(const Scene& scene, const Source& source, const NanPlace& place) {
   for (NodeId id = 0; id <= scene.root; ++id) {
     const Span span = scene.graph.origin(id).span;
     const Position at = source.locate(span.begin);
-    if (span.end > 0 && at.line == place.line && at.column == place.column) return span;
+    const bool there = span.end > 0 && at.line == place.line && at.column == place.column;
+    if (there && place.operation.ends_with(source.in_import(span.begin))) return span;
   }
   return scene.graph.origin(scene.root).span;
 }

@@ -1,5 +1,7 @@
 #include "compiler/source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -24,20 +26,67 @@ Source::Source(std::string name, std::string text) : name_(std::move(name)), tex
   }
 }
 
+const Source& Source::import(std::string path, std::string name, std::string text, bool derived) {
+  auto file = std::make_shared<Source>(std::move(name), std::move(text));
+  file->base_ = static_cast<std::uint32_t>(size());
+  imports_.push_back({std::move(path), std::move(file), derived});
+  return *imports_.back().file;
+}
+
+// A byte between files, so that the end of one is not the begin of the next.
+std::uint64_t Source::size() const {
+  const Source& last = imports_.empty() ? *this : *imports_.back().file;
+  return std::uint64_t{last.base_} + last.text_.size() + 1;
+}
+
+Source Source::renamed(std::string name) const {
+  Source same = *this;
+  same.name_ = std::move(name);
+  return same;
+}
+
+const Import* Source::find(std::uint32_t offset) const {
+  const auto after = std::upper_bound(imports_.begin(), imports_.end(), offset,
+                                      [](std::uint32_t at, const Import& import) { return at < import.file->base_; });
+  return after == imports_.begin() ? nullptr : &*std::prev(after);
+}
+
+const Source& Source::file(std::uint32_t offset) const {
+  const Import* import = find(offset);
+  return import ? *import->file : *this;
+}
+
+std::string Source::in_import(std::uint32_t offset) const {
+  const Import* import = find(offset);
+  return import ? " in " + import->path : "";
+}
+
 Position Source::locate(std::uint32_t offset) const {
+  if (const Source& other = file(offset); &other != this) return other.locate(offset);
   if (line_starts_.empty()) return {1, 1};
-  offset = std::min(offset, static_cast<std::uint32_t>(text_.size()));
-  const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), offset);
+  const std::uint32_t at = std::min(offset - base_, static_cast<std::uint32_t>(text_.size()));
+  const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), at);
   const std::uint32_t start = *(after - 1);
-  const std::uint32_t before = offset - start < kStride ? count_code_points(start, offset)
-                                                        : code_points_before(offset) - code_points_before(start);
+  const std::uint32_t before =
+      at - start < kStride ? count_code_points(start, at) : code_points_before(at) - code_points_before(start);
   return {static_cast<std::uint32_t>(after - line_starts_.begin()), before + 1};
 }
 
-std::uint32_t Source::code_points_before(std::uint32_t offset) const {
+std::string Source::place(std::uint32_t offset) const {
+  const Position at = locate(offset);
+  return fmt::format("{}:{}:{}", file(offset).name(), at.line, at.column);
+}
+
+std::string_view Source::excerpt(Span span) const {
+  const Source& in = file(span.begin);
+  const std::size_t begin = std::min<std::size_t>(span.begin - in.base_, in.text_.size());
+  return std::string_view(in.text_).substr(begin, span.end - span.begin);
+}
+
+std::uint32_t Source::code_points_before(std::uint32_t at) const {
   if (code_points_.empty()) return 0;
-  const std::size_t stride = std::min(offset / kStride, code_points_.size() - 1);
-  return code_points_[stride] + count_code_points(static_cast<std::uint32_t>(stride * kStride), offset);
+  const std::size_t stride = std::min(at / kStride, code_points_.size() - 1);
+  return code_points_[stride] + count_code_points(static_cast<std::uint32_t>(stride * kStride), at);
 }
 
 std::uint32_t Source::count_code_points(std::uint32_t from, std::uint32_t to) const {

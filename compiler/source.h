@@ -1,14 +1,15 @@
-// Source text with a name, and places in it.
+// Source text with a name, places in it, and the files that it imports.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace fathom::compiler {
 
-// Bytes [begin, end) of a source's text. {0, 0} stands for "nowhere in particular".
+// Bytes [begin, end) of a source and its imports, one after the other. {0, 0} stands for "nowhere in particular".
 struct Span {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
@@ -20,6 +21,8 @@ struct Position {
   std::uint32_t column;  // 1-based, in code points
 };
 
+struct Import;
+
 class Source {
  public:
   Source() = default;
@@ -27,16 +30,42 @@ class Source {
 
   const std::string& name() const { return name_; }
   const std::string& text() const { return text_; }
+  std::uint32_t base() const { return base_; }  // offset of the text's first byte; 0 except in imports
+
+  // Adds a file that it imports.
+  const Source& import(std::string path, std::string name, std::string text, bool derived = false);
+  const std::vector<Import>& imports() const { return imports_; }
+  // Bytes of it and its imports.
+  std::uint64_t size() const;
+
+  // The same text and imports by another name.
+  Source renamed(std::string name) const;
+
+  // The file of an offset: this one, or an import.
+  const Source& file(std::uint32_t offset) const;
+  // Places and lines within the offset's file.
   Position locate(std::uint32_t offset) const;
-  std::string_view line(std::uint32_t number) const;  // without its line break; empty past the end
+  std::string place(std::uint32_t offset) const;      // scene.json:3:14
+  std::string in_import(std::uint32_t offset) const;  // " in lib/gears.fathom"; empty within this file
+  std::string_view excerpt(Span span) const;
+  std::string_view line(std::uint32_t number) const;  // of this file, without its line break; empty past the end
 
  private:
-  std::string name_, text_;
-  std::uint32_t code_points_before(std::uint32_t offset) const;
+  const Import* find(std::uint32_t offset) const;  // nullptr within this file
+  std::uint32_t code_points_before(std::uint32_t at) const;
   std::uint32_t count_code_points(std::uint32_t from, std::uint32_t to) const;
 
+  std::string name_, text_;
+  std::uint32_t base_ = 0;
+  std::vector<Import> imports_;  // by base
   std::vector<std::uint32_t> line_starts_;
   std::vector<std::uint32_t> code_points_;  // before every kStride-th byte: positions in long lines cost no more
+};
+
+struct Import {
+  std::string path;  // from the folder of the source, as `lib/gears.fathom`
+  std::shared_ptr<const Source> file;
+  bool derived;  // no file has this text: it was made from that of another import
 };
 
 }  // namespace fathom::compiler

@@ -1,11 +1,17 @@
 #include "runtime/file_watch.h"
 
+#include <algorithm>
 #include <system_error>
 
 namespace fathom::runtime {
 
 FileWatch::FileWatch(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) files_.push_back({path, stamp_of(path)});
+  for (const std::string& path : paths) files_.push_back({path, stamp_of(path), true});
+}
+
+void FileWatch::add(const std::string& path) {
+  if (std::ranges::find(files_, path, &Watched::path) == files_.end())
+    files_.push_back({path, stamp_of(path), false});
 }
 
 std::optional<FileWatch::Stamp> FileWatch::stamp_of(const std::string& path) {
@@ -19,8 +25,8 @@ FileWatch::Look FileWatch::look() {
   Look result;
   for (Watched& file : files_) {
     const std::optional<Stamp> now = stamp_of(file.path);
-    result.away |= !now;
-    if (!now || now == file.seen) continue;
+    result.away |= !now && file.is_needed;
+    if ((!now && file.is_needed) || now == file.seen) continue;
     file.seen = now;
     result.other = true;
   }

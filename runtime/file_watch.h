@@ -20,6 +20,9 @@ class FileWatch {
  public:
   explicit FileWatch(const std::vector<std::string>& paths);
 
+  // Watches one more file, which may be away for good; nothing when it is watched.
+  void add(const std::string& path);
+
   // A look: whether one of the files is another than when a change settled last (the first time, than at the
   // beginning), if only for a while. One that is away, as while an editor saves, has not changed until it is back.
   bool changed();
@@ -36,6 +39,7 @@ class FileWatch {
   struct Watched {
     std::string path;
     std::optional<Stamp> seen;
+    bool is_needed;  // nothing is settled while it is away
   };
   // What a look finds: whether files are others than at the look before, and whether one is away.
   struct Look {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "compiler/artefact/byte_archive.h"
@@ -17,6 +18,8 @@ namespace fathom::compiler {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::uint64_t kMostText = 1 << 30;  // bytes of a scene and its imports, whose places have 32 bits
 
 // In the order they lie in the file.
 enum Section { kCode, kTables, kDebug, kText, kSections };
@@ -70,6 +73,12 @@ Bytes write_text(const Source& source, const Definitions& definitions) {
     out.f64(value);
   }
   out.text(source.text());
+  const std::vector<Import> imports = files_of(source);
+  out.u32(static_cast<std::uint32_t>(imports.size()));
+  for (const Import& import : imports) {
+    out.text(import.path);
+    out.text(import.file->text());
+  }
   return out.take();
 }
 
@@ -151,12 +160,31 @@ bool read_text(std::span<const std::uint8_t> bytes, CompiledFile& file) {
     file.definitions.emplace_back(std::move(parameter), in.f64());
   }
   std::string content = in.text(in.left());
-  if (in.failed() || in.left() > 0 || content.empty() || name != file_name(name)) return false;
+  if (in.failed() || content.empty() || name != file_name(name)) return false;
   file.text = Source(std::move(name), std::move(content));
-  return true;
+  for (std::size_t left = in.count(8); left > 0; --left) {
+    const std::string path = in.text(in.left());
+    if (!add_import(*file.text, path, in.text(in.left()))) return false;
+  }
+  return !in.failed() && in.left() == 0;
 }
 
 }  // namespace
+
+std::vector<Import> files_of(const Source& source) {
+  std::vector<Import> files;
+  std::ranges::copy_if(source.imports(), std::back_inserter(files), [](const Import& i) { return !i.derived; });
+  return files;
+}
+
+bool add_import(Source& source, const std::string& path, std::string text) {
+  const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
+  const bool known = std::ranges::find(source.imports(), path, &Import::path) != source.imports().end();
+  if (path.empty() || normal.is_absolute() || normal.generic_string() != path || known) return false;
+  if (source.size() + text.size() > kMostText) return false;
+  source.import(path, path, std::move(text));
+  return true;
+}
 
 // By the first bytes, which no text begins with; the rest of the magic shows what happened to the file since.
 bool is_compiled_file(std::string_view bytes) {
@@ -228,7 +256,12 @@ std::variant<CompiledScene, FileError> read_file(const CompiledFile& file, const
 }
 
 Source beside(const Source& text, const std::string& path) {
-  return Source((std::filesystem::path(path).parent_path() / text.name()).string(), text.text());
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  Source there((folder / text.name()).string(), text.text());
+  for (const Import& import : files_of(text)) {
+    there.import(import.path, (folder / import.path).lexically_normal().string(), import.file->text());
+  }
+  return there;
 }
 
 vm::Digest scene_digest(const CompiledScene& scene) {

@@ -28,7 +28,7 @@
 namespace fathom::compiler {
 
 inline constexpr std::array<std::uint8_t, 8> kFileMagic = {0x89, 'F', 'B', 'C', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kFileVersion = 2;
+inline constexpr std::uint32_t kFileVersion = 3;
 
 // What a file holds beside programs and tables.
 struct FileContents {
@@ -47,7 +47,7 @@ struct FileError {
 struct CompiledFile {
   vm::Digest opcodes;  // of the table the programs were made for
   std::span<const std::uint8_t> code, tables, debug;
-  std::optional<Source> text;  // under its file's name, without folders
+  std::optional<Source> text;  // under its file's name, without folders, with what it imports
   Definitions definitions;     // with which it was compiled
 };
 
@@ -59,6 +59,11 @@ std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileConte
 // What the sections say, as if its text lay beside the file, `path`; `bound`, `lipschitz` and their like are claims.
 // Refused when the programs are of another table of opcodes.
 [[nodiscard]] std::variant<CompiledScene, FileError> read_file(const CompiledFile& file, const std::string& path);
+
+// The files that a scene imports, without texts that were made of others.
+std::vector<Import> files_of(const Source& source);
+// Adds one as a compiled file or a listing has it; false when no import has such a path.
+[[nodiscard]] bool add_import(Source& source, const std::string& path, std::string text);
 
 // The text as if it lay beside the file, `path`.
 Source beside(const Source& text, const std::string& path);

@@ -58,7 +58,7 @@ class ListingReader {
     if (const auto fault = check_tags(scene)) return refuse_tag(bodies_[fault->program], *fault);
     contents.text = text_found_;
     contents.definitions = std::move(definitions_);
-    if (text_found_) scene.source = Source(std::move(text_name_), std::move(scene_text_));
+    if (text_found_ && !set_source(scene)) return std::nullopt;
     place_picture(scene);
     return scene;
   }
@@ -81,6 +81,15 @@ class ListingReader {
   }
 
  private:
+  bool set_source(CompiledScene& scene) {
+    scene.source = Source(std::move(text_name_), std::move(texts_[0].text));
+    for (std::size_t i = 1; i < texts_.size(); ++i) {
+      if (add_import(scene.source, texts_[i].path, std::move(texts_[i].text))) continue;
+      return report(texts_[i].place, fmt::format("`{}` is no path of an import, or here twice", texts_[i].path));
+    }
+    return true;
+  }
+
   // As many as the tags of a program alone name.
   bool name_surfaces(CompiledScene& scene) {
     constexpr std::size_t kMostSurfaces = 65536;
@@ -211,14 +220,32 @@ class ListingReader {
         at = line_end + 1;
         continue;
       }
-      if (text_found_) scene_text_ += '\n';
-      if (!line.starts_with('|') || !vm::unescape(line.substr(1), scene_text_)) {
+      if (line.starts_with("import ") && text_found_) {
+        if (!read_import(at, line_end)) return false;
+        at = line_end + 1;
+        continue;
+      }
+      if (!text_found_) texts_.push_back({"", "", {}});
+      FileText& file = texts_.back();
+      if (!file.empty) file.text += '\n';
+      if (!line.starts_with('|') || !vm::unescape(line.substr(1), file.text)) {
         return report(span(at, line_end), "a line of the text begins with |, and a backslash in it is written \\\\");
       }
-      text_found_ = true;
+      text_found_ = true, file.empty = false;
       at = line_end + 1;
     }
     return true;
+  }
+
+  // import "lib/gears.fathom", before its lines
+  bool read_import(std::size_t begin, std::size_t end) {
+    TextArchiveReader in(std::string_view(text_).substr(0, end));
+    in.skip_to(begin);
+    in.expect("import");
+    FileText& file = texts_.emplace_back();
+    file.place = span(begin, end);
+    in.text(file.path);
+    return in.failed() ? report(span(in.fault_begin(), in.fault_end()), in.reason()) : true;
   }
 
   // define "r" 0.5
@@ -257,7 +284,13 @@ class ListingReader {
   std::size_t programs_begin_ = 0;
   std::vector<Span> bodies_;  // [program]
   bool text_found_ = false;
-  std::string text_name_, scene_text_;
+  std::string text_name_;
+  struct FileText {
+    std::string path, text;
+    Span place;
+    bool empty = true;  // no line of it was read
+  };
+  std::vector<FileText> texts_;  // the scene's own, then its imports
   Definitions definitions_;
 };
 
@@ -277,7 +310,11 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
   for (const auto& [name, value] : contents.definitions) {
     out += fmt::format("define {} {}\n", vm::quote(name), value);
   }
-  return out + barred(scene.source.text());
+  out += barred(scene.source.text());
+  for (const Import& import : files_of(scene.source)) {
+    out += fmt::format("import {}\n{}", vm::quote(import.path), barred(import.file->text()));
+  }
+  return out;
 }
 
 std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents) {

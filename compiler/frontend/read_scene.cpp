@@ -4,15 +4,36 @@
 
 #include <utility>
 
+#include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/expression_list.h"
 #include "compiler/frontend/json.h"
 #include "compiler/frontend/nested_nodes.h"
-#include "compiler/frontend/text/read_text.h"
+#include "compiler/frontend/text/print.h"
 
 namespace fathom::compiler {
 
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits,
-                                    const Definitions& definitions) {
+namespace {
+
+// A scene of another format as text. It is checked by itself, so that what is wrong with it is said of its own lines.
+TextMaker text_maker(const Limits& limits) {
+  return [&limits](const Source& scene, Diagnostics& diagnostics) -> std::optional<std::string> {
+    Source source = scene;
+    const std::optional<ReadScene> read = read_scene(source, diagnostics, limits);
+    if (read) elaborate(read->file, diagnostics, {}, limits);
+    if (diagnostics.has_errors()) return std::nullopt;
+    return text::print_text(read->file, source);
+  };
+}
+
+}  // namespace
+
+std::optional<KeptScene> read_kept(Source& source, Diagnostics& diagnostics, const Limits& limits,
+                                   const ImportReader& imports) {
+  return read_text_with_formulas(source, limits, diagnostics, {imports, text_maker(limits)});
+}
+
+std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, const Limits& limits,
+                                    const Definitions& definitions, const ImportReader& imports) {
   const auto size = static_cast<double>(source.text().size());
   if (size > limits.file_size) {
     diagnostics.error("E0008", {},
@@ -21,7 +42,7 @@ std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnosti
     return std::nullopt;
   }
   if (is_text_scene(source.text())) {
-    auto read = read_text_scene(source, definitions, limits, diagnostics);
+    auto read = read_text_scene(source, definitions, limits, diagnostics, {imports, text_maker(limits)});
     if (!read) return std::nullopt;
     return ReadScene{SceneFormat::Text, std::move(read->first), std::move(read->second)};
   }

@@ -7,6 +7,7 @@
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/frontend/text/read_text.h"
 #include "compiler/limits.h"
 
 namespace fathom::compiler {
@@ -19,8 +20,12 @@ struct ReadScene {
   std::optional<Scope> parameters = {};  // of a text, which is read with their values
 };
 
-// nullopt after reporting an error.
-std::optional<ReadScene> read_scene(const Source& source, Diagnostics& diagnostics, const Limits& limits = {},
-                                    const Definitions& definitions = {});
+// nullopt after reporting an error. What a text imports is added to the source.
+std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
+                                    const Definitions& definitions = {}, const ImportReader& imports = {});
+
+// A text as a JSON scene that keeps its parameters (frontend/text/read_text.h).
+std::optional<KeptScene> read_kept(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
+                                   const ImportReader& imports = {});
 
 }  // namespace fathom::compiler

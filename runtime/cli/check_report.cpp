@@ -43,15 +43,14 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 // `twist "column" at scene.json:6:5`.
 std::string text(const Place& place, const compiler::Source& source) {
   if (place.span.end == 0) return describe(place);
-  const compiler::Position at = source.locate(place.span.begin);
-  return fmt::format("{} at {}:{}:{}", describe(place), source.name(), at.line, at.column);
+  return fmt::format("{} at {}", describe(place), source.place(place.span.begin));
 }
 
 ReportJson json(const Place& place, const compiler::Source& source) {
   ReportJson json = {{"type", place.type}, {"name", place.name}};
   if (place.span.end == 0) return json;
   const compiler::Position at = source.locate(place.span.begin);
-  json["file"] = source.name();
+  json["file"] = source.file(place.span.begin).name();
   json["line"] = at.line;
   json["column"] = at.column;
   return json;
@@ -103,15 +102,13 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
 // The text at a span, its beginning when it is long.
 std::string excerpt(compiler::Span span, const compiler::Source& source) {
   constexpr std::size_t kMost = 60;
-  std::string written = source.text().substr(span.begin, span.end - span.begin);
+  std::string written(source.excerpt(span));
   return written.size() > kMost ? written.substr(0, kMost) + "..." : written;
 }
 
 // `  no bound on the slope of `floor(x)` at scene.json:4:70`.
 std::string describe_operation(compiler::Span span, const compiler::Source& source) {
-  const compiler::Position at = source.locate(span.begin);
-  return fmt::format("  no bound on the slope of `{}` at {}:{}:{}\n", excerpt(span, source), source.name(), at.line,
-                     at.column);
+  return fmt::format("  no bound on the slope of `{}` at {}\n", excerpt(span, source), source.place(span.begin));
 }
 
 std::string certificate(const compiler::Report& report, const compiler::Source& source) {

@@ -7,8 +7,8 @@
 
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/text/print.h"
-#include "compiler/frontend/text/read_text.h"
 #include "compiler/frontend/write_json.h"
+#include "runtime/cli/import_files.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
@@ -27,8 +27,7 @@ constexpr const char* kConvertExamples =
 void note_frozen(const std::vector<compiler::Span>& frozen, const compiler::Source& source, const Streams& streams) {
   std::vector<std::string> places;
   for (const compiler::Span span : frozen) {
-    const compiler::Position at = source.locate(span.begin);
-    const std::string place = fmt::format("{}:{}", at.line, at.column);
+    const std::string place = source.place(span.begin);
     if (std::ranges::find(places, place) == places.end()) places.push_back(place);
   }
   if (places.empty()) return;
@@ -56,26 +55,21 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   }
   auto read = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
-  const compiler::Source& source = std::get<SceneText>(read).source;
+  compiler::Source& source = std::get<SceneText>(read).source;
   const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   compiler::Diagnostics ignored;  // compiling it read it without any
   std::string text;
   if (compiler::is_text_scene(source.text())) {
-    const auto kept = compiler::read_text_with_formulas(source, scene_arguments.limits, ignored);
+    const auto kept =
+        compiler::read_kept(source, ignored, scene_arguments.limits, import_reader(scene_arguments, streams));
     note_frozen(kept->frozen, source, streams);
     text = compiler::write_json(kept->file, compiler::comments_of_text(source, kept->file));
   } else {
     const auto scene = compiler::read_scene(source, ignored, scene_arguments.limits);
     text = compiler::text::print_text(scene->file, source);
   }
-  if (!output) {
-    streams.out << text;
-    return kDone;
-  }
-  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
-  say(streams, fmt::format("wrote {}", *output));
-  return kDone;
+  return put_text(text, output, streams);
 }
 
 }  // namespace fathom::cli

@@ -7,6 +7,7 @@
 
 #include "compiler/frontend/stage.h"
 #include "compiler/frontend/write_json.h"
+#include "runtime/cli/import_files.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
@@ -47,14 +48,15 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   }
   auto read = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
-  const auto& [source, compiled_file] = std::get<SceneText>(read);
+  auto& [source, compiled_file] = std::get<SceneText>(read);
   if (compiled_file && !scene_arguments.definitions.empty()) {
     note(streams, "the text says nothing of the values that -D gave to parameters");
   }
   const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   compiler::Diagnostics ignored;  // compiling it read it without any
-  std::optional<compiler::ReadScene> model = compiler::read_scene(source, ignored, scene_arguments.limits);
+  std::optional<compiler::ReadScene> model =
+      compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments, streams));
   const bool foreign =
       model && model->format != compiler::SceneFormat::Scene && model->format != compiler::SceneFormat::Text;
   if (!foreign && !compiled_file) {
@@ -66,13 +68,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
     text = fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) +
            compiler::write_json(model->file);
   }
-  if (!output) {
-    streams.out << text;
-    return kDone;
-  }
-  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
-  say(streams, fmt::format("wrote {}", *output));
-  return kDone;
+  return put_text(text, output, streams);
 }
 
 }  // namespace fathom::cli

@@ -132,6 +132,16 @@ std::optional<std::string> write_text(const std::string& text, const std::string
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
+ExitCode put_text(const std::string& text, const std::optional<std::string>& output, const Streams& streams) {
+  if (!output) {
+    streams.out << text;
+    return kDone;
+  }
+  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
+  say(streams, fmt::format("wrote {}", *output));
+  return kDone;
+}
+
 std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
                                            const Streams& streams) {
   const double side = std::max(width, height), pixels = width * height;

@@ -59,6 +59,8 @@ bool is_special(const std::string& path);  // whether something other than a reg
 std::optional<std::string> check_text_path(const std::string& path);
 // The reason why it was not written; what was there before is as it was.
 [[nodiscard]] std::optional<std::string> write_text(const std::string& text, const std::string& path);
+// The text to the file that -o names, which is said, or to standard output where there is none.
+ExitCode put_text(const std::string& text, const std::optional<std::string>& output, const Streams& streams);
 
 // An ExitCode, after a message, when a picture of that size would be too large.
 std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,

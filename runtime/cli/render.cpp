@@ -95,7 +95,7 @@ std::optional<ExitCode> check_outputs(const RenderRequest& request, const Stream
   return std::nullopt;
 }
 
-// For --watch: the scene's file, and whether the render under way is no longer of it.
+// For --watch: the scene's file and what it imports, and whether the render under way is no longer of it.
 struct Watching {
   runtime::FileWatch files;
   std::atomic<bool> changed = false;
@@ -339,6 +339,7 @@ bool asks_for_checkpoint(std::span<const std::string> args) {
 ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching,
                      std::optional<Interruption>& interruption) {
   RenderRequest request = asked;
+  if (watching) request.scene.on_import = [watching](const std::string& path) { watching->files.add(path); };
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   Verbosity verbosity(request.verbosity, streams);

@@ -14,6 +14,7 @@
 
 #include "compiler/artefact/programs.h"
 #include "compiler/frontend/formula.h"
+#include "runtime/cli/import_files.h"
 #include "runtime/cli/memory.h"
 #include "runtime/cli/verbosity.h"
 #include "vm/printable.h"
@@ -145,7 +146,7 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
 compiler::Source named(const compiler::Source& source, const std::string& path) {
   const std::string name = source_name(path);
   if (path.empty() || source.name() == name) return source;
-  return compiler::Source(fmt::format("{} ({})", name, source.name()), source.text());
+  return source.renamed(fmt::format("{} ({})", name, source.name()));
 }
 
 void print(const compiler::Diagnostics& diagnostics, const compiler::Source& source, const SceneArguments& arguments,
@@ -177,6 +178,8 @@ void add_scene_options(Arguments& arguments, SceneArguments& scene) {
   arguments.option("-D,--define", "NAME=VALUE",
                    "Set a parameter of the scene to a number or a formula, as r=0.5 or angle=pi/4",
                    append_to(read_definition, scene.definitions));
+  arguments.option("--root", "DIR", "Folder that the scene may import files from (the scene's own)",
+                   any_text(scene.root));
   add_limit_option(arguments, scene.limits);
   arguments.option("--error-format", "FORMAT", "Format of errors and warnings: text (default), short or json",
                    one_of({"text", "short", "json"}, scene.error_format));
@@ -288,6 +291,10 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
       watch(pass, graph);
     };
   }
+  if (!input.stored) options.imports = import_reader(arguments, streams);
+  options.on_source = [&](const compiler::Source& whole) {
+    if (!whole.imports().empty()) input.source = whole;
+  };
   auto scene = compiler::compile(input.source, diagnostics, options);
   if (scene && arguments.inspect) arguments.inspect(*scene, diagnostics);
   if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);

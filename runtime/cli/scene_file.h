@@ -19,7 +19,10 @@ struct SceneArguments {
   int error_format = 0;               // a compiler::ErrorFormat
   compiler::Definitions definitions;  // values for the scene's parameters
   compiler::Limits limits;
+  std::optional<std::string> root = std::nullopt;  // of the files that the scene may import; its folder
   bool count_warnings = false;  // say how many there are, even where there is no error
+  // Called with the path of each file that the scene imports, before it is read.
+  std::function<void(const std::string& path)> on_import = nullptr;
   // Adds warnings that only the renderer's own tables tell.
   std::function<void(const compiler::CompiledScene&, compiler::Diagnostics&)> inspect = nullptr;
 };

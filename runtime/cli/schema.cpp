@@ -53,13 +53,7 @@ int run_schema(std::span<const std::string> args, const Streams& streams) {
     return write_extension(*output, streams);
   }
   const std::string text = editor == 1 ? vim_syntax() : compiler::scene_schema();
-  if (!output) {
-    streams.out << text;
-    return kDone;
-  }
-  if (const auto problem = write_text(text, *output)) return fail(streams, kIo, *problem);
-  say(streams, fmt::format("wrote {}", *output));
-  return kDone;
+  return put_text(text, output, streams);
 }
 
 }  // namespace fathom::cli

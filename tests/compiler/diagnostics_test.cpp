@@ -18,6 +18,7 @@
 #include "compiler/error_codes.h"
 #include "compiler/frontend/text/read_text.h"
 #include "tests/support/golden.h"
+#include "tests/support/import_folder.h"
 
 namespace fathom::diagnostics_test {
 
@@ -40,9 +41,9 @@ Definitions definitions_in(const std::string& scene) {
 }
 
 // Of a scene, or of a listing, which opens with its head or a comment of its own kind.
-Diagnostics diagnose(const Source& source) {
+Diagnostics diagnose(Source& source) {
   Diagnostics diagnostics;
-  if (source.text().starts_with("fathom 2") || source.text().starts_with(";")) {
+  if (source.text().starts_with("fathom 3") || source.text().starts_with(";")) {
     FileContents contents;
     read_listing(source, diagnostics, contents);
     return diagnostics;
@@ -50,15 +51,19 @@ Diagnostics diagnose(const Source& source) {
   CompileOptions options;
   options.definitions = definitions_in(source.text());
   options.lint = true;
+  options.imports = tests::imports_from(fs::path(FATHOM_SOURCE_DIR) / "tests/golden/imports");
+  options.on_source = [&](const Source& whole) {
+    if (!whole.imports().empty()) source = whole;
+  };
   compile(source, diagnostics, options);
   return diagnostics;
 }
 
 TEST_CASE("golden diagnostics", "[diagnostics]") {
   check_golden("diagnostics", [](const std::string& input) {
-    const Source source(is_text_scene(input) && !input.starts_with("fathom 2") ? "scene.fathom" : "scene.json",
-                        input);
-    return diagnose(source).print(source, ErrorFormat::Text);
+    Source source(is_text_scene(input) && !input.starts_with("fathom 3") ? "scene.fathom" : "scene.json", input);
+    const Diagnostics diagnostics = diagnose(source);
+    return diagnostics.print(source, ErrorFormat::Text);
   });
 }
 
@@ -97,7 +102,7 @@ TEST_CASE("codes are unique, and those in the compiler's sources are in the tabl
 }
 
 TEST_CASE("short and JSON formats", "[diagnostics]") {
-  const Source source("toy.json", "{\"version\": 1,\n \"objects\": [{\"name\": \"ü\", \"type\": \"spehre\"}]}");
+  Source source("toy.json", "{\"version\": 1,\n \"objects\": [{\"name\": \"ü\", \"type\": \"spehre\"}]}");
   const Diagnostics diagnostics = diagnose(source);
   CHECK(diagnostics.print(source, ErrorFormat::Short) ==
         "toy.json:2:36: error: unknown type of node `spehre` [E0201]\n");
@@ -115,7 +120,7 @@ TEST_CASE("short and JSON formats", "[diagnostics]") {
 }
 
 TEST_CASE("colour changes nothing but escape sequences", "[diagnostics]") {
-  const Source source("toy.json", "{\"version\": 3}");
+  Source source("toy.json", "{\"version\": 3}");
   const Diagnostics diagnostics = diagnose(source);
   const std::string colored = diagnostics.print(source, ErrorFormat::Text, true);
   std::string stripped;
@@ -163,7 +168,7 @@ TEST_CASE("of names as long as the file a message, its label and its help show t
 }
 
 TEST_CASE("twenty errors are printed and the rest counted, in every format", "[diagnostics]") {
-  const Source source("toy.json", "x");
+  Source source("toy.json", "x");
   Diagnostics diagnostics;
   for (int i = 0; i < 21; ++i) diagnostics.error("E0102", {0, 1}, "message");
   const std::string text = diagnostics.print(source, ErrorFormat::Text);

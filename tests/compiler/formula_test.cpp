@@ -33,9 +33,9 @@ Formula read(const Value& value) {
 
 // The same in a text's notation.
 void check_in_text(const std::string& expression, const Formula& expected) {
-  const Source source("a.fathom", fmt::format("fathom 1\nparam r = 0.5\nparam n = 3\nlet unused = r*n\n"
-                                              "object expression({})\n",
-                                              expression));
+  Source source("a.fathom", fmt::format("fathom 1\nparam r = 0.5\nparam n = 3\nlet unused = r*n\n"
+                                        "object expression({})\n",
+                                        expression));
   Diagnostics diagnostics;
   const auto scene = read_text_scene(source, {}, {}, diagnostics);
   INFO(diagnostics.print(source, ErrorFormat::Text));

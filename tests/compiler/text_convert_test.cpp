@@ -13,6 +13,7 @@
 #include "compiler/frontend/write_json.h"
 #include "tests/support/effort.h"
 #include "tests/support/golden.h"
+#include "tests/support/import_folder.h"
 #include "tests/support/random_document.h"
 
 namespace fathom::text_convert_test {
@@ -25,7 +26,7 @@ using fathom::test::canonical;
 // What JSON comes to by way of text.
 std::string there_and_back(const syntax::File& file, const std::string& json) {
   const std::string text = text::print_text(file, Source("a.json", json));
-  const Source source("a.fathom", text);
+  Source source("a.fathom", text);
   Diagnostics diagnostics;
   const auto kept = read_text_with_formulas(source, {}, diagnostics);
   INFO(text);
@@ -59,7 +60,7 @@ TEST_CASE("text: the project's scenes come back as they were, and are one scene 
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
-    const Source json(entry.path().string(), tests::read_file(entry.path()));
+    Source json(entry.path().string(), tests::read_file(entry.path()));
     CAPTURE(entry.path().string());
     Diagnostics diagnostics;
     const auto read = read_scene(json, diagnostics);
@@ -76,10 +77,10 @@ TEST_CASE("text: the project's texts are one scene as JSON", "[text]") {
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".fathom") continue;
-    const Source text(entry.path().string(), tests::read_file(entry.path()));
+    Source text(entry.path().string(), tests::read_file(entry.path()));
     CAPTURE(entry.path().string());
     Diagnostics diagnostics;
-    const auto kept = read_text_with_formulas(text, {}, diagnostics);
+    const auto kept = read_kept(text, diagnostics, {}, tests::imports_from(entry.path().parent_path()));
     REQUIRE(kept);
     CHECK(digest_of(Source("a.json", write_json(kept->file))) == digest_of(text));
     CHECK(text::format_text(text) == text.text());

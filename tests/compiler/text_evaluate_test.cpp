@@ -17,7 +17,7 @@ using namespace fathom::compiler;
 
 // The scene as JSON without its head; `definitions` are -D's.
 std::string scene_of(const std::string& text, const Definitions& definitions = {}) {
-  const Source source("a.fathom", "fathom 1\n" + text);
+  Source source("a.fathom", "fathom 1\n" + text);
   Diagnostics diagnostics;
   const auto read = read_text_scene(source, definitions, {}, diagnostics);
   INFO(diagnostics.print(source, ErrorFormat::Text));
@@ -111,7 +111,7 @@ TEST_CASE("text: doublings by functions are as many nodes", "[text]") {
 
 // A chain that was made by a loop is deeper than what reads scenes recurses.
 TEST_CASE("text: deep chains of nodes are named on the way", "[text]") {
-  const Source source("a.fathom", "fathom 1\nobject fold part = sphere(1) for i in 0..20000: part.onion(1/(i + 2))");
+  Source source("a.fathom", "fathom 1\nobject fold part = sphere(1) for i in 0..20000: part.onion(1/(i + 2))");
   Diagnostics diagnostics;
   CHECK(compile(source, diagnostics, {}).has_value());
 }
@@ -143,7 +143,7 @@ TEST_CASE("text: the JSON scene of a text is the same scene", "[text]") {
   };
   for (const char* const body : texts) {
     CAPTURE(body);
-    const Source text("a.fathom", std::string("fathom 1\n") + body);
+    Source text("a.fathom", std::string("fathom 1\n") + body);
     Diagnostics diagnostics;
     const auto kept = read_text_with_formulas(text, {}, diagnostics);
     REQUIRE(kept);

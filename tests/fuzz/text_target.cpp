@@ -1,11 +1,13 @@
-// Scenes in Fathom's own notation (compiler/frontend/text/read_text.h): what is read compiles or is an error, its
-// layout is kept by laying it out, and its JSON is the same scene.
+// Scenes in Fathom's own notation (compiler/frontend/text/read_text.h) and files that they import: what is read
+// compiles or is an error, its layout is kept by laying it out, and its JSON is the same scene.
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compiler/compile.h"
+#include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/parser.h"
-#include "compiler/frontend/text/read_text.h"
 #include "compiler/frontend/write_json.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/target.h"
@@ -23,6 +25,32 @@ constexpr const char* kFoldedFormulas =
     "object expression(let a = f let b = a*z in smoothstep(0, 1, a - b) - 1/3, half_size = [1, 1, 1])\n"
     "light \"sun\" directional(direction = [0, -1, 0])\nbackground sky(elevation = 30)\n";
 
+constexpr const char* kImports =
+    "fathom 1\nimport \"1\"(k = 2) as a\nimport \"2\" as b\nobject a.f(b.ball).material(a.red) + b.scene\n"
+    "%%\nfathom 1\nimport \"2\" as c\nparam k(max = 3) = 1\nlet red = diffuse(color = k/4)\n"
+    "def f(n) = n + c.ball.scale(k)\n%%\n{\"version\": 1, \"params\": {\"r\": 1}, \"nodes\": {\"ball\": {\"type\": "
+    "\"sphere\", \"radius\": \"r/2\"}}, \"objects\": [{\"use\": \"ball\"}]}\n";
+
+// An input's files, which lines of %% part: the scene, and those that it may import as "1", "2" ...
+std::vector<std::string> files_of(const std::string& text) {
+  constexpr std::string_view kMark = "\n%%\n";
+  std::vector<std::string> files;
+  for (std::size_t at = 0;;) {
+    const std::size_t end = text.find(kMark, at);
+    files.push_back(text.substr(at, end - at));
+    if (end == text.npos) return files;
+    at = end + kMark.size();
+  }
+}
+
+compiler::ImportReader reader_of(std::vector<std::string> files) {
+  return [files = std::move(files)](const std::string& path) -> std::variant<std::string, compiler::ImportFault> {
+    const bool known = path.size() == 1 && path[0] > '0' && path[0] < static_cast<char>('0' + files.size());
+    if (!known) return compiler::ImportFault{"no such file"};
+    return files[static_cast<std::size_t>(path[0] - '0')];
+  };
+}
+
 // A smaller world, for all of it to fit into the time of one input.
 compiler::Limits small_limits() {
   compiler::Limits limits;
@@ -33,11 +61,14 @@ compiler::Limits small_limits() {
 }  // namespace
 
 void run_text(Bytes input) {
-  const std::string text = to_text(input);
+  std::vector<std::string> files = files_of(to_text(input));
+  if (files.size() > 10) files.resize(10);
+  const std::string text = files[0];
+  const compiler::ImportReader imports = reader_of(std::move(files));
   check_scene(text);
-  const compiler::Source source("a.fathom", text);
+  compiler::Source source("a.fathom", text);
   compiler::Diagnostics diagnostics;
-  const auto read = compiler::read_text_scene(source, {}, small_limits(), diagnostics);
+  const auto read = compiler::read_scene(source, diagnostics, small_limits(), {}, imports);
   promise(read.has_value() || diagnostics.has_errors(), "a scene or an error");
   diagnostics.print(source, compiler::ErrorFormat::Text);
   compiler::Diagnostics syntax;
@@ -45,15 +76,15 @@ void run_text(Bytes input) {
   const std::string once = compiler::text::format_text(source);
   promise(syntax.has_errors() || compiler::text::format_text(compiler::Source("b.fathom", once)) == once,
           "what is laid out stays");
-  if (!read || diagnostics.has_errors()) return;
+  if (!read || diagnostics.has_errors() || read->format != compiler::SceneFormat::Text) return;
   compiler::Diagnostics none;
-  const auto kept = compiler::read_text_with_formulas(source, small_limits(), none);
+  const auto kept = compiler::read_kept(source, none, small_limits(), imports);
   promise(kept.has_value(), "what is read once is read again");
   check_scene(compiler::write_json(kept->file));
 }
 
 std::vector<Input> seeds_of_text() {
-  std::vector<Input> seeds = {to_input(kTextLoops), to_input(kFoldedFormulas)};
+  std::vector<Input> seeds = {to_input(kTextLoops), to_input(kFoldedFormulas), to_input(kImports)};
   for (Input& input : golden_inputs("E08")) seeds.push_back(std::move(input));
   return seeds;
 }

@@ -50,7 +50,7 @@ TEST_CASE("cli: convert goes from JSON to text and back") {
   folder.write("posts.fathom", kPosts);
   const Result posts = folder.run("convert posts.fathom");
   CHECK_THAT(posts.out, Contains("\"radius\": \"n/6\""));
-  CHECK_THAT(posts.err, Contains("parameters have their default at 5:29"));
+  CHECK_THAT(posts.err, Contains("parameters have their default at posts.fathom:5:29"));
   CHECK(folder.run("convert posts.fathom -D n=4").code == 2);
   CHECK(folder.run("convert a.json -o a.json").code == 2);
   folder.write("bad.fathom", "fathom 1\nobject sphere(\n");

@@ -59,7 +59,7 @@ class Emitter {
 
   // Names of the file stay as written; generated names avoid them.
   void reserve_names() {
-    for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
+    for (std::uint32_t i = 0; i < tree_.modules[0].end; ++i) {
       const Statement& statement = tree_.statements[i];
       const std::optional<Value>& value = evaluated_.values[i];
       if (statement.kind != StatementKind::Let || !value) continue;
@@ -86,7 +86,7 @@ class Emitter {
   }
 
   void collect() {
-    for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
+    for (std::uint32_t i = 0; i < tree_.modules[0].end; ++i) {
       const Statement& statement = tree_.statements[i];
       const std::optional<Value>& value = evaluated_.values[i];
       if (!value) continue;
@@ -156,7 +156,8 @@ class Emitter {
     RecordMaker root(Span{});
     root.add("version", 1.0);
     std::array<std::optional<syntax::Value>, 4> parts;
-    for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) add_part(tree_.statements[i], evaluated_.values[i], parts);
+    for (std::uint32_t i = 0; i < tree_.modules[0].end; ++i)
+      add_part(tree_.statements[i], evaluated_.values[i], parts);
     if (!params_.empty()) root.add("params", params_.take());
     constexpr std::string_view kParts[] = {"camera", "film", "render", "background"};
     for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "compiler/frontend/make_syntax.h"
 #include "compiler/frontend/text/evaluator.h"
 
 namespace fathom::compiler::text {
@@ -24,80 +24,6 @@ Evaluator::Evaluator(const Tree& tree, const Definitions& definitions, const Lim
       limits_(limits),
       keep_formulas_(keep_formulas),
       diagnostics_(diagnostics) {}
-
-Evaluated Evaluator::run(const std::vector<std::uint32_t>& order) {
-  out_.values.resize(tree_.statements.size());
-  out_.parameters = Scope(limits_);
-  for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) {
-    if (tree_.statements[i].kind == Statement::Kind::Param) run_statement(i);
-  }
-  check_definitions(definitions_, out_.parameters, diagnostics_);
-  for (const std::uint32_t number : order) {
-    const Statement::Kind kind = tree_.statements[number].kind;
-    if (kind != Statement::Kind::Param && kind != Statement::Kind::Def && !diagnostics_.full()) run_statement(number);
-  }
-  return std::move(out_);
-}
-
-void Evaluator::run_statement(std::uint32_t number) {
-  const Statement& statement = tree_.statements[number];
-  locals_.assign(statement.slots, {});
-  base_ = 0, depth_ = 0, trace_ = 0;
-  try {
-    Value value = statement.kind == Statement::Kind::Param ? run_parameter(statement) : evaluate(*statement.value);
-    if (statement.kind == Statement::Kind::Let) {
-      if (value.is(Type::Node) && statement.value->kind == Expr::Kind::Name) value = another_name(*value.node);
-      bind(value, statement.name);
-    }
-    out_.values[number] = statement.kind == Statement::Kind::Object ? object(statement, value) : value;
-  } catch (const Failure&) {
-    // Reported. What uses the name fails without a word.
-  }
-}
-
-// A node of its own that is the same node.
-Value Evaluator::another_name(const Node& of) {
-  Node made;
-  made.span = of.span, made.word_span = of.word_span;
-  made.of = {&of};
-  return node(std::move(made));
-}
-
-// A node, or a list of nodes where they are objects each.
-Value Evaluator::object(const Statement& statement, const Value& value) {
-  const auto as_node = [&](const Value& one) {
-    Value made = blank(Type::Node, one.span);
-    made.node = node_of(one, "an object");
-    return made;
-  };
-  if (!statement.is_spread) return as_node(value);
-  std::vector<Value> nodes;
-  for (const Value& one : list_of(value, "`...`").of) nodes.push_back(as_node(one));
-  return list(std::move(nodes), value.span);
-}
-
-// As if a JSON scene had it; its value is the command line's where that gives one.
-Value Evaluator::run_parameter(const Statement& statement) {
-  const auto constant_value = [&](const Expr& expr) {
-    const Value value = evaluate(expr);
-    if (value.is(Type::Text)) return make_value(value.span, *value.text);
-    const double known = constant(value, "a parameter");
-    out_.frozen.clear();  // it is written as a formula
-    return make_value(value.span, known);
-  };
-  syntax::Property property{statement.label.empty() ? std::string(statement.name) : statement.label,
-                            statement.name_span, nullptr};
-  RecordMaker record(statement.name_span);
-  record.add("default", constant_value(*statement.value));
-  const Value own = keep_formulas_ ? evaluate(*statement.value) : Value{};
-  for (const Argument& field : statement.fields) record.add(field.name, constant_value(*field.value));
-  property.value = std::make_unique<syntax::Value>(record.take());
-  const Scope::Entry& entry = read_parameter(property, definitions_, out_.parameters, diagnostics_);
-  if (entry.state != Scope::State::Known) throw Failure();
-  Value value = number(entry.parameter.value, statement.value->span);
-  value.spelling = own.spelling;
-  return value;
-}
 
 void Evaluator::take_step(Span span) {
   if (++steps_ <= limits_.steps) return;
@@ -184,11 +110,12 @@ Value Evaluator::evaluate_name(const Expr& expr) {
     case Reference::Kind::Global: {
       const Statement& statement = tree_.statements[expr.reference.number];
       const std::string_view label = statement.label.empty() ? statement.name : std::string_view(statement.label);
-      if (statement.kind == Statement::Kind::Param) out_.parameters.use(label);
+      const bool parameter = statement.kind == Statement::Kind::Param && statement.module == 0;
+      if (parameter) out_.parameters.use(label);
       if (!out_.values[expr.reference.number]) throw Failure();
       Value value = *out_.values[expr.reference.number];
       if (is_number(value)) value.span = here(expr.span);
-      if (statement.kind == Statement::Kind::Param) spell_name(value, label, true);
+      if (parameter) spell_name(value, label, true);
       return value;
     }
     case Reference::Kind::Coordinate: {
@@ -201,6 +128,8 @@ Value Evaluator::evaluate_name(const Expr& expr) {
       spell_name(value, expr.name, false);
       return value;
     }
+    case Reference::Kind::Objects:
+      return objects_of(expr.reference.number, expr.span);
     case Reference::Kind::Definition:
     case Reference::Kind::None:
       break;

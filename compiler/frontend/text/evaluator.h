@@ -1,6 +1,6 @@
-// The evaluator's class, whose parts are in evaluate.cpp (expressions), arithmetic.cpp (operators), calls.cpp
-// (functions), values.cpp and spelling.cpp. An error ends the statement it is in, by an exception that does not leave
-// evaluate().
+// The evaluator's class, whose parts are in statements.cpp, evaluate.cpp (expressions), arithmetic.cpp (operators),
+// calls.cpp (functions), values.cpp and spelling.cpp. An error ends the statement it is in, by an exception that does
+// not leave evaluate().
 #pragma once
 
 #include <span>
@@ -24,11 +24,16 @@ class Evaluator {
   using Type = Value::Type;
   using Values = std::span<const Value>;
 
-  // evaluate.cpp
+  // statements.cpp
   void run_statement(std::uint32_t number);
   Value run_parameter(const Statement& statement);
+  Value run_import(const Statement& statement);
+  const Value* given_value(const Statement& parameter);
+  Value objects_of(std::uint32_t module, Span span);
   Value another_name(const Node& of);
   Value object(const Statement& statement, const Value& value);
+
+  // evaluate.cpp
   Value evaluate(const Expr& expr);
   Value evaluate_name(const Expr& expr);
   Value evaluate_if(const Expr& expr);
@@ -115,6 +120,8 @@ class Evaluator {
   const bool keep_formulas_;
   Diagnostics& diagnostics_;
   Evaluated out_;
+  std::vector<Scope> scopes_;                  // [module] parameters of the imports
+  std::vector<std::optional<Value>> objects_;  // [module] once they were asked for
   std::vector<Value> locals_;  // of all calls under way
   std::size_t base_ = 0;       // of the locals of the innermost
   double steps_ = 0, depth_ = 0;

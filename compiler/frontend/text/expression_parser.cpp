@@ -39,7 +39,7 @@ const Operator* find_operator(const Token& token) {
 }  // namespace
 
 Expr* ExpressionParser::make(Expr::Kind kind, Span span, std::vector<Expr*> of) {
-  Expr& made = tree_.expressions.emplace_back();
+  Expr& made = expressions_.emplace_back();
   made.kind = kind, made.span = span, made.of = std::move(of);
   for (const Expr* part : made.of) made.depth = std::max(made.depth, part->depth + 1);
   return &made;

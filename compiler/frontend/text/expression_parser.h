@@ -1,6 +1,7 @@
 // Expressions of a text, by recursive descent (frontend/text/parser.h).
 #pragma once
 
+#include <deque>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,7 @@ class ExpressionParser : public TokenCursor {
   Expr* expression();
   Expr* record();
 
-  Tree tree_;
+  std::deque<Expr> expressions_;
 
  private:
   Expr* make(Expr::Kind kind, Span span, std::vector<Expr*> of = {});

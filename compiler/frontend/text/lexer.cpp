@@ -47,7 +47,8 @@ bool starts_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z
 
 class TextLexer {
  public:
-  TextLexer(const Source& source, Diagnostics& diagnostics) : text_(source.text()), diagnostics_(diagnostics) {}
+  TextLexer(const Source& source, Diagnostics& diagnostics)
+      : text_(source.text()), base_(source.base()), diagnostics_(diagnostics) {}
 
   Tokens run() {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = line_start_ = 3;
@@ -171,9 +172,10 @@ class TextLexer {
     is_first_ = false;
   }
 
-  static std::uint32_t place(std::size_t at) { return static_cast<std::uint32_t>(at); }
+  std::uint32_t place(std::size_t at) const { return base_ + static_cast<std::uint32_t>(at); }
 
   std::string_view text_;
+  std::uint32_t base_;
   Diagnostics& diagnostics_;
   std::size_t at_ = 0, line_start_ = 0;
   bool is_first_ = true;

@@ -15,8 +15,8 @@
 namespace fathom::compiler::text {
 
 // Words that begin a statement, where one can begin.
-inline constexpr std::string_view kStatementWords[] = {"param",  "let",  "def",    "object",    "light",
-                                                       "camera", "film", "render", "background"};
+inline constexpr std::string_view kStatementWords[] = {"import", "param",  "let",  "def",    "object",
+                                                       "light",  "camera", "film", "render", "background"};
 // Words of expressions, which no name can be.
 inline constexpr std::string_view kReservedWords[] = {"let", "in",   "if",   "then", "else",
                                                       "for", "fold", "true", "false"};

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/suggest.h"
+#include "compiler/frontend/text/order.h"
 #include "compiler/frontend/text/vocabulary.h"
 
 namespace fathom::compiler::text {
@@ -20,8 +22,12 @@ using Kind = Statement::Kind;
 constexpr std::size_t kMostSuggestions = 20;
 
 bool has_name(const Statement& statement) {
-  return statement.kind == Kind::Param || statement.kind == Kind::Let || statement.kind == Kind::Def;
+  return statement.kind == Kind::Import || statement.kind == Kind::Param || statement.kind == Kind::Let ||
+         statement.kind == Kind::Def;
 }
+
+// `of.name` or `of.name(...)` rather than `name(of)`.
+bool is_dotted(const Expr& expr) { return expr.span.begin < expr.name_span.begin; }
 
 class Resolver {
  public:
@@ -29,10 +35,12 @@ class Resolver {
 
   std::optional<std::vector<std::uint32_t>> run() {
     uses_.resize(tree_.statements.size());
-    for (std::uint32_t i = 0; i < tree_.statements.size(); ++i) declare_global(i);
+    globals_.resize(tree_.modules.size());
+    imported_.resize(tree_.statements.size());
+    for (current_ = 0; current_ < tree_.statements.size(); ++current_) declare_global(current_);
     for (current_ = 0; current_ < tree_.statements.size(); ++current_) resolve_statement(tree_.statements[current_]);
-    std::vector<std::uint32_t> order = in_order();
-    return has_circle_ ? std::nullopt : std::optional(std::move(order));
+    warn_of_unused_imports();
+    return in_order(tree_, uses_, diagnostics_);
   }
 
  private:
@@ -42,34 +50,51 @@ class Resolver {
     std::uint32_t slot;
     bool used;
   };
-  struct UseOf {
-    std::uint32_t statement;
-    Span span;
-  };
 
   void declare_global(std::uint32_t number) {
     const Statement& statement = tree_.statements[number];
     if (!has_name(statement)) return;
     check_name(statement.name, statement.name_span);
-    const auto [found, is_new] = globals_.emplace(statement.name, number);
+    const auto [found, is_new] = globals_[statement.module].emplace(statement.name, number);
     if (!is_new) report_twice(statement.name, statement.name_span);
     if (statement.kind == Kind::Def && find_word(statement.name)) {
-      diagnostics_.warning("W0406", statement.name_span, fmt::format("`{}` is a function already", statement.name), "",
-                           {"this one takes its place in the file: choose another name"});
+      warning("W0406", statement.name_span, fmt::format("`{}` is a function already", statement.name), "",
+              {"this one takes its place in the file: choose another name"});
     }
+  }
+
+  // What is wrong with a file is said of the first of its modules.
+  bool is_quiet() const { return tree_.modules[tree_.statements[current_].module].again; }
+  void error(std::string code, Span span, std::string message, std::string label, std::vector<std::string> help) {
+    if (is_quiet()) return;
+    diagnostics_.error(std::move(code), span, std::move(message), std::move(label), std::move(help));
+  }
+  void warning(std::string code, Span span, std::string message, std::string label, std::vector<std::string> help) {
+    if (is_quiet()) return;
+    diagnostics_.warning(std::move(code), span, std::move(message), std::move(label), std::move(help));
+  }
+
+  const std::unordered_map<std::string_view, std::uint32_t>& globals() const {
+    return globals_[tree_.statements[current_].module];
+  }
+  std::span<const Statement> statements_of(const Module& module) const {
+    return std::span<const Statement>(tree_.statements).subspan(module.begin, module.end - module.begin);
+  }
+  bool has_values(const Statement& statement) const {
+    return statement.kind == Kind::Param && tree_.modules[statement.module].has_values;
   }
 
   void check_name(std::string_view name, Span span) {
     if (name != "x" && name != "y" && name != "z" && !formula_constant(name)) return;
-    diagnostics_.error("E0407", span,
-                       fmt::format("the name `{}` is {}", name,
-                                   formula_constant(name) ? "a constant of formulas" : "a coordinate"),
-                       "", {"choose another name"});
+    error(
+        "E0407", span,
+        fmt::format("the name `{}` is {}", name, formula_constant(name) ? "a constant of formulas" : "a coordinate"),
+        "", {"choose another name"});
   }
 
   void report_twice(std::string_view name, Span span) {
-    diagnostics_.error("E0802", span, fmt::format("`{}` is declared twice", name), "",
-                       {"a name has one value: choose another for the second"});
+    error("E0802", span, fmt::format("`{}` is declared twice", name), "",
+          {"a name has one value: choose another for the second"});
   }
 
   void resolve_statement(Statement& statement) {
@@ -83,7 +108,10 @@ class Resolver {
     } else {
       for (const Argument& field : statement.fields) resolve(*field.value);
     }
-    resolve(*statement.value);
+    if (statement.kind == Kind::Import) check_values(statement);
+    if (has_values(statement))
+      uses_[current_].push_back({tree_.modules[statement.module].values, statement.name_span});
+    if (statement.value) resolve(*statement.value);
     leave(0, true);
     statement.slots = slots_;
   }
@@ -104,8 +132,8 @@ class Resolver {
   void leave(std::size_t from, bool warn) {
     for (std::size_t i = from; i < locals_.size() && warn; ++i) {
       if (locals_[i].used || locals_[i].name[0] == '_') continue;
-      diagnostics_.warning("W0405", locals_[i].span, fmt::format("unused name `{}`", locals_[i].name), "",
-                           {"remove it, or begin it with _ to keep it"});
+      warning("W0405", locals_[i].span, fmt::format("unused name `{}`", locals_[i].name), "",
+              {"remove it, or begin it with _ to keep it"});
     }
     locals_.resize(from);
   }
@@ -113,6 +141,7 @@ class Resolver {
   void resolve(Expr& expr) {
     using enum Expr::Kind;
     const std::size_t from = locals_.size();
+    if (enter_module(expr)) return;
     switch (expr.kind) {
       case Name:
         return resolve_name(expr);
@@ -136,7 +165,7 @@ class Resolver {
         resolve(*expr.of[2]);
         return leave(from, false);
       case Call:
-        resolve_function(expr);
+        if (expr.reference.kind == Reference::Kind::None) resolve_function(expr);
         break;
       default:
         break;
@@ -148,6 +177,107 @@ class Resolver {
     }
   }
 
+  // The import that a name stands for; nothing when it is another name.
+  std::optional<std::uint32_t> import_of(const Expr& expr) const {
+    if (expr.kind != Expr::Kind::Name || expr.groups > 0) return std::nullopt;
+    if (std::ranges::any_of(locals_, [&](const Local& local) { return local.name == expr.name; }))
+      return std::nullopt;
+    const auto found = globals().find(expr.name);
+    if (found == globals().end() || tree_.statements[found->second].kind != Kind::Import) return std::nullopt;
+    return found->second;
+  }
+
+  // `gears.steel`, `gears.gear(...)` and `gears.scene`, where `gears` is an import, become what they stand for. True
+  // when nothing is left to resolve.
+  bool enter_module(Expr& expr) {
+    const bool call = expr.kind == Expr::Kind::Call && is_dotted(expr);
+    if (!call && expr.kind != Expr::Kind::Member) return false;
+    const std::optional<std::uint32_t> import = import_of(call ? *expr.arguments[0].value : *expr.of[0]);
+    if (!import) return false;
+    imported_[*import] = true;
+    const Statement& statement = tree_.statements[*import];
+    if (tree_.statements[current_].kind == Kind::Param) {
+      error("E0402", expr.name_span, fmt::format("`{}.{}` has no value yet", statement.name, expr.name), "",
+            {"parameters have their values before anything else"});
+    }
+    uses_[current_].push_back({*import, expr.name_span});
+    if (call) {
+      expr.arguments.erase(expr.arguments.begin());
+    } else {
+      expr.kind = Expr::Kind::Name;
+      expr.of.clear();
+    }
+    refer_to(expr, statement, call);
+    if (!call) return true;
+    for (const Argument& argument : expr.arguments) resolve(*argument.value);
+    return true;
+  }
+
+  // A name of the module that the import names.
+  void refer_to(Expr& expr, const Statement& import, bool call) {
+    const Module& module = tree_.modules[import.target];
+    const auto found = globals_[import.target].find(expr.name);
+    const bool known = found != globals_[import.target].end();
+    if (!known && !call && expr.name == "scene") return refer_to_objects(expr, import);
+    const std::string name = fmt::format("{}.{}", import.name, expr.name);
+    if (expr.name.starts_with('_') || (known && tree_.statements[found->second].kind == Kind::Import)) {
+      return error("E0803", expr.name_span, fmt::format("`{}` is the file's own", name), "",
+                   {"names that begin with _, and imports, are not seen from outside"});
+    }
+    const bool is_def = known && tree_.statements[found->second].kind == Kind::Def;
+    if (known && is_def == call) {
+      expr.reference = {call ? Reference::Kind::Definition : Reference::Kind::Global, found->second};
+      uses_[current_].push_back({found->second, expr.name_span});
+      return;
+    }
+    if (known) {
+      return error(
+          call ? "E0804" : "E0803", expr.name_span, fmt::format("`{}` is a {}", name, is_def ? "function" : "value"),
+          "", {is_def ? fmt::format("call it: {}(...)", name) : fmt::format("for a product write {}*(...)", name)});
+    }
+    std::vector<std::string_view> names;
+    for (const Statement& other : statements_of(module)) {
+      const bool fits = has_name(other) && other.kind != Kind::Import && (other.kind == Kind::Def) == call;
+      if (fits && !other.name.starts_with('_')) names.push_back(other.name);
+    }
+    error(call ? "E0804" : "E0803", expr.name_span,
+          fmt::format("`{}` has no {} `{}`", import.label, call ? "function" : "name", expr.name), "",
+          {did_you_mean(expr.name, names)});
+  }
+
+  void refer_to_objects(Expr& expr, const Statement& import) {
+    const Module& module = tree_.modules[import.target];
+    for (std::uint32_t i = module.begin; i < module.end; ++i) {
+      if (tree_.statements[i].kind == Kind::Object) uses_[current_].push_back({i, expr.name_span});
+    }
+    expr.reference = {Reference::Kind::Objects, import.target};
+  }
+
+  // The values that an import gives to parameters.
+  void check_values(const Statement& import) {
+    std::vector<std::string_view> names;
+    for (const Statement& statement : statements_of(tree_.modules[import.target])) {
+      if (statement.kind == Kind::Param) names.push_back(statement.name);
+    }
+    for (const Argument& value : import.fields) {
+      if (std::ranges::find(names, value.name) == names.end()) {
+        error("E0805", value.name_span, fmt::format("`{}` has no parameter `{}`", import.label, value.name), "",
+              {names.empty() ? "it has none: its functions take arguments" : did_you_mean(value.name, names)});
+      }
+      if (&*std::ranges::find(import.fields, value.name, &Argument::name) != &value) {
+        error("E0010", value.name_span, fmt::format("`{}` is given twice", value.name), "", {"keep one of them"});
+      }
+    }
+  }
+
+  void warn_of_unused_imports() {
+    for (current_ = 0; current_ < tree_.statements.size(); ++current_) {
+      const Statement& statement = tree_.statements[current_];
+      if (statement.kind != Kind::Import || imported_[current_] || statement.name.starts_with('_')) continue;
+      warning("W0405", statement.name_span, fmt::format("unused import `{}`", statement.name), "", {"remove it"});
+    }
+  }
+
   void resolve_name(Expr& expr) {
     for (std::size_t i = locals_.size(); i-- > 0;) {
       if (locals_[i].name != expr.name) continue;
@@ -155,8 +285,8 @@ class Resolver {
       expr.reference = {Reference::Kind::Local, locals_[i].slot};
       return;
     }
-    const auto found = globals_.find(expr.name);
-    if (found != globals_.end()) return refer(expr, found->second);
+    const auto found = globals().find(expr.name);
+    if (found != globals().end()) return refer(expr, found->second);
     const std::string_view axes = "xyz";
     const std::size_t axis = expr.name.size() == 1 ? axes.find(expr.name) : std::string_view::npos;
     if (axis != std::string_view::npos) {
@@ -170,15 +300,21 @@ class Resolver {
 
   void refer(Expr& expr, std::uint32_t number) {
     const Statement& target = tree_.statements[number];
+    if (target.kind == Kind::Import) {
+      imported_[number] = true;
+      error("E0803", expr.span, fmt::format("`{}` is a file", expr.name), "",
+            {fmt::format("a name of it is {0}.name, all that is to be seen of it {0}.scene", expr.name)});
+      return;
+    }
     if (target.kind == Kind::Def) {
-      diagnostics_.error("E0803", expr.span, fmt::format("`{}` is a function", expr.name), "",
-                         {fmt::format("call it: {}(...)", expr.name)});
+      error("E0803", expr.span, fmt::format("`{}` is a function", expr.name), "",
+            {fmt::format("call it: {}(...)", expr.name)});
       return;
     }
     const bool in_param = tree_.statements[current_].kind == Kind::Param;
     if (in_param && (target.kind != Kind::Param || number >= current_)) {
-      diagnostics_.error("E0402", expr.span, fmt::format("`{}` has no value yet", expr.name), "",
-                         {"a parameter can use the parameters before it"});
+      error("E0402", expr.span, fmt::format("`{}` has no value yet", expr.name), "",
+            {"a parameter can use the parameters before it"});
       return;
     }
     expr.reference = {Reference::Kind::Global, number};
@@ -192,13 +328,14 @@ class Resolver {
     } else if (diagnostics_.errors() < kMostSuggestions) {
       help = {did_you_mean(expr.name, known_names())};
     }
-    diagnostics_.error("E0803", expr.span, fmt::format("unknown name `{}`", expr.name), "", std::move(help));
+    error("E0803", expr.span, fmt::format("unknown name `{}`", expr.name), "", std::move(help));
   }
 
   std::vector<std::string_view> known_names() const {
     std::vector<std::string_view> names;
     for (const Local& local : locals_) names.push_back(local.name);
-    for (const Statement& statement : tree_.statements) {
+    const Module& module = tree_.modules[tree_.statements[current_].module];
+    for (const Statement& statement : statements_of(module)) {
       if (has_name(statement) && statement.kind != Kind::Def) names.push_back(statement.name);
     }
     for (const char* name : {"x", "y", "z", "pi", "e", "tau"}) names.emplace_back(name);
@@ -206,29 +343,29 @@ class Resolver {
   }
 
   void resolve_function(Expr& expr) {
-    const auto found = globals_.find(expr.name);
-    const bool is_def = found != globals_.end() && tree_.statements[found->second].kind == Kind::Def;
+    const auto found = globals().find(expr.name);
+    const bool is_def = found != globals().end() && tree_.statements[found->second].kind == Kind::Def;
     if (is_def) {
       expr.reference = {Reference::Kind::Definition, found->second};
       uses_[current_].push_back({found->second, expr.name_span});
       if (tree_.statements[current_].kind == Kind::Param) {
-        diagnostics_.error("E0402", expr.name_span, fmt::format("`{}` cannot be called yet", expr.name), "",
-                           {"parameters have their values before anything else"});
+        error("E0402", expr.name_span, fmt::format("`{}` cannot be called yet", expr.name), "",
+              {"parameters have their values before anything else"});
       }
       return;
     }
     expr.word = find_word(expr.name);
     if (expr.word) return;
-    const bool value = found != globals_.end() || formula_constant(expr.name) ||
+    const bool value = found != globals().end() || formula_constant(expr.name) ||
                        std::ranges::any_of(locals_, [&](const Local& local) { return local.name == expr.name; });
     std::vector<std::string_view> known = all_words();
-    for (const Statement& statement : tree_.statements) {
+    for (const Statement& statement : statements_of(tree_.modules[tree_.statements[current_].module])) {
       if (diagnostics_.full()) break;
       if (statement.kind == Kind::Def) known.push_back(statement.name);
     }
-    diagnostics_.error("E0804", expr.name_span, fmt::format("unknown function `{}`", expr.name), "",
-                       {value ? fmt::format("`{0}` is a value; for a product write {0}*(...)", expr.name)
-                              : nearest_of(expr.name, known)});
+    error("E0804", expr.name_span, fmt::format("unknown function `{}`", expr.name), "",
+          {value ? fmt::format("`{0}` is a value; for a product write {0}*(...)", expr.name)
+                 : nearest_of(expr.name, known)});
   }
 
   // Of 160 words only those that are near.
@@ -238,60 +375,14 @@ class Resolver {
                          : fmt::format("did you mean `{}`?", meant);
   }
 
-  // Depth first, without recursion: chains of names may be as long as the file.
-  std::vector<std::uint32_t> in_order() {
-    enum class State : std::uint8_t { New, Open, Done };
-    std::vector<State> states(uses_.size(), State::New);
-    std::vector<std::uint32_t> order;
-    struct Visit {
-      std::uint32_t statement;
-      std::size_t next;
-    };
-    for (std::uint32_t root = 0; root < uses_.size(); ++root) {
-      std::vector<Visit> open;
-      if (states[root] == State::New) open.push_back({root, 0}), states[root] = State::Open;
-      while (!open.empty()) {
-        Visit& top = open.back();
-        if (top.next == uses_[top.statement].size()) {
-          states[top.statement] = State::Done;
-          order.push_back(top.statement);
-          open.pop_back();
-          continue;
-        }
-        const UseOf use = uses_[top.statement][top.next++];
-        if (states[use.statement] == State::New) {
-          states[use.statement] = State::Open;
-          open.push_back({use.statement, 0});
-        } else if (states[use.statement] == State::Open) {
-          std::vector<std::uint32_t> circle;
-          for (const Visit& visit : open) circle.push_back(visit.statement);
-          circle.erase(circle.begin(), std::ranges::find(circle, use.statement));
-          report_circle(circle, use.span);
-        }
-      }
-    }
-    return order;
-  }
-
-  void report_circle(const std::vector<std::uint32_t>& circle, Span span) {
-    has_circle_ = true;
-    std::string names;
-    for (const std::uint32_t number : circle) names += fmt::format("`{}` uses ", tree_.statements[number].name);
-    names += fmt::format("`{}`", tree_.statements[circle[0]].name);
-    const bool def = tree_.statements[circle[0]].kind == Kind::Def;
-    diagnostics_.error("E0806", span,
-                       fmt::format("`{}` {} itself", tree_.statements[circle[0]].name, def ? "calls" : "is made of"),
-                       names, {"what is done again and again is a list, [for i in 0..10: ...], or a `fold`"});
-  }
-
   Tree& tree_;
   Diagnostics& diagnostics_;
-  std::unordered_map<std::string_view, std::uint32_t> globals_;  // the statement's number
+  std::vector<std::unordered_map<std::string_view, std::uint32_t>> globals_;  // [module] the statement's number
+  std::vector<bool> imported_;                                   // [statement] whether something uses the import
   std::vector<std::vector<UseOf>> uses_;                         // [statement]
   std::uint32_t current_ = 0;
   std::vector<Local> locals_;
   std::uint32_t slots_ = 0;
-  bool has_circle_ = false;
 };
 
 }  // namespace

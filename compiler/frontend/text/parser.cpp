@@ -17,22 +17,20 @@ struct Keyword {
   Statement::Kind kind;
 };
 constexpr Keyword kKeywords[] = {
-    {"param", Statement::Kind::Param},
-    {"let", Statement::Kind::Let},
-    {"def", Statement::Kind::Def},
-    {"object", Statement::Kind::Object},
-    {"light", Statement::Kind::Light},
-    {"camera", Statement::Kind::Camera},
-    {"film", Statement::Kind::Film},
-    {"render", Statement::Kind::Render},
-    {"background", Statement::Kind::Background},
+    {"import", Statement::Kind::Import}, {"param", Statement::Kind::Param},
+    {"let", Statement::Kind::Let},       {"def", Statement::Kind::Def},
+    {"object", Statement::Kind::Object}, {"light", Statement::Kind::Light},
+    {"camera", Statement::Kind::Camera}, {"film", Statement::Kind::Film},
+    {"render", Statement::Kind::Render}, {"background", Statement::Kind::Background},
 };
 
 class StatementParser : public ExpressionParser {
  public:
   using ExpressionParser::ExpressionParser;
 
-  Tree run() {
+  ParsedFile run() {
+    ParsedFile file;
+    file.tokens = tokens_.size();
     header();
     while (tokens_[at_].kind != Token::Kind::End && !diagnostics_.full()) {
       column_ = tokens_[at_].column;
@@ -40,12 +38,13 @@ class StatementParser : public ExpressionParser {
       const Token& first = tokens_[at_];
       std::optional<Statement> made = statement();
       const bool good = made.has_value();
-      if (good) tree_.statements.push_back(*std::move(made));
+      if (good) file.statements.push_back(*std::move(made));
       if (is_over()) continue;
       if (good) report_rest(first);
       recover();
     }
-    return std::move(tree_);
+    file.expressions = std::move(expressions_);
+    return file;
   }
 
  private:
@@ -95,9 +94,10 @@ class StatementParser : public ExpressionParser {
     Statement out{};
     out.kind = row->kind, out.span = first.span;
     using enum Statement::Kind;
-    const bool good = row->kind == Param || row->kind == Let ? named(out)
-                      : row->kind == Def                     ? definition(out)
-                                                             : part(out);
+    const bool good = row->kind == Import                      ? import(out)
+                      : row->kind == Param || row->kind == Let ? named(out)
+                      : row->kind == Def                       ? definition(out)
+                                                               : part(out);
     return good ? std::optional(std::move(out)) : std::nullopt;
   }
 
@@ -120,6 +120,22 @@ class StatementParser : public ExpressionParser {
     const Token& token = take();
     if (out.name.empty()) out.name_span = token.span;
     out.label = unquoted(token, diagnostics_);
+  }
+
+  // import STRING [ record ] as NAME
+  bool import(Statement& out) {
+    if (peek().kind != Token::Kind::Text) {
+      unexpected("the path of a file is missing", {"such as: import \"lib/gears.fathom\" as gears"});
+      return false;
+    }
+    const Token& path = take();
+    out.label = unquoted(path, diagnostics_), out.span = path.span;
+    if (peek().is("(")) {
+      Expr* values = record();
+      if (values == nullptr) return false;
+      out.fields = values->arguments, out.has_fields = true;
+    }
+    return expect_word("as", "after the path") && name(out.name, out.name_span, "a name");
   }
 
   // param NAME [ STRING ] [ record ] = expr, let NAME [ STRING ] = expr
@@ -164,7 +180,7 @@ class StatementParser : public ExpressionParser {
 
 bool is_text_scene(std::string_view text) { return first_word(text) == "fathom"; }
 
-Tree parse(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
+ParsedFile parse(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
   return StatementParser(source, diagnostics, limits).run();
 }
 

@@ -20,6 +20,6 @@ inline constexpr int kTextVersion = 1;
 bool is_text_scene(std::string_view text);
 
 // The tree holds parts of the source's text. What is in error is left out of it.
-Tree parse(const Source& source, Diagnostics& diagnostics, const Limits& limits);
+ParsedFile parse(const Source& source, Diagnostics& diagnostics, const Limits& limits);
 
 }  // namespace fathom::compiler::text

@@ -19,11 +19,13 @@ struct ReadText {
   text::Evaluated evaluated;
 };
 
-std::optional<ReadText> read(const Source& source, const Definitions& definitions, const Limits& limits,
-                             bool keep_formulas, Diagnostics& diagnostics) {
+std::optional<ReadText> read(Source& source, const ImportedFiles& files, const Definitions& definitions,
+                             const Limits& limits, bool keep_formulas, Diagnostics& diagnostics) {
   diagnostics.set_notation(Notation::Text);
   if (!check_text(source, diagnostics) || !text::check_tokens(source, limits, diagnostics)) return std::nullopt;
-  text::Tree tree = text::parse(source, diagnostics, limits);
+  text::Tree tree;
+  text::append(tree, text::parse(source, diagnostics, limits), {.file = &source});
+  text::load_imports(tree, source, files.reader, files.to_text, limits, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
   // What is wrong with names and values does not hide what is wrong with the rest.
   const std::optional<std::vector<std::uint32_t>> order = text::resolve_names(tree, diagnostics);
@@ -40,9 +42,10 @@ std::optional<ReadText> read(const Source& source, const Definitions& definition
 
 bool is_text_scene(std::string_view text) { return text::first_word(text) == "fathom"; }
 
-std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
-                                                              const Limits& limits, Diagnostics& diagnostics) {
-  std::optional<ReadText> made = read(source, definitions, limits, false, diagnostics);
+std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, const Definitions& definitions,
+                                                              const Limits& limits, Diagnostics& diagnostics,
+                                                              const ImportedFiles& files) {
+  std::optional<ReadText> made = read(source, files, definitions, limits, false, diagnostics);
   if (!made) return std::nullopt;
   return std::pair(std::move(made->file), std::move(made->evaluated.parameters));
 }
@@ -72,9 +75,9 @@ JsonComments comments_of_text(const Source& source, const syntax::File& file) {
   return comments;
 }
 
-std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,
-                                                 Diagnostics& diagnostics) {
-  std::optional<ReadText> made = read(source, {}, limits, true, diagnostics);
+std::optional<KeptScene> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
+                                                 const ImportedFiles& files) {
+  std::optional<ReadText> made = read(source, files, {}, limits, true, diagnostics);
   if (!made || diagnostics.has_errors()) return std::nullopt;
   return KeptScene{std::move(made->file), std::move(made->evaluated.frozen)};
 }

@@ -15,6 +15,7 @@
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/parameters.h"
 #include "compiler/frontend/syntax.h"
+#include "compiler/frontend/text/imports.h"
 #include "compiler/frontend/write_json.h"
 #include "compiler/limits.h"
 
@@ -23,10 +24,17 @@ namespace fathom::compiler {
 // Whether a text is in this notation: its first word is `fathom`.
 bool is_text_scene(std::string_view text);
 
+// The files that a text imports, which are added to its source.
+struct ImportedFiles {
+  ImportReader reader = {};
+  TextMaker to_text = {};
+};
+
 // The scene that a JSON file would have said, and its parameters; nullopt when the text is not understood. After
 // other errors it is what is left of the scene.
-std::optional<std::pair<syntax::File, Scope>> read_text_scene(const Source& source, const Definitions& definitions,
-                                                              const Limits& limits, Diagnostics& diagnostics);
+std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, const Definitions& definitions,
+                                                              const Limits& limits, Diagnostics& diagnostics,
+                                                              const ImportedFiles& files = {});
 
 // The text's comments, by what of the scene each stands before or beside; those of functions before what comes next.
 JsonComments comments_of_text(const Source& source, const syntax::File& file);
@@ -38,7 +46,7 @@ struct KeptScene {
 };
 
 // The same scene as a JSON file that keeps the parameters.
-std::optional<KeptScene> read_text_with_formulas(const Source& source, const Limits& limits,
-                                                 Diagnostics& diagnostics);
+std::optional<KeptScene> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
+                                                 const ImportedFiles& files = {});
 
 }  // namespace fathom::compiler

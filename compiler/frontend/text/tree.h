@@ -35,9 +35,10 @@ struct Joint {
 
 // What a name stands for, found before anything is evaluated (frontend/text/names.h).
 struct Reference {
-  enum class Kind : std::uint8_t { None, Local, Global, Coordinate, Constant, Definition };
+  enum class Kind : std::uint8_t { None, Local, Global, Coordinate, Constant, Definition, Objects };
   Kind kind = Kind::None;
-  std::uint32_t number = 0;  // a Local's slot, a Global's or Definition's statement, a Coordinate's axis
+  // A Local's slot, a Global's or Definition's statement, a Coordinate's axis, the module whose Objects it is.
+  std::uint32_t number = 0;
   double value = 0;          // of a Constant
 };
 
@@ -86,23 +87,44 @@ struct Expr {
 };
 
 struct Statement {
-  enum class Kind : std::uint8_t { Param, Let, Def, Object, Light, Camera, Film, Render, Background };
+  enum class Kind : std::uint8_t { Import, Param, Let, Def, Object, Light, Camera, Film, Render, Background };
   Kind kind;
   bool is_spread = false;        // object ...[a, b]: an object each
   bool has_fields = false;       // param a(...) = 1, with or without any
   Span span;                     // of its keyword
-  std::string_view name;         // of Param, Let and Def
+  std::string_view name;         // of Import, Param, Let and Def
   Span name_span;                // of the name, or of the label when there is no name
-  std::string label;             // in quotes; empty when there is none
-  std::vector<Argument> fields;  // of Def its parameters and their defaults, of Param min, max and doc
+  std::string label;             // in quotes, of Import the path; empty when there is none
+  std::vector<Argument>
+      fields;  // of Def its parameters and their defaults, of Param min, max and doc, of Import values
   Expr* value = nullptr;
-  std::uint32_t slots = 0;  // of locals, when it is evaluated
+  std::uint32_t slots = 0;   // of locals, when it is evaluated
+  std::uint32_t module = 0;  // that it stands in
+  std::uint32_t target = 0;  // of Import: the module that it names; 0 when there is none
 };
 
-// A file. Expressions live as long as it does.
-struct Tree {
+// A file by itself. Expressions live as long as it does.
+struct ParsedFile {
   std::vector<Statement> statements;
   std::deque<Expr> expressions;
+  std::size_t tokens = 0;
+};
+
+// A file as it is imported: once for all imports without values for its parameters, and once for each with some.
+struct Module {
+  const Source* file;
+  std::uint32_t begin = 0, end = 0;  // its statements
+  std::uint32_t values = 0;          // the import statement that has its parameters' values
+  bool has_values = false;
+  bool again = false;  // another module is of the same file: what is wrong in it was said
+  std::size_t tokens = 0;
+};
+
+// A file, module 0, and those that it imports.
+struct Tree {
+  std::vector<Statement> statements;
+  std::vector<Module> modules;
+  std::vector<std::deque<Expr>> expressions;  // [module]
 };
 
 }  // namespace fathom::compiler::text
