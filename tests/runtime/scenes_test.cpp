@@ -11,6 +11,7 @@
 #include "compiler/compile.h"
 #include "runtime/render.h"
 #include "tests/support/golden.h"
+#include "tests/support/import_folder.h"
 
 namespace fathom::scenes_test {
 
@@ -36,7 +37,9 @@ std::vector<fs::path> scene_files() {
 CompiledScene compile_file(const fs::path& file) {
   const Source source(file.filename().string(), tests::read_file(file));
   Diagnostics diagnostics;
-  auto scene = compile(source, diagnostics);
+  CompileOptions options;
+  options.imports = tests::imports_from(file.parent_path());
+  auto scene = compile(source, diagnostics, options);
   CHECK(diagnostics.print(source, ErrorFormat::Text) == "");
   REQUIRE(scene);
   return std::move(*scene);
@@ -128,7 +131,8 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
     CAPTURE(file.filename().string());
     // For show: they come to the same code as the others by costlier ways. scripts/pictures renders them.
     const fs::path folder = file.parent_path().filename();
-    if (folder == "gallery" || folder == "lib") continue;
+    if (folder == "gallery" || folder == "lib" || tests::read_file(file).find("\nimport ") != std::string::npos)
+      continue;
     const CompiledScene scene = compile_file(file);
     if (scene.node_count > 500) continue;  // minutes of rendering; scripts/measure counts their hits
     if (update) {
