@@ -94,6 +94,8 @@ std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t l
           std::string(before.size() + begin - first, ' ') + std::string(carets, '^')};
 }
 
+std::string times(std::size_t count) { return count == 1 ? "once" : fmt::format("{} times", count); }
+
 std::string print_text(const Diagnostic& d, const std::vector<std::string>& calls, const Source& source,
                        const Style& s) {
   std::string out = fmt::format("{}{}[{}]{}{}: {}{}\n", d.severity == Severity::Error ? s.error : s.warning,
@@ -121,6 +123,8 @@ std::string print_text(const Diagnostic& d, const std::vector<std::string>& call
     out += fmt::format("{}{}={} {}help{}: {}\n", margin, s.gutter, s.off, s.strong, s.off, help);
   }
   for (const std::string& call : calls) out += fmt::format("{}{}={} {}\n", margin, s.gutter, s.off, call);
+  if (d.again > 0)
+    out += fmt::format("{}{}={} and {} more in calls and loops\n", margin, s.gutter, s.off, times(d.again));
   return out;
 }
 
@@ -151,6 +155,7 @@ std::string print_json(const Diagnostic& d, const std::vector<std::string>& call
   json["label"] = d.label;
   json["help"] = d.help;
   if (!calls.empty()) json["calls"] = calls;
+  if (d.again > 0) json["again"] = d.again;
   return json_line(json);
 }
 
@@ -176,11 +181,15 @@ void Diagnostics::add(Diagnostic d) {
   all_.push_back(std::move(d));
 }
 
-// One slip in a loop is reported once; what a scene shows, each time.
-bool Diagnostics::is_known(const std::string& code, Span span) const {
-  return span.trace != 0 && code != "W0407" && std::any_of(all_.begin(), all_.end(), [&](const Diagnostic& d) {
-           return d.code == code && d.span.begin == span.begin && d.span.end == span.end;
-         });
+// One slip in a loop is reported once, and counted; what a scene shows is reported each time.
+bool Diagnostics::count_known(const std::string& code, Span span) {
+  if (span.trace == 0 || code == "W0407") return false;
+  const auto known = std::ranges::find_if(all_, [&](const Diagnostic& d) {
+    return d.code == code && d.span.begin == span.begin && d.span.end == span.end;
+  });
+  if (known == all_.end()) return false;
+  ++known->again;
+  return true;
 }
 
 // The calls and loops that led to it, the innermost first.
@@ -207,13 +216,18 @@ std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& s
 
 void Diagnostics::error(std::string code, Span span, std::string message, std::string label,
                         std::vector<std::string> help) {
-  if (++errors_ > kMostKept || is_known(code, span)) return;
+  ++errors_;
+  if (count_known(code, span)) {
+    ++repeated_;
+    return;
+  }
+  if (errors_ - repeated_ > kMostKept) return;
   add({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
-  if (++warnings_ > kMostKept || is_known(code, span)) return;
+  if (count_known(code, span) || ++warnings_ > kMostKept) return;
   add({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
@@ -240,7 +254,8 @@ std::string Diagnostics::print(const Source& source, ErrorFormat format, bool co
     if (format == ErrorFormat::Short) out += print_short(*d, source);
     if (format == ErrorFormat::Json) out += print_json(*d, calls(*d, source), source);
   }
-  if (errors_ > printed_errors) out += print_rest(errors_ - printed_errors, source, format);
+  const std::size_t rest = errors_ - repeated_ - printed_errors;
+  if (rest > 0) out += print_rest(rest, source, format);
   return out;
 }
 

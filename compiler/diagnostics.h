@@ -29,6 +29,7 @@ struct Diagnostic {
   Span span;
   std::string label;              // beside the carets; may be empty
   std::vector<std::string> help;  // each a line after "= help:"
+  std::size_t again = 0;          // how often more it was met in calls and loops
 };
 
 // A call of a function, or a round of a loop, that led to a place.
@@ -80,7 +81,7 @@ class Diagnostics {
 
  private:
   void add(Diagnostic d);
-  bool is_known(const std::string& code, Span span) const;
+  bool count_known(const std::string& code, Span span);
   std::vector<std::string> calls(const Diagnostic& d, const Source& source) const;
 
   static constexpr std::size_t kMostKept = 100;
@@ -89,6 +90,7 @@ class Diagnostics {
   std::vector<Trace> traces_;
   Notation notation_ = Notation::Json;
   std::size_t errors_ = 0, warnings_ = 0;
+  std::size_t repeated_ = 0;  // errors that were met before at their place
 };
 
 // The candidate nearest to `word` by edit distance, or empty when none is near enough to be a typing error.

@@ -71,7 +71,7 @@ class Emitter {
     }
   }
   void reserve(Names& names, const Statement& statement) {
-    if (names.taken.insert(label_of(statement)).second) return;
+    if (names.taken.insert(label_of(statement)).second || statement.label.empty()) return;  // or said by names.cpp
     diagnostics_.error("E0802", statement.name_span, fmt::format("`{}` is declared twice", label_of(statement)), "",
                        {"labels are names in listings and messages: choose another"});
   }

@@ -85,6 +85,13 @@ Expr* ExpressionParser::choice(Span begin, Expr* condition) {
   return bounded(make(Expr::Kind::If, join(begin, no->span), {condition, yes, no}));
 }
 
+// Between a name and its value.
+bool ExpressionParser::equals_sign() {
+  if (!peek().is("(")) return expect("=", "after the name");
+  unexpected("`=` is missing after the name", {"functions are statements of their own: def name(a, b) = ..."});
+  return false;
+}
+
 // let NAME = expr { let NAME = expr } in expr
 Expr* ExpressionParser::bindings() {
   const Span begin = peek().span;
@@ -93,7 +100,8 @@ Expr* ExpressionParser::bindings() {
   while (peek().is_word("let")) {
     take();
     Argument binding{};
-    if (!name(binding.name, binding.name_span, "a name") || !expect("=", "after the name")) return nullptr;
+    if (!name(binding.name, binding.name_span, "a name")) return nullptr;
+    if (!equals_sign()) return nullptr;
     if ((binding.value = expression()) == nullptr) return nullptr;
     depth = std::max(depth, binding.value->depth);
     names.push_back(binding);

@@ -22,6 +22,7 @@ class ExpressionParser : public TokenCursor {
  protected:
   Expr* expression();
   Expr* record();
+  bool equals_sign();
 
   std::deque<Expr> expressions_;
 

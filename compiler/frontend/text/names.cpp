@@ -89,7 +89,7 @@ class Resolver {
     error(
         "E0407", span,
         fmt::format("the name `{}` is {}", name, formula_constant(name) ? "a constant of formulas" : "a coordinate"),
-        "", {"choose another name"});
+        "", {fmt::format("choose another name, such as {0}0 or {0}_", name)});
   }
 
   void report_twice(std::string_view name, Span span) {

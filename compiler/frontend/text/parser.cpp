@@ -147,8 +147,7 @@ class StatementParser : public ExpressionParser {
       if (options == nullptr) return false;
       out.fields = options->arguments, out.has_fields = true;
     }
-    if (!expect("=", "after the name")) return false;
-    return (out.value = expression()) != nullptr;
+    return equals_sign() && (out.value = expression()) != nullptr;
   }
 
   // def NAME ( [ NAME [ = expr ] { , NAME [ = expr ] } ] ) = expr
