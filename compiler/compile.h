@@ -31,6 +31,8 @@ struct CompileOptions {
   bool lint_picture = false;
   // A model from elsewhere gets a ground, a lamp and a camera that has it in the picture (compiler/frontend/stage.h).
   bool stage = false;
+  // The programs' zero in the scene, in place of one chosen for the scene (compiler/origin.h).
+  std::optional<glm::dvec3> origin;
   // Called with what the front end read, its stage with it.
   std::function<void(const ReadScene& scene)> on_syntax;
 };
