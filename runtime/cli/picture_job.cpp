@@ -27,6 +27,12 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return write_text(text, path);
 }
 
+// What stands before lines about one frame of several.
+std::string frame_text(const RenderRequest& request) {
+  if (!request.frame) return "";
+  return fmt::format("frame {}, {} of {}: ", request.frame->number, request.frame->index + 1, request.frame->count);
+}
+
 constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sample yet";
 
 // "a pixel has 3 samples at least, 5.20 on average, 8 at most"
@@ -58,16 +64,16 @@ std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
                                    asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
 }
 
-PictureJob::PictureJob(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams,
-                       Watching* watching, std::optional<Interruption>& interruption)
-    : request_(request),
-      scene_(scene),
+PictureJob::PictureJob(Picture& picture, const Streams& streams, Watching* watching,
+                       std::optional<Interruption>& interruption)
+    : request_(picture.request),
+      scene_(picture.scene),
       streams_(streams),
       watching_(watching),
       interruption_(interruption),
-      header_(film_header(scene, runtime::resolve(scene, request.options), request.options)),
-      checkpoint_(checkpoint_of(request)),
-      line_(streams) {}
+      header_(film_header(scene_, runtime::resolve(scene_, request_.options), request_.options)),
+      checkpoint_(checkpoint_of(request_)),
+      line_(streams, frame_text(request_)) {}
 
 ExitCode PictureJob::run() {
   if (const auto code = begin()) return *code;
@@ -76,13 +82,18 @@ ExitCode PictureJob::run() {
   runtime::RenderResult result = render();
   line_.wipe();
   if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
-  return end(result);
+  const ExitCode code = end(result);
+  using End = runtime::RenderEnd;
+  complete_ = code == kDone && (result.stats.end == End::Done || result.stats.end == End::Noise);
+  stats_ = result.stats;
+  return code;
 }
 
 std::optional<ExitCode> PictureJob::begin() {
   if (!checkpoint_) return std::nullopt;
   if (request_.long_render.resume)
-    return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_);
+    return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_,
+                               request_.frame.has_value());
   return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
 }
 
@@ -228,8 +239,8 @@ void PictureJob::print_closing(const runtime::RenderResult& result, const std::v
   std::ostream& err = streams_.err;
   const bool all = request_.verbosity > 0 || request_.options.profile;
   if (all) err << runtime::to_table(result.stats);
-  if (watching_ && !all) {
-    err << closing_line(scene_.source.name(), result, lines);
+  if ((watching_ || request_.frame) && !all) {
+    err << frame_text(request_) << closing_line(scene_.source.name(), result, lines);
     return;
   }
   err << closing_lines(scene_.source.name(), result);

@@ -10,6 +10,7 @@
 
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/interruption.h"
+#include "runtime/cli/picture.h"
 #include "runtime/cli/picture_files.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
@@ -22,7 +23,6 @@ namespace fathom::cli {
 struct Watching {
   runtime::FileWatch files;
   std::atomic<bool> changed = false;
-  bool begun = false;  // a picture was drawn, so what is always so has been said
 };
 
 PictureFiles pictures_of(const RenderRequest& request);
@@ -32,11 +32,15 @@ std::optional<Checkpoint> checkpoint_of(const RenderRequest& request);
 
 class PictureJob {
  public:
-  PictureJob(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams, Watching* watching,
-             std::optional<Interruption>& interruption);
+  PictureJob(Picture& picture, const Streams& streams, Watching* watching, std::optional<Interruption>& interruption);
+
+  const runtime::FilmHeader& header() const { return header_; }  // of its film files
 
   // Once.
   ExitCode run();
+  // Whether all samples are taken and everything is written; what was counted.
+  bool complete() const { return complete_; }
+  const runtime::Stats& stats() const { return stats_; }
 
  private:
   std::optional<ExitCode> begin();
@@ -61,6 +65,8 @@ class PictureJob {
   const runtime::FilmHeader header_;
   std::optional<Checkpoint> checkpoint_;
   ProgressLine line_;
+  bool complete_ = false;
+  runtime::Stats stats_;
 };
 
 }  // namespace fathom::cli

@@ -6,62 +6,14 @@
 #include <csignal>
 #include <ostream>
 #include <thread>
-#include <utility>
 
-#include "runtime/cli/cost_map.h"
-#include "runtime/cli/memory.h"
 #include "runtime/cli/picture_job.h"
-#include "runtime/cli/verbosity.h"
+#include "runtime/cli/render_files.h"
+#include "runtime/cli/sequence.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
 namespace {
-
-// Every file the run will write, but for streams.
-std::vector<std::string> output_files(const RenderRequest& request) {
-  std::vector<std::string> files = files_of(pictures_of(request));
-  if (request.cost_map) {
-    for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
-  }
-  if (request.stats_json && *request.stats_json != "-" && !is_special(*request.stats_json)) {
-    files.push_back(*request.stats_json);
-  }
-  if (const auto checkpoint = checkpoint_of(request)) files.push_back(checkpoint->path());
-  return files;
-}
-
-// The picture that the scene's background names.
-std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
-                                        runtime::RenderOptions& options, const Streams& streams) {
-  if (background.type != compiler::Background::Type::Image) return std::nullopt;
-  auto image = runtime::read_environment(background.image.file, read_limits(arguments.limits));
-  if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
-    return fail_about(arguments, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem, {},
-                      streams);
-  }
-  options.environment =
-      std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
-  return std::nullopt;
-}
-
-// Whether every file could be written, as far as can be known before there is anything to write.
-std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
-  if (const auto code = check_paths(pictures_of(request), streams)) return code;
-  if (const auto checkpoint = checkpoint_of(request)) {
-    if (const auto code = checkpoint->check_path(streams)) return code;
-  }
-  if (request.cost_map) {
-    for (const std::string& map : cost_map_files(*request.cost_map)) {
-      if (const auto problem = runtime::check_file_path(map)) return fail(streams, kIo, *problem);
-    }
-  }
-  if (request.stats_json) {
-    const bool stream = *request.stats_json == "-";
-    if (const auto problem = stream ? std::nullopt : check_text_path(*request.stats_json))
-      return fail(streams, kIo, *problem);
-  }
-  return std::nullopt;
-}
 
 bool asks_for_checkpoint(std::span<const std::string> args) {
   return std::any_of(args.begin(), args.end(),
@@ -69,40 +21,25 @@ bool asks_for_checkpoint(std::span<const std::string> args) {
 }
 
 // One picture of the file as it is now.
-ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching,
+ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams& streams, Watching* watching,
                      std::optional<Interruption>& interruption) {
-  RenderRequest request = asked;
-  auto source = read_scene(request.scene, streams);
-  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  Verbosity verbosity(request.verbosity, streams);
-  compiler::CompileOptions options = verbosity.watch_compiler();
-  options.lint_picture = true;
-  options.stage = true;
-  auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
-  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  auto& scene = std::get<compiler::CompiledScene>(compiled);
-  if (const auto code = override_scene(request, scene, streams)) return *code;
-  if (const auto code = check_memory(request, scene, streams)) return *code;
-  fit_regions(request, scene);
-  if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
-  verbosity.describe(scene, runtime::resolve(scene, request.options));
-  const bool first = !watching || !std::exchange(watching->begun, true);
-  if (request.default_output && first && !request.quiet) {
-    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front().path));
-  }
-  if (request.options.clamp && first && !request.quiet) {
-    note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
-  }
-  return PictureJob(request, scene, streams, watching, interruption).run();
+  const auto input = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
+  const auto picture = prepare_picture(request, std::get<SceneInput>(input), kept, streams);
+  if (const auto* code = std::get_if<ExitCode>(&picture)) return *code;
+  return PictureJob(*std::get<std::unique_ptr<Picture>>(picture), streams, watching, interruption).run();
 }
 
 // Until a signal ends the program: files are written whole or not at all, so any moment will do.
 [[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
   Watching watching{runtime::FileWatch({request.scene.path})};
   std::optional<Interruption> none;
+  KeptWork kept;
   for (bool first = true;; first = false) {
     watching.changed = false;
-    render_once(request, streams, &watching, none);
+    kept.background = nullptr;  // its file may be another by now
+    kept.messages.clear();
+    render_once(request, kept, streams, &watching, none);
     if (first && !request.quiet) {
       note(streams, fmt::format("drawing again whenever {} changes; Ctrl-C ends", request.scene.path));
     }
@@ -125,13 +62,15 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
   if (const auto code = check_bits(pictures_of(request), streams)) return *code;
+  if (request.frames.given()) return render_frames(request, streams, interruption);
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   if (request.watch) {
     interruption.reset();
     render_on_change(request, streams);
   }
-  return render_once(request, streams, nullptr, interruption);
+  KeptWork kept;
+  return render_once(request, kept, streams, nullptr, interruption);
 }
 
 }  // namespace fathom::cli
