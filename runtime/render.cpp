@@ -80,6 +80,17 @@ bool same_numbers(const compiler::CompiledScene& a, const compiler::CompiledScen
          std::ranges::equal(a.materials, b.materials, same_name);
 }
 
+// Of each pixel, by all moments whose regions would be the same: together they are to pay for them.
+int samples_with(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
+  if (options.moments.empty()) return settings.spp;
+  std::uint32_t samples = 0;
+  for (const Moment& moment : options.moments) {
+    const bool same = moment.scene->surface.program().words == scene.surface.program().words;
+    if (same) samples += moment.samples.size();
+  }
+  return static_cast<int>(samples);
+}
+
 World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options,
                  Clock::time_point start) {
   World world{scene,
@@ -93,10 +104,8 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
               {},
               true};
   if (settings.regions) {
-    // Each moment's are to pay for themselves.
     Settings share = settings;
-    if (const int runs = static_cast<int>(options.moments.size()); runs > 1)
-      share.spp = (settings.spp + runs - 1) / runs;
+    share.spp = samples_with(scene, settings, options);
     RegionOptions regions = region_options(share);
     regions.interrupted = interruption(settings, options, start);
     regions.store = options.region_store.get();

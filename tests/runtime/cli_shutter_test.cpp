@@ -108,6 +108,22 @@ object sphere(0.5)
   CHECK((folder.read("stands.pfm") == folder.read("held.pfm")));
 }
 
+TEST_CASE("cli shutter: moments of the same programs have their regions together") {
+  const Moving folder;
+  folder.write("many.fathom", R"(fathom 1
+param time = 0
+film (width = 32, height = 24, fps = 8)
+render (spp = 16)
+camera (position = [12*cos(time) + 3, 6, 12*sin(time) + 3], target = [3, 3, 3], shutter = 0.5)
+background [1, 1, 1]
+object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), floor(i/49)])]
+)");
+  REQUIRE(folder.run("render many.fathom -o a.png -q --stats-json stats.json").code == 0);
+  CHECK_THAT(folder.read("stats.json"), Contains("\"regions_kept\": 7,"));
+  REQUIRE(folder.run("render many.fathom -o b.png -q --no-regions").code == 0);
+  CHECK(folder.read("a.png") == folder.read("b.png"));
+}
+
 TEST_CASE("cli shutter: far from zero all moments are about one origin") {
   const Moving folder;
   folder.write("far.fathom", R"(fathom 1
