@@ -45,8 +45,8 @@ void place_camera(Elaborated& elaborated, const Box& extent) {
 }
 
 // All places of the scene become those of the programs; returns the origin.
-glm::dvec3 move_to_origin(Elaborated& elaborated) {
-  const glm::dvec3 origin = choose_origin(elaborated.scene, elaborated.camera);
+glm::dvec3 move_to_origin(Elaborated& elaborated, const std::optional<glm::dvec3>& given) {
+  const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, elaborated.camera);
   if (origin == glm::dvec3(0)) return origin;
   elaborated.scene = moved(elaborated.scene, origin);
   elaborated.camera.position -= origin;
@@ -316,7 +316,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
   Box whole_extent = extent(elaborated->scene, analyse(elaborated->scene.graph));
   place_camera(*elaborated, whole_extent);
-  const glm::dvec3 origin = options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated);
+  const glm::dvec3 origin =
+      options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated, options.origin);
   whole_extent = whole_extent.moved(-origin);
   place_camera(*elaborated, whole_extent);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);

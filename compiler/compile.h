@@ -36,6 +36,8 @@ struct CompileOptions {
   // Called with the source and the files that it imports, in which the spans of all diagnostics are; also when it is
   // not understood.
   std::function<void(const Source& source)> on_source;
+  // The programs' zero in the scene, in place of one chosen for the scene (compiler/origin.h).
+  std::optional<glm::dvec3> origin;
   // Called with what the front end read, its stage with it.
   std::function<void(const ReadScene& scene)> on_syntax;
 };

@@ -24,6 +24,8 @@ inline constexpr int kMaxSide = 65535;  // pixels; what the image formats can sa
 inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
 inline constexpr int kMaxBlades = 32;
 inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
+inline constexpr int kMostFrames = 100'000'000;
+inline constexpr double kUsualFps = 24, kLeastFps = 1e-3, kMostFps = 1e6;  // frames a second
 
 // What a `tag` in the surface program numbers: a part of the scene with a name and a material.
 struct Surface {
@@ -45,6 +47,9 @@ struct Camera {
   std::optional<double> focal_length;  // instead of fov, mm
   double sensor_width = 36;            // as wide as the picture, mm
   double width = 4;                    // orthographic: width of the picture, scene units
+  // The share of a frame's time that light comes in, from the frame's begin; 0: all is of one moment. In no file of
+  // programs: without its text a scene has one moment.
+  double shutter = 0;
 
   // Perspective: the lens. Without lens_radius and f_stop the camera is a pinhole.
   std::optional<double> lens_radius;  // of the circle round the aperture, scene units
@@ -68,6 +73,9 @@ struct Film {
   FilterKind filter = FilterKind::Box;
   std::optional<double> filter_width;  // of its support, pixels; else the filter's own
   ToneCurve tone = ToneCurve::None;
+  // Of the animation; likewise in no file of programs.
+  std::optional<int> frames;
+  double fps = kUsualFps;  // frames a second
 };
 
 // Where a render's random numbers come from (runtime/sampler.h).

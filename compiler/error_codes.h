@@ -116,6 +116,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0514", "a field that is not a number somewhere"},
     {"W0515", "no light reaches the camera"},
     {"W0516", "nothing is in view"},  // runtime/cli/picture_warning.cpp
+    {"W0517", "a shutter in a scene without time"},
 };
 
 }  // namespace fathom::compiler

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/region_plan.h"
+#include "runtime/region_store.h"
 #include "vm/check.h"
 #include "vm/convexity.h"
 
@@ -127,7 +128,9 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
   RegionOptions chosen = options;
   chosen.room = room_of(field, compiled);
   chosen.magnitude = field.magnitude;
-  field.regions = Regions::build(compiled.surface, contents_of(field, compiled), chosen);
+  const compiler::Box& contents = contents_of(field, compiled);
+  field.regions = options.store ? options.store->build(compiled.surface, contents, chosen)
+                                : Regions::build(compiled.surface, contents, chosen);
   if (field.regions) become_large(field, field.regions->far_levels());
 }
 

@@ -39,6 +39,8 @@ inline constexpr double kFullPixel = 0x1p31;
 // Fainter samples may be off by more than a hundredth, and are 0 below half of kFilmStep.
 inline constexpr double kFilmStep = 0x1p-32, kFaintLight = 50 * kFilmStep;
 
+inline constexpr std::uint32_t kNoId = ~0u;
+
 // What one camera path adds to its pixel.
 struct PathSample {
   glm::vec3 radiance{0};     // linear sRGB
@@ -49,7 +51,7 @@ struct PathSample {
   glm::vec3 normal{0};                      // unit length, towards the camera
   double depth = 0;                         // along the ray, scene units
   glm::dvec3 position{0};                   // scene units
-  std::uint32_t surface = 0, material = 0;  // indices into the scene's tables
+  std::uint32_t surface = 0, material = 0;  // indices into the scene's tables, or kNoId
   // Of the field, for all the path's rays.
   std::uint64_t evaluations = 0;
   std::uint64_t instructions = 0;  // over those evaluations
@@ -177,7 +179,7 @@ class Film {
   };
   // Of the sample `number`; all bits set when none hit.
   struct Ids {
-    std::uint32_t number = ~0u, surface = ~0u, material = ~0u;
+    std::uint32_t number = ~0u, surface = kNoId, material = kNoId;
     auto operator<=>(const Ids&) const = default;
   };
   // Plain sums: 64 bits of instructions take a pixel a lifetime.

@@ -49,6 +49,7 @@ struct World {
   Materials materials;
   Lights lights;
   std::optional<Space> camera_space;  // where all camera rays begin, if they do in the same
+  bool numbered = true;  // surfaces and materials have the numbers that they have in the picture's own scene
 };
 
 // Which numbers paths are drawn by, and where they stand among the samples of their pixel.

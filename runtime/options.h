@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "compiler/compiled_scene.h"
 #include "runtime/environment_file.h"
@@ -20,6 +21,14 @@
 #include "runtime/pixel_rect.h"
 
 namespace fathom::runtime {
+
+class RegionStore;
+
+// A scene that moves, as it is while some samples of each pixel are taken.
+struct Moment {
+  const compiler::CompiledScene* scene;  // about the origin of the picture's own scene
+  SampleRange samples;
+};
 
 struct Progress {
   double fraction;     // of the camera paths that are done, in [0,1]
@@ -68,6 +77,12 @@ struct RenderOptions {
   // Of each pixel these samples alone, of the `spp` there are in all; films of other ranges add up to the whole. Not
   // with `adaptive` or `noise`.
   std::optional<SampleRange> sample_range;
+  // The scene in place of the picture's own for runs of samples, in order, which together are all there are: how a
+  // shutter's time is sampled. Film and settings are those of the picture's own scene. Not with `adaptive` or
+  // `noise`, by which some pixels would see the first moments alone.
+  std::vector<Moment> moments;
+  // Where regions are looked for before they are built, and left for the next render.
+  std::shared_ptr<RegionStore> region_store;
   // What an earlier render with the same settings, but for threads and tile, has done. render() takes it, and leaves
   // it empty: a film is large.
   std::shared_ptr<PartialRender> resume_from;

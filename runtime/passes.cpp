@@ -1,10 +1,7 @@
 #include "runtime/passes.h"
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -15,37 +12,6 @@
 
 namespace fathom::runtime {
 namespace {
-
-// Calls on_tick now and then until it is destroyed.
-class Ticker {
- public:
-  Ticker(const RenderOptions& options, SharedPicture& picture) {
-    if (!options.on_tick) return;
-    thread_ = std::thread([this, &options, &picture] {
-      std::unique_lock lock(mutex_);
-      while (!ended_.wait_for(lock, std::chrono::duration<double>(kTickSeconds), [this] { return over_; })) {
-        options.on_tick([&](const auto& use) { picture.look(use); });
-      }
-    });
-  }
-  ~Ticker() {
-    if (!thread_.joinable()) return;
-    {
-      const std::lock_guard lock(mutex_);
-      over_ = true;
-    }
-    ended_.notify_one();
-    thread_.join();
-  }
-  Ticker(const Ticker&) = delete;
-  Ticker& operator=(const Ticker&) = delete;
-
- private:
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  bool over_ = false;
-  std::thread thread_;
-};
 
 Stats run_threads(const PassWork& pass, int threads) {
   std::vector<Stats> stats(static_cast<std::size_t>(threads));
@@ -64,11 +30,6 @@ Stats run_threads(const PassWork& pass, int threads) {
   return sum;
 }
 
-std::uint64_t samples_of(const Settings& settings) {
-  const std::uint32_t each = settings.samples.size();
-  return std::uint64_t{settings.crop.pixels()} * (settings.noise ? each / 2 * 2 : each);  // as many of both halves
-}
-
 // That the open tiles may take at most.
 std::uint64_t samples_left(const NoiseState& state, const Settings& settings) {
   const Tiles tiles(settings.crop, kNoiseTile);
@@ -81,19 +42,11 @@ std::uint64_t samples_left(const NoiseState& state, const Settings& settings) {
 
 }  // namespace
 
-Passes::Passes(const World& world, const RenderOptions& options, PartialRender& render,
-               SharedPicture::Clock::time_point start)
-    : world_(world),
-      options_(options),
-      render_(render),
-      picture_(render, samples_of(world.settings), options, start) {}
-
-Stats Passes::run() {
-  const Ticker ticker(options_, picture_);
+Stats Passes::run(SampleRange samples) {
   const Settings& settings = world_.settings;
   if (settings.noise) return run_noise();
   if (settings.adaptive) return run_adaptive();
-  return run_pass(0, {{settings.sampler, settings.seed, settings.spp}}, settings.samples, {});
+  return run_pass(0, {{settings.sampler, settings.seed, settings.spp}}, samples, {});
 }
 
 RenderEnd Passes::end() const {

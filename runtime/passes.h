@@ -11,15 +11,15 @@ namespace fathom::runtime {
 
 class Passes {
  public:
-  // Adds to `render` what it lacks.
-  Passes(const World& world, const RenderOptions& options, PartialRender& render,
-         SharedPicture::Clock::time_point start);
+  // Adds to `render`, which `picture` shows, what it lacks.
+  Passes(const World& world, const RenderOptions& options, PartialRender& render, SharedPicture& picture)
+      : world_(world), options_(options), render_(render), picture_(picture) {}
 
-  // Until all samples are taken or the options say stop; what was counted, of all threads together. Once.
-  Stats run();
+  // Until all samples are taken, those among `samples` where they are not shared out, or the options say stop; what
+  // was counted, of all threads together. Once.
+  Stats run(SampleRange samples);
   // Why run() came back.
   RenderEnd end() const;
-  double seconds() const { return picture_.seconds(); }  // since `start`
 
  private:
   Stats run_adaptive();
@@ -32,7 +32,7 @@ class Passes {
   const World& world_;
   const RenderOptions& options_;
   PartialRender& render_;
-  SharedPicture picture_;
+  SharedPicture& picture_;
 };
 
 }  // namespace fathom::runtime

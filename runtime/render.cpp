@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "runtime/adaptive.h"
 #include "runtime/noise.h"
 #include "runtime/passes.h"
+#include "runtime/region_store.h"
 #include "runtime/tiles.h"
 #include "vm/check.h"
 
@@ -29,6 +32,65 @@ std::function<bool()> interruption(const Settings& settings, const RenderOptions
   };
 }
 
+// Calls on_tick now and then until it is destroyed.
+class Ticker {
+ public:
+  Ticker(const RenderOptions& options, SharedPicture& picture) {
+    if (!options.on_tick) return;
+    thread_ = std::thread([this, &options, &picture] {
+      std::unique_lock lock(mutex_);
+      while (!ended_.wait_for(lock, std::chrono::duration<double>(kTickSeconds), [this] { return over_; })) {
+        options.on_tick([&](const auto& use) { picture.look(use); });
+      }
+    });
+  }
+  ~Ticker() {
+    if (!thread_.joinable()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    ended_.notify_one();
+    thread_.join();
+  }
+  Ticker(const Ticker&) = delete;
+  Ticker& operator=(const Ticker&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool over_ = false;
+  std::thread thread_;
+};
+
+std::uint64_t samples_of(const Settings& settings) {
+  const std::uint32_t each = settings.samples.size();
+  return std::uint64_t{settings.crop.pixels()} * (settings.noise ? each / 2 * 2 : each);  // as many of both halves
+}
+
+// Whether a surface's number says which it is in either scene.
+bool same_numbers(const compiler::CompiledScene& a, const compiler::CompiledScene& b) {
+  const auto same_surface = [](const compiler::Surface& one, const compiler::Surface& other) {
+    return one.name == other.name && one.material == other.material;
+  };
+  const auto same_name = [](const compiler::Material& one, const compiler::Material& other) {
+    return one.name == other.name;
+  };
+  return std::ranges::equal(a.surfaces, b.surfaces, same_surface) &&
+         std::ranges::equal(a.materials, b.materials, same_name);
+}
+
+// Of each pixel, by all moments whose regions would be the same: together they are to pay for them.
+int samples_with(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
+  if (options.moments.empty()) return settings.spp;
+  std::uint32_t samples = 0;
+  for (const Moment& moment : options.moments) {
+    const bool same = moment.scene->surface.program().words == scene.surface.program().words;
+    if (same) samples += moment.samples.size();
+  }
+  return static_cast<int>(samples);
+}
+
 World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options,
                  Clock::time_point start) {
   World world{scene,
@@ -39,10 +101,14 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
               Media(scene, extent_of(scene), settings.far),
               Materials(scene),
               Lights(scene, options.environment),
-              {}};
+              {},
+              true};
   if (settings.regions) {
-    RegionOptions regions = region_options(settings);
+    Settings share = settings;
+    share.spp = samples_with(scene, settings, options);
+    RegionOptions regions = region_options(share);
     regions.interrupted = interruption(settings, options, start);
+    regions.store = options.region_store.get();
     add_regions(world.field, scene, regions);
     if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
     world.media.add_regions(scene, regions);
@@ -64,6 +130,32 @@ void check(const Settings& settings) {
   const bool whole = crop == PixelRect{0, 0, settings.width, settings.height} && settings.samples.size() == spp;
   CHECK(whole || (!settings.adaptive && !settings.noise), "samples shared out in a part");
   CHECK(!settings.adaptive || !settings.noise, "samples shared out in two ways");
+}
+
+// The runs of samples, each with its scene.
+std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Settings& settings,
+                               const RenderOptions& options) {
+  if (options.moments.empty()) return {{&scene, settings.samples}};
+  CHECK(!settings.adaptive && !settings.noise, "moments of samples that are shared out");
+  std::vector<Moment> moments;
+  std::uint32_t end = 0;
+  for (const Moment& moment : options.moments) {
+    CHECK(moment.samples.first == end && moment.scene->origin == scene.origin, "moments in order about one origin");
+    end = moment.samples.last;
+    const auto both = common({settings.crop, moment.samples}, {settings.crop, settings.samples});
+    if (both) moments.push_back({moment.scene, both->samples});
+  }
+  CHECK(end == static_cast<std::uint32_t>(settings.spp), "a moment for every sample");
+  return moments;
+}
+
+void count_regions(const World& world, const RenderOptions& options, Stats& stats) {
+  if (!world.field.regions) return;
+  const Regions::Facts& facts = world.field.regions->facts();
+  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, facts.bytes);
+  const bool kept = options.region_store && options.region_store->kept(*world.field.regions);
+  stats.region_seconds += kept ? 0 : facts.seconds;
+  stats.regions_kept += kept;
 }
 
 }  // namespace
@@ -131,18 +223,29 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
     result.covered.resize(1);
   }
   const std::uint64_t resumed = options.resume_from ? result.film.samples() : 0;
-  const World world = make_world(scene, settings, options, start);
-  Passes passes(world, options, result, start);
-  result.stats = passes.run();
-  for (Coverage& covered : result.covered) covered.tidy();
-  if (world.field.regions) {
-    result.stats.region_bytes = world.field.regions->facts().bytes;
-    result.stats.region_seconds = world.field.regions->facts().seconds;
+  SharedPicture picture(result, samples_of(settings), options, start);
+  std::optional<Ticker> ticker;
+  for (const Moment& moment : moments_of(scene, settings, options)) {
+    if (!options.moments.empty()) {
+      picture.change([&] { result.covered.front().tidy(); });
+      if (result.covered.front().covers({settings.crop, moment.samples})) continue;
+    }
+    if (moment.samples.first > settings.samples.first && picture.stopped()) break;
+    World world = make_world(*moment.scene, settings, options, start);
+    world.numbered = same_numbers(scene, *moment.scene);
+    if (options.region_store) options.region_store->forget_unused();
+    if (!ticker) ticker.emplace(options, picture);
+    Passes passes(world, options, result, picture);
+    result.stats.merge(passes.run(moment.samples));
+    result.stats.end = passes.end();
+    count_regions(world, options, result.stats);
   }
-  result.stats.seconds = passes.seconds();
+  ticker.reset();
+  if (picture.end() != RenderEnd::Done) result.stats.end = picture.end();
+  for (Coverage& covered : result.covered) covered.tidy();
+  result.stats.seconds = picture.seconds();
   result.stats.threads = settings.threads;
   result.stats.resumed_samples = resumed;
-  result.stats.end = passes.end();
   return result;
 }
 

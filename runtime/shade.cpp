@@ -208,8 +208,8 @@ void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
   result.normal = v.point->normal;
   result.depth = arrival.t;
   result.position = v.hit->position;
-  result.surface = v.point->surface;
-  result.material = v.point->material;
+  result.surface = world_.numbered ? v.point->surface : kNoId;
+  result.material = world_.numbered ? v.point->material : kNoId;
 }
 
 void Integrator::add_emission(const Vertex& v) {

@@ -59,6 +59,7 @@ struct Stats {
   std::uint64_t peak_memory = 0;       // bytes, of the whole process until now; 0: not known
   std::uint64_t region_bytes = 0;      // that the scene's regions take; 0: it has none
   double region_seconds = 0;           // to build them, part of `seconds`
+  std::uint64_t regions_kept = 0;      // how often they were those of a render or a moment before
   double seconds = 0;                  // wall clock
   int threads = 0;
   std::uint64_t resumed_samples = 0;  // of all pixels, that the render went on from

@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 namespace {
 
-const std::string* text(const syntax::Value* value) {
+const std::string* text_of(const syntax::Value* value) {
   return value ? std::get_if<std::string>(&value->data) : nullptr;
 }
 
@@ -76,7 +76,7 @@ void NodeChecker::check_node(const syntax::Value& value, CheckedNode& node) {
   const auto* record = std::get_if<syntax::Record>(&value.data);
   if (record == nullptr) {
     std::vector<std::string> help = {"such as {\"type\": \"sphere\", \"radius\": 1}"};
-    if (const std::string* name = text(&value)) {
+    if (const std::string* name = text_of(&value)) {
       const bool type = find_node(*name) != nullptr;
       help = {type ? fmt::format("write {{\"type\": \"{}\", ...}}", *name)
                    : fmt::format("write {{\"use\": \"{}\"}} to refer to a named node", *name)};
@@ -133,7 +133,7 @@ void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& 
 
 void NodeChecker::check_use(const syntax::Record& record, const syntax::Property& use, CheckedNode& node) {
   const RecordReader reader(use_record(), record, use.name_span, scope_, diagnostics_, "E0301");
-  if (const std::string* name = text(reader.value("use"))) {
+  if (const std::string* name = text_of(reader.value("use"))) {
     node.word = *name;
     node.use = nodes_.resolve(*name, "named node", "E0203", use.value->span, diagnostics_);
   }
@@ -141,7 +141,7 @@ void NodeChecker::check_use(const syntax::Record& record, const syntax::Property
 }
 
 void NodeChecker::check_type(const syntax::Record& record, const syntax::Property& type, CheckedNode& node) {
-  const std::string* name = text(type.value.get());
+  const std::string* name = text_of(type.value.get());
   const NodeSpec* row = name ? find_node(*name) : nullptr;
   if (name == nullptr) {
     diagnostics_.error("E0101", type.value->span,
@@ -211,9 +211,9 @@ void NodeChecker::check_children(const syntax::Value& of, const NodeSpec& row, C
 }
 
 void NodeChecker::check_common(const RecordReader& reader, CheckedNode& node) {
-  if (const std::string* name = text(reader.value("name"))) node.name = *name;
+  if (const std::string* name = text_of(reader.value("name"))) node.name = *name;
   if (const syntax::Value* material = reader.value("material")) {
-    node.material = materials_.resolve(*text(material), "material", "E0202", material->span, diagnostics_);
+    node.material = materials_.resolve(*text_of(material), "material", "E0202", material->span, diagnostics_);
   }
   node.transform = read_placement(reader, scope_, diagnostics_);
   if (const syntax::Value* translate = reader.value("translate")) {
@@ -231,7 +231,7 @@ void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax
     if (std::holds_alternative<syntax::Record>(of->value->data)) add_one(*of->value, node.children);
   }
   const syntax::Property* material = record.find("material");
-  if (const std::string* wanted = material ? text(material->value.get()) : nullptr) {
+  if (const std::string* wanted = material ? text_of(material->value.get()) : nullptr) {
     materials_.resolve(*wanted, "material", "E0202", material->value->span, diagnostics_);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "compiler/frontend/animation.h"
 #include "compiler/frontend/build.h"
 #include "compiler/frontend/check_node.h"
 #include "compiler/frontend/check_sorts.h"
@@ -144,6 +145,16 @@ void check_render_limits(const syntax::Record& record, const Elaborated& scene, 
   check(scene.settings.spp, &Limits::samples, "render", "spp", fmt::format("{} samples a pixel", scene.settings.spp));
 }
 
+// What the shutter sees is the same at all times.
+void warn_of_shutter(const syntax::Record& record, const Camera& camera, const Scope& parameters,
+                     Diagnostics& diagnostics) {
+  if (!(camera.shutter > 0) || declares(parameters, kTimeParameter)) return;
+  diagnostics.warning("W0517", place_of(record, "camera", "shutter"),
+                      "the `shutter` blurs nothing: the scene has no parameter `time`", "",
+                      {diagnostics.spelled("declare it, \"params\": {\"time\": 0}, and move what is to move with it",
+                                           "declare it, param time = 0, and move what is to move with it")});
+}
+
 }  // namespace
 
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
@@ -168,6 +179,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   if (diagnostics.has_errors()) return std::nullopt;
   warn_of_unused(scene, diagnostics);
   warn_of_unused(parameters, diagnostics);
+  warn_of_shutter(*record, out.camera, parameters, diagnostics);
   for (const Scope::Entry& entry : parameters.entries()) out.parameters.push_back(entry.parameter);
 
   SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, limits, diagnostics);

@@ -17,7 +17,9 @@ RecordSpec camera(std::string type, std::vector<PropertySpec> own) {
       "camera",
       {choice({"perspective", "orthographic", "panorama"}, "the projection", false),
        vec3("position", "where the camera is", {0, 0, 5}), vec3("target", "what it looks at", {0, 0, 0}),
-       vec3("up", "the direction that is up in the picture", {0, 1, 0}, Rule::NotZero)}};
+       vec3("up", "the direction that is up in the picture", {0, 1, 0}, Rule::NotZero),
+       number("shutter", "share of a frame's time that it is open, from the frame's begin; 0: nothing blurs", {0},
+              kUnit)}};
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   return record;
 }
@@ -150,11 +152,21 @@ const RecordSpec& film_record() {
       "",
       "`film`",
       "film",
-      {integer("width", "pixels", 640, {1, kMaxSide}), integer("height", "pixels", 360, {1, kMaxSide}),
+      {integer("width", "pixels", 640, {1, kMaxSide}),
+       integer("height", "pixels", 360, {1, kMaxSide}),
        number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100}),
        choice("tone", "how light becomes a display's, after exposure", kToneCurves),
        choice("filter", "how a pixel weighs the light around its centre", kFilterNames),
-       number("filter_width", "of the filter's support, pixels", {}, {kMinFilterWidth, kMaxFilterWidth})}};
+       number("filter_width", "of the filter's support, pixels", {}, {kMinFilterWidth, kMaxFilterWidth}),
+       {"frames",
+        ValueType::Integer,
+        "of the animation, those of --frames all",
+        {},
+        false,
+        Rule::Any,
+        {1, kMostFrames},
+        {}},
+       number("fps", "frames a second", {kUsualFps}, {kLeastFps, kMostFps})}};
   return record;
 }
 

@@ -72,6 +72,7 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
   camera.position = reader.vec3("position");
   camera.target = reader.vec3("target");
   camera.up = reader.vec3("up");
+  camera.shutter = reader.number("shutter");
   if (row->type == "orthographic") {
     camera.projection = Camera::Projection::Orthographic;
     camera.width = reader.number("width");
@@ -95,6 +96,8 @@ Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diag
   film.tone = static_cast<ToneCurve>(reader.choice("tone"));
   film.filter = static_cast<FilterKind>(reader.choice("filter"));
   if (reader.value("filter_width")) film.filter_width = reader.number("filter_width");
+  if (reader.value("frames")) film.frames = static_cast<int>(reader.number("frames"));
+  film.fps = reader.number("fps");
   return film;
 }
 

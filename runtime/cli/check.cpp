@@ -8,12 +8,16 @@
 #include <ostream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "runtime/cli/check_report.h"
+#include "runtime/cli/frame_options.h"
+#include "runtime/cli/held_messages.h"
 #include "runtime/cli/picture_warning.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/shutter.h"
 
 namespace fathom::cli {
 namespace {
@@ -23,6 +27,7 @@ constexpr const char* kCheckExamples =
     "fathom check scenes/*.json                     # the worst is the status\n"
     "fathom check --error-format short scene.json   # a line per error\n"
     "fathom check --error-format json scene.json    # JSON lines\n"
+    "fathom check --frames 0:192 hop.fathom         # each frame of an animation\n"
     "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
 
 constexpr int kMostProbes = 100'000'000;
@@ -31,6 +36,7 @@ struct CheckRequest {
   SceneArguments scene;
   std::vector<std::string> paths;
   std::optional<int> probes, threads;
+  FrameOptions frames;
 };
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, CheckRequest& request) {
@@ -45,7 +51,11 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    whole(request.probes, 1, kMostProbes));
   arguments.option("--threads", "N", "Number of threads of --probe (one per processor)",
                    whole(request.threads, 1, 1024));
-  return arguments.parse(args, streams);
+  add_frame_options(arguments, request.frames);
+  if (const auto code = arguments.parse(args, streams)) return code;
+  if (!request.probes || !request.frames.given()) return std::nullopt;
+  return fail(streams, kUsage, "--probe does not go with --frames: it looks at one moment for long",
+              {"choose the moment with -D time=1.5"});
 }
 
 // Prints what the probes saw; kFoundProblems when they refute anything.
@@ -63,23 +73,90 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   return culprits.empty() ? kDone : kFoundProblems;
 }
 
-ExitCode check_scene(const CheckRequest& request, const Streams& streams) {
-  auto source = read_scene(request.scene, streams);
-  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  compiler::Scene graph;
+// Compiles and warns of all there is to warn of; `graph` is what was read.
+std::variant<compiler::CompiledScene, ExitCode> compile_checked(const SceneInput& input,
+                                                                const SceneArguments& arguments,
+                                                                compiler::Scene& graph, const Streams& streams) {
   compiler::CompileOptions options;
   options.lint = true;
   options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
     if (pass == "graph") graph = stage;
   };
-  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
+  auto compiled = compile_scene(input, arguments, streams, options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code == kBadScene ? kFoundProblems : *code;
+  return compiled;
+}
 
-  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+void print_report(const CheckRequest& request, const compiler::CompiledScene& scene, const compiler::Scene& graph,
+                  const Streams& streams) {
+  if (streams.quiet) return;
   const compiler::Report report = make_report(graph, scene.surfaces);
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
-  if (!streams.quiet) print(streams, json ? report_json(scene, report) : report_text(scene, report));
+  print(streams, json ? report_json(scene, report) : report_text(scene, report));
+}
+
+ExitCode check_moment(const CheckRequest& request, const SceneInput& input, const Streams& streams) {
+  compiler::Scene graph;
+  const auto compiled = compile_checked(input, request.scene, graph, streams);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+  print_report(request, scene, graph, streams);
   return request.probes ? run_probe(request, scene, graph, streams) : kDone;
+}
+
+// The moments that the shutter sees of a frame of the scene's own settings; false, after messages, when one of them
+// has errors.
+bool check_shutter(const SceneInput& input, const SceneArguments& frame, const compiler::CompiledScene& scene,
+                   const Sequence& sequence, int number, const Streams& streams) {
+  if (!(scene.camera.shutter > 0) || !sequence.animation.time) return true;
+  const double open = scene.camera.shutter / sequence.fps;
+  for (const runtime::ShutterRun& run :
+       runtime::shutter_runs(scene.settings.spp, runtime::kUsualShutterTimes, scene.settings.seed, number)) {
+    SceneArguments moment = frame;
+    moment.definitions.emplace_back(compiler::kTimeParameter, sequence.time_of(number) + open * run.time);
+    moment.inspect = nullptr;
+    HeldMessages held(streams);
+    if (std::holds_alternative<compiler::CompiledScene>(compile_scene(input, moment, held.streams()))) continue;
+    held.release();
+    return false;
+  }
+  return true;
+}
+
+// Reports the first frame that can be, and counts those that cannot.
+ExitCode check_frames(const CheckRequest& request, SceneInput& input, const Streams& streams) {
+  const auto asked = sequence_of(request.frames, input, request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&asked)) return *code == kBadScene ? kFoundProblems : *code;
+  const auto& sequence = std::get<Sequence>(asked);
+  std::string last;
+  std::vector<int> bad;
+  bool reported = false;
+  for (int index = 0; index < sequence.frames.count(); ++index) {
+    const int frame = sequence.frames.at(index);
+    const SceneArguments arguments = sequence.at(request.scene, frame);
+    compiler::Scene graph;
+    HeldMessages held(streams);
+    const auto compiled = compile_checked(input, arguments, graph, held.streams());
+    held.release_news(last);
+    const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
+    if (scene && !std::exchange(reported, true)) print_report(request, *scene, graph, streams);
+    if (scene && check_shutter(input, arguments, *scene, sequence, frame, streams)) continue;
+    fail_about(arguments, kFoundProblems, fmt::format("{} has errors", sequence.describe(frame)), {}, streams);
+    bad.push_back(frame);
+  }
+  const bool text = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Text;
+  if (text && !streams.quiet) {
+    print(streams, fmt::format("{} checked, {} with errors\n",
+                               count_of(static_cast<std::size_t>(sequence.frames.count()), "frame"), bad.size()));
+  }
+  return bad.empty() ? kDone : kFoundProblems;
+}
+
+ExitCode check_scene(const CheckRequest& request, const Streams& streams) {
+  auto source = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  auto& input = std::get<SceneInput>(source);
+  return request.frames.given() ? check_frames(request, input, streams) : check_moment(request, input, streams);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ std::vector<std::string> differences(const runtime::FilmFile& file, const runtim
 }
 
 constexpr const char* kElsewhere = "--checkpoint FILE chooses another name for the checkpoint";
+constexpr const char* kWillBeReplaced = "`{}` is there from another render and will be replaced by this one's";
 constexpr const char* kNoSense = "`{}` makes no sense: its sums are not what its head says";
 
 }  // namespace
@@ -43,10 +44,12 @@ std::string Checkpoint::remedy() const {
 }
 
 std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, const runtime::Settings& settings,
-                                           runtime::RenderOptions& options, const Streams& streams) {
+                                           runtime::RenderOptions& options, const Streams& streams,
+                                           bool one_of_many) {
   known_ = runtime::stamp_of(path_);
   if (!known_) {
-    note(streams, fmt::format("there is no checkpoint `{}`: the render begins at its beginning", path_));
+    if (!one_of_many)
+      note(streams, fmt::format("there is no checkpoint `{}`: the render begins at its beginning", path_));
     return std::nullopt;
   }
   auto read = runtime::read_film(path_, limits_);
@@ -56,6 +59,10 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, co
   }
   auto& file = std::get<runtime::FilmFile>(read);
   std::vector<std::string> problems = differences(file, header, settings);
+  if (!problems.empty() && one_of_many && !named_) {
+    note(streams, fmt::format(kWillBeReplaced, path_));
+    return std::nullopt;
+  }
   if (!problems.empty()) {
     problems.push_back("render with the settings that are there, or " + remedy());
     return fail(streams, kBadScene, fmt::format("`{}` is the checkpoint of another render", path_), problems);
@@ -80,7 +87,7 @@ std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& head
       problems.push_back(remedy());
       return fail(streams, kBadScene, fmt::format("`{}` is the checkpoint of another render", path_), problems);
     }
-    note(streams, fmt::format("`{}` is there from another render and will be replaced by this one's", path_));
+    note(streams, fmt::format(kWillBeReplaced, path_));
     return std::nullopt;
   }
   const auto whole = runtime::read_film(path_, limits_);

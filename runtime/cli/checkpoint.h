@@ -31,9 +31,10 @@ class Checkpoint {
       : path_(std::move(path)), named_(named), interval_(interval), limits_(limits) {}
 
   // For --resume: what there is, into `options`. An ExitCode, after a message, when it is of another render or cannot
-  // be read; a note when there is none.
+  // be read; a note when there is none. Of the pictures that are `one_of_many` most have none, and one of another
+  // render is replaced, if nobody named it.
   std::optional<ExitCode> resume(const runtime::FilmHeader& header, const runtime::Settings& settings,
-                                 runtime::RenderOptions& options, const Streams& streams);
+                                 runtime::RenderOptions& options, const Streams& streams, bool one_of_many = false);
   // Without it. An ExitCode, after a message, when what there is could be resumed, or is no film, or, under a name of
   // the command line, anything else; a note when it will be replaced.
   std::optional<ExitCode> begin_afresh(const runtime::FilmHeader& header, const runtime::Settings& settings,

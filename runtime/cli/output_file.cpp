@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <ostream>
+#include <set>
 #include <system_error>
 
 #include "compiler/compiled_scene.h"
@@ -44,6 +45,18 @@ Verdict read_shown_output(std::string_view text, Output& output) {
   return Complaint{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
 }
 
+Verdict read_frame_output(std::string_view text, Output& output) {
+  std::error_code ignored;
+  if (!text.ends_with('/') && !std::filesystem::is_directory(text, ignored)) return read_output(text, output);
+  output.path = text.ends_with('/') ? text : std::string(text) + '/';
+  output.format = &runtime::kImageFormats.front();
+  return std::nullopt;
+}
+
+std::string_view ending_of(const Output& output) {
+  return output.film() ? kFilmEnding.substr(1) : output.format->ending;
+}
+
 void add_format_option(Arguments& arguments, bool shown_only, int& format) {
   std::vector<std::string_view> names;  // those that are shown come first
   for (const runtime::ImageFormatInfo& known : runtime::kImageFormats) {
@@ -55,22 +68,23 @@ void add_format_option(Arguments& arguments, bool shown_only, int& format) {
 }
 
 std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams) {
-  const auto standard = std::find_if(outputs.begin(), outputs.end(), [](const Output& o) { return o.standard(); });
-  if (standard == outputs.end()) {
-    if (format < 0) return std::nullopt;
-    return fail(streams, kUsage, "--format is for `-o -`; a file's name says its format by its ending");
-  }
-  if (std::any_of(standard + 1, outputs.end(), [](const Output& o) { return o.standard(); })) {
-    return fail(streams, kUsage, "`-o -` is given twice: standard output takes one picture");
-  }
-  if (streams.out_terminal) {
+  const auto standard = [](const Output& output) { return output.standard(); };
+  const auto streamed = std::count_if(outputs.begin(), outputs.end(), standard);
+  if (streamed > 1) return fail(streams, kUsage, "`-o -` is given twice: standard output takes one picture");
+  if (streamed == 1 && streams.out_terminal) {
     return fail(streams, kUsage, "`-o -`: standard output is a terminal, which shows no pictures",
                 {"add `> out.png`, or `| PROGRAM`"});
   }
   if (format < 0) return std::nullopt;
+  bool used = false;
   const auto index = static_cast<std::size_t>(format);
-  standard->format = index < runtime::kImageFormats.size() ? &runtime::kImageFormats[index] : nullptr;
-  return std::nullopt;
+  for (Output& output : outputs) {
+    if (!output.standard() && !output.folder()) continue;
+    output.format = index < runtime::kImageFormats.size() ? &runtime::kImageFormats[index] : nullptr;
+    used = true;
+  }
+  if (used) return std::nullopt;
+  return fail(streams, kUsage, "--format is for `-o -`; a file's name says its format by its ending");
 }
 
 std::optional<std::string> write_to(const Output& output, const Fill& fill, const Streams& streams) {
@@ -156,15 +170,13 @@ std::optional<ExitCode> check_picture_size(double width, double height, const co
 
 std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,
                                          const Streams& streams) {
-  std::vector<std::filesystem::path> taken;
-  if (scene != "-") taken.push_back(canonical_name(scene));
+  std::set<std::filesystem::path> taken;
+  if (scene != "-") taken.insert(canonical_name(scene));
   for (const std::string& file : outputs) {
-    std::filesystem::path path = canonical_name(file);
-    if (std::find(taken.begin(), taken.end(), path) != taken.end()) {
+    if (!taken.insert(canonical_name(file)).second) {
       return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is read, or is another output", file),
                   {"give each output a name of its own"});
     }
-    taken.push_back(std::move(path));
   }
   return std::nullopt;
 }

@@ -23,6 +23,7 @@ struct Output {
   const runtime::ImageFormatInfo* format = nullptr;  // nullptr: a film (runtime/film_file.h)
 
   bool standard() const { return path == "-"; }
+  bool folder() const { return path.ends_with('/'); }  // of pictures named by their frames
   bool film() const { return format == nullptr; }
   // Whether all layers are in one file, so that none is written beside it.
   bool layers() const { return film() || format->format == runtime::ImageFormat::Exr; }
@@ -32,12 +33,15 @@ struct Output {
 // otherwise. read_shown_output() takes only formats that hold what a display shows.
 Verdict read_output(std::string_view text, Output& output);
 Verdict read_shown_output(std::string_view text, Output& output);
+// Or a folder, of PNGs until put_formats() says otherwise.
+Verdict read_frame_output(std::string_view text, Output& output);
 
-// The option --format, which says the format of -o -. `format` is an index into the names; -1: not given.
+// The option --format, which says the format of -o - and of folders. `format` is an index into the names; -1: not
+// given.
 void add_format_option(Arguments& arguments, bool shown_only, int& format);
 
-// Puts the format that --format said into the output that is standard output. An ExitCode, after a message, when
-// there is none or more than one, or when standard output is a terminal.
+// Puts the format that --format said into the outputs that are standard output or a folder. An ExitCode, after a
+// message, when there is none, when standard output is given twice, or when it is a terminal.
 std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams);
 
 // Has `fill` write the output and commit it. The reason when that cannot be done.
@@ -49,6 +53,9 @@ std::string wrote(const Output& output, int width, int height);
 
 // "scenes/ball.json" -> "ball.png", in the current folder; "out.png" for standard input.
 Output default_output(const std::string& scene);
+
+// "png", or "film".
+std::string_view ending_of(const Output& output);
 
 // "dir/ball.png", "albedo" -> "dir/ball-albedo.png"
 std::string beside(const std::string& path, const std::string& suffix);

@@ -52,9 +52,9 @@ void ProgressLine::update(const runtime::Progress& progress) {
   last_fraction_ = progress.fraction;
   drawn_ = true;
   if (streams_.terminal) {
-    streams_.err << '\r' << describe(progress) << "\033[K" << std::flush;
+    streams_.err << '\r' << prefix_ << describe(progress) << "\033[K" << std::flush;
   } else {
-    streams_.err << describe(progress) << '\n' << std::flush;
+    streams_.err << prefix_ << describe(progress) << '\n' << std::flush;
   }
 }
 

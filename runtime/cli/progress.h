@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "runtime/cli/streams.h"
 #include "runtime/options.h"
@@ -17,7 +18,9 @@ std::string duration(double seconds);
 
 class ProgressLine {
  public:
-  explicit ProgressLine(const Streams& streams) : streams_(streams) {}
+  // `prefix` comes before what is said.
+  explicit ProgressLine(const Streams& streams, std::string prefix = "")
+      : streams_(streams), prefix_(std::move(prefix)) {}
   ~ProgressLine();  // wipes the line
 
   void update(const runtime::Progress& progress);
@@ -27,6 +30,7 @@ class ProgressLine {
   bool due(const runtime::Progress& progress) const;
 
   const Streams& streams_;
+  const std::string prefix_;
   double last_seconds_ = 0;   // when a line was last shown
   double last_fraction_ = 0;  // what it said
   bool drawn_ = false;

@@ -1,334 +1,19 @@
 // fathom render: scene file to pictures. Everything that can be found wrong is found before the first ray.
 // Tested by: tests/runtime/cli_test.cpp
-#include "runtime/render.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <mutex>
 #include <ostream>
-#include <system_error>
 #include <thread>
-#include <utility>
 
-#include "runtime/cli/checkpoint.h"
-#include "runtime/cli/closing_lines.h"
-#include "runtime/cli/cost_map.h"
-#include "runtime/cli/interruption.h"
-#include "runtime/cli/invalid_rays.h"
-#include "runtime/cli/memory.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/picture_files.h"
-#include "runtime/cli/picture_warning.h"
-#include "runtime/cli/progress.h"
-#include "runtime/cli/render_identity.h"
-#include "runtime/cli/render_request.h"
-#include "runtime/cli/verbosity.h"
+#include "runtime/cli/picture_job.h"
+#include "runtime/cli/render_files.h"
+#include "runtime/cli/sequence.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/denoise.h"
-#include "runtime/file_watch.h"
 
 namespace fathom::cli {
 namespace {
-
-PictureFiles pictures_of(const RenderRequest& request) {
-  return {request.outputs, request.albedo, request.depth, request.normal, request.denoise, request.bits != 0};
-}
-
-// --watch begins again with every change, so there is nothing to keep.
-std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
-  if (request.watch) return std::nullopt;
-  const LongRender& asked = request.long_render;
-  const auto path = asked.checkpoint ? asked.checkpoint : default_checkpoint(request);
-  if (!path) return std::nullopt;
-  return std::optional<Checkpoint>(std::in_place, *path, asked.checkpoint.has_value(),
-                                   asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
-}
-
-// Every file the run will write, but for streams.
-std::vector<std::string> output_files(const RenderRequest& request) {
-  std::vector<std::string> files = files_of(pictures_of(request));
-  if (request.cost_map) {
-    for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
-  }
-  if (request.stats_json && *request.stats_json != "-" && !is_special(*request.stats_json)) {
-    files.push_back(*request.stats_json);
-  }
-  if (const auto checkpoint = checkpoint_of(request)) files.push_back(checkpoint->path());
-  return files;
-}
-
-// The picture that the scene's background names.
-std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
-                                        runtime::RenderOptions& options, const Streams& streams) {
-  if (background.type != compiler::Background::Type::Image) return std::nullopt;
-  auto image = runtime::read_environment(background.image.file, read_limits(arguments.limits));
-  if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
-    return fail_about(arguments, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem, {},
-                      streams);
-  }
-  options.environment =
-      std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
-  return std::nullopt;
-}
-
-// Whether every file could be written, as far as can be known before there is anything to write.
-std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
-  if (const auto code = check_paths(pictures_of(request), streams)) return code;
-  if (const auto checkpoint = checkpoint_of(request)) {
-    if (const auto code = checkpoint->check_path(streams)) return code;
-  }
-  if (request.cost_map) {
-    for (const std::string& map : cost_map_files(*request.cost_map)) {
-      if (const auto problem = runtime::check_file_path(map)) return fail(streams, kIo, *problem);
-    }
-  }
-  if (request.stats_json) {
-    const bool stream = *request.stats_json == "-";
-    if (const auto problem = stream ? std::nullopt : check_text_path(*request.stats_json))
-      return fail(streams, kIo, *problem);
-  }
-  return std::nullopt;
-}
-
-// For --watch: the scene's file and what it imports, and whether the render under way is no longer of it.
-struct Watching {
-  runtime::FileWatch files;
-  std::atomic<bool> changed = false;
-  bool begun = false;  // a picture was drawn, so what is always so has been said
-};
-
-std::optional<std::string> write_stats(const std::string& path, const runtime::Stats& stats, const Streams& streams) {
-  const std::string text = runtime::to_json(stats);
-  if (path == "-") {
-    streams.out << text;
-    return std::nullopt;
-  }
-  return write_text(text, path);
-}
-
-constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sample yet";
-
-// A render from its compiled scene to its files.
-class Job {
- public:
-  Job(RenderRequest& request, const compiler::CompiledScene& scene, const Streams& streams, Watching* watching,
-      std::optional<Interruption>& interruption)
-      : request_(request),
-        scene_(scene),
-        streams_(streams),
-        watching_(watching),
-        interruption_(interruption),
-        header_(film_header(scene, runtime::resolve(scene, request.options), request.options)),
-        checkpoint_(checkpoint_of(request)),
-        line_(streams) {}
-
-  ExitCode run() {
-    if (const auto code = begin()) return *code;
-    // Under --watch a signal that ends programs ends this one.
-    if (!watching_ && !interruption_) interruption_.emplace();
-    runtime::RenderResult result = render();
-    line_.wipe();
-    if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
-    return end(result);
-  }
-
- private:
-  std::optional<ExitCode> begin() {
-    if (!checkpoint_) return std::nullopt;
-    if (request_.long_render.resume)
-      return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_);
-    return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
-  }
-
-  // All that is printed meanwhile comes from the thread that ticks.
-  runtime::RenderResult render() {
-    runtime::RenderOptions options = request_.options;
-    options.cancel = watching_ ? &watching_->changed : &interruption_->stop();
-    std::mutex mutex;
-    std::optional<runtime::Progress> latest;
-    options.on_progress = [&](const runtime::Progress& progress) {
-      const std::lock_guard lock(mutex);
-      latest = progress;
-    };
-    const auto start = std::chrono::steady_clock::now();
-    options.on_tick = [&](const runtime::RenderOptions::Look& look) {
-      std::optional<runtime::Progress> progress;
-      {
-        const std::lock_guard lock(mutex);
-        progress = latest;
-      }
-      if (progress && !request_.quiet) line_.update(*progress);
-      if (watching_ && watching_->files.changed()) watching_->changed = true;
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (checkpoint_) checkpoint_->tick(header_, look, seconds, streams_);
-      if (interruption_ && interruption_->picture_wanted()) write_so_far(look);
-    };
-    return runtime::render(scene_, options);
-  }
-
-  // For SIGUSR1: the render goes on, so what cannot be written now is no failure. Threads wait for the pictures, but
-  // not for the denoiser.
-  void write_so_far(const runtime::RenderOptions::Look& look) {
-    std::optional<std::string> problem;
-    std::vector<std::string> lines;
-    runtime::PartialRender copy;
-    PictureFiles pictures = pictures_of(request_);
-    std::erase_if(pictures.outputs, [](const Output& output) { return output.standard(); });
-    if (pictures.outputs.empty()) return warn(streams_, "standard output gets its picture when the render ends");
-    const auto write = [&](const runtime::PartialRender& render) {
-      problem = write_pictures(pictures, header_, render, std::nullopt, lines, streams_);
-    };
-    look([&](const runtime::PartialRender& render) {
-      if (render.film.samples() == 0) {
-        problem = kNoPictureYet;
-      } else if (request_.denoise) {
-        copy = render;
-      } else {
-        write(render);
-      }
-    });
-    if (request_.denoise && !problem) {
-      runtime::denoise(copy.film, 1);
-      write(copy);
-    }
-    line_.wipe();
-    if (problem) warn(streams_, *problem);
-    for (const std::string& line : lines) note(streams_, line + ", so far");
-    streams_.err.flush();
-  }
-
-  // The checkpoint before the pictures: those can be made of it.
-  ExitCode end(runtime::RenderResult& result) {
-    using End = runtime::RenderEnd;
-    const End ended = result.stats.end;
-    warn_of_lost(result.stats);
-    warn_of_invalid(result.stats);
-    warn_of_picture(result);
-    const bool undone = ended == End::Cancelled || ended == End::TimeLimit;
-    const bool keep = checkpoint_ && (undone || checkpoint_->named());
-    if (keep) checkpoint_->write(header_, result, streams_);
-    if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
-    // A picture without any would take the place of one that may be good.
-    const bool pictures = ended != End::Cancelled || result.film.samples() > 0;
-    if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
-    if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
-    if (!pictures) note(streams_, kNoPictureYet);
-    if (ended == End::Noise && !request_.quiet) {
-      note(streams_, "the noise is below the limit: " + samples_in(result.film));
-    }
-    if (undone) return end_undone(result);
-    if (checkpoint_ && !checkpoint_->named()) checkpoint_->remove(streams_);
-    return keep && checkpoint_->problem() ? fail_to_keep() : kDone;
-  }
-
-  ExitCode end_undone(const runtime::RenderResult& result) {
-    const bool limit = result.stats.end == runtime::RenderEnd::TimeLimit;
-    note(streams_, (limit ? "the time limit ended the render: " : "interrupted: ") + samples_in(result.film));
-    if (checkpoint_ && checkpoint_->problem()) return fail_to_keep();
-    if (checkpoint_) note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
-    if (!checkpoint_ && !watching_) note(streams_, "what is done is not kept: --checkpoint FILE would keep it");
-    return limit ? kDone : kInterrupted;
-  }
-
-  ExitCode fail_to_keep() {
-    Help help;
-    if (checkpoint_->holds_state()) help.push_back(earlier_state());
-    return fail(streams_, kIo, fmt::format("what was rendered is not kept: {}", *checkpoint_->problem()), help);
-  }
-
-  std::string earlier_state() const {
-    return fmt::format("an earlier state of it is in {}; --resume goes on from that", checkpoint_->path());
-  }
-
-  // Rays that were lost where the field is not a number.
-  void warn_of_invalid(const runtime::Stats& stats) {
-    const std::optional<glm::dvec3>& at = stats.march.invalid_at;
-    if (at) warn(streams_, invalid_text(scene_, stats.march.invalid, stats.march.rays, *at));
-  }
-
-  // Of a whole picture with all its samples: parts may well be empty.
-  void warn_of_picture(const runtime::RenderResult& result) {
-    using End = runtime::RenderEnd;
-    const runtime::Settings& used = result.settings;
-    const bool whole = !request_.crop && used.samples.size() == static_cast<std::uint32_t>(used.spp);
-    if (!whole || (result.stats.end != End::Done && result.stats.end != End::Noise)) return;
-    if (const auto text = picture_warning(scene_, result)) warn(streams_, *text);
-  }
-
-  void warn_of_lost(const runtime::Stats& stats) {
-    if (stats.saturated > 0) warn(streams_, lost_text(count_of(stats.saturated, "sample")));
-    // Where other light is brighter, so faint a light is black in every picture.
-    if (stats.faint_samples == 0 || 2 * stats.faint_samples < stats.lit_samples) return;
-    warn(streams_, fmt::format("{} of {} with light are too faint for the film, which counts in steps of {:.2g}: "
-                               "coarse or black; scale the lights up, and --exposure down",
-                               stats.faint_samples, count_of(stats.lit_samples, "sample"), runtime::kFilmStep));
-  }
-
-  // "a pixel has 3 samples at least, 5.20 on average, 8 at most"
-  static std::string samples_in(const runtime::Film& film) {
-    std::uint32_t least = ~0u, most = 0;
-    const runtime::PixelRect area = film.area();
-    for (int y = area.y0; y < area.y1; ++y) {
-      for (int x = area.x0; x < area.x1; ++x) {
-        least = std::min(least, film.samples(x, y));
-        most = std::max(most, film.samples(x, y));
-      }
-    }
-    return fmt::format("a pixel has {} at least, {:.2f} on average, {} at most", count_of(least, "sample"),
-                       static_cast<double>(film.samples()) / static_cast<double>(area.pixels()), most);
-  }
-
-  // Writes everything, or all but the pictures, and prints the closing numbers, whose memory is that of writing, too.
-  std::optional<std::string> write_all(runtime::RenderResult& result, bool pictures) {
-    std::vector<std::string> lines;
-    std::optional<double> seconds;
-    std::optional<std::string> problem;
-    if (request_.options.profile) seconds = result.stats.seconds;
-    if (pictures) problem = write_pictures(pictures_of(request_), header_, result, seconds, lines, streams_);
-    if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
-    result.stats.peak_memory = runtime::peak_memory();
-    if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
-    if (!request_.quiet) print_closing(result, lines);
-    return problem;
-  }
-
-  void print_closing(const runtime::RenderResult& result, const std::vector<std::string>& lines) {
-    std::ostream& err = streams_.err;
-    const bool all = request_.verbosity > 0 || request_.options.profile;
-    if (all) err << runtime::to_table(result.stats);
-    if (watching_ && !all) {
-      err << closing_line(scene_.source.name(), result, lines);
-      return;
-    }
-    err << closing_lines(scene_.source.name(), result);
-    for (const std::string& line : lines) err << line << '\n';
-  }
-
-  // What was rendered is not lost with the picture.
-  ExitCode fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
-    Help help;
-    if (checkpoint_ && (kept ? !checkpoint_->problem() : checkpoint_->write(header_, result, streams_))) {
-      help.push_back(fmt::format("what was rendered is in {}; --resume writes the pictures", checkpoint_->path()));
-    } else if (checkpoint_ && checkpoint_->holds_state()) {
-      help.push_back(earlier_state());
-    }
-    return fail(streams_, kIo, problem, help);
-  }
-
-  RenderRequest& request_;
-  const compiler::CompiledScene& scene_;
-  const Streams& streams_;
-  Watching* watching_;
-  std::optional<Interruption>& interruption_;
-  const runtime::FilmHeader header_;
-  std::optional<Checkpoint> checkpoint_;
-  ProgressLine line_;
-};
 
 bool asks_for_checkpoint(std::span<const std::string> args) {
   return std::any_of(args.begin(), args.end(),
@@ -336,41 +21,26 @@ bool asks_for_checkpoint(std::span<const std::string> args) {
 }
 
 // One picture of the file as it is now.
-ExitCode render_once(const RenderRequest& asked, const Streams& streams, Watching* watching,
+ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams& streams, Watching* watching,
                      std::optional<Interruption>& interruption) {
-  RenderRequest request = asked;
-  if (watching) request.scene.on_import = [watching](const std::string& path) { watching->files.add(path); };
-  auto source = read_scene(request.scene, streams);
-  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
-  Verbosity verbosity(request.verbosity, streams);
-  compiler::CompileOptions options = verbosity.watch_compiler();
-  options.lint_picture = true;
-  options.stage = true;
-  auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams, options);
-  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  auto& scene = std::get<compiler::CompiledScene>(compiled);
-  if (const auto code = override_scene(request, scene, streams)) return *code;
-  if (const auto code = check_memory(request, scene, streams)) return *code;
-  fit_regions(request, scene);
-  if (const auto code = read_background(scene.background, request.scene, request.options, streams)) return *code;
-  verbosity.describe(scene, runtime::resolve(scene, request.options));
-  const bool first = !watching || !std::exchange(watching->begun, true);
-  if (request.default_output && first && !request.quiet) {
-    note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front().path));
-  }
-  if (request.options.clamp && first && !request.quiet) {
-    note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
-  }
-  return Job(request, scene, streams, watching, interruption).run();
+  const auto input = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
+  const auto picture = prepare_picture(request, std::get<SceneInput>(input), kept, streams);
+  if (const auto* code = std::get_if<ExitCode>(&picture)) return *code;
+  return PictureJob(*std::get<std::unique_ptr<Picture>>(picture), streams, watching, interruption).run();
 }
 
 // Until a signal ends the program: files are written whole or not at all, so any moment will do.
-[[noreturn]] void render_on_change(const RenderRequest& request, const Streams& streams) {
+[[noreturn]] void render_on_change(RenderRequest request, const Streams& streams) {
   Watching watching{runtime::FileWatch({request.scene.path})};
+  request.scene.on_import = [&](const std::string& path) { watching.files.add(path); };
   std::optional<Interruption> none;
+  KeptWork kept;
   for (bool first = true;; first = false) {
     watching.changed = false;
-    render_once(request, streams, &watching, none);
+    kept.background = nullptr;  // its file may be another by now
+    kept.messages.clear();
+    render_once(request, kept, streams, &watching, none);
     if (first && !request.quiet) {
       note(streams, fmt::format("drawing again whenever {} changes; Ctrl-C ends", request.scene.path));
     }
@@ -393,13 +63,15 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
   if (const auto code = check_bits(pictures_of(request), streams)) return *code;
+  if (request.frames.given()) return render_frames(request, streams, interruption);
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   if (request.watch) {
     interruption.reset();
     render_on_change(request, streams);
   }
-  return render_once(request, streams, nullptr, interruption);
+  KeptWork kept;
+  return render_once(request, kept, streams, nullptr, interruption);
 }
 
 }  // namespace fathom::cli

@@ -61,6 +61,18 @@ std::string marching_of(const runtime::Marching& marching) {
   return text;
 }
 
+// A digest of the scenes and of the camera's place in each, which may come from the command line.
+std::string moments_of(const std::vector<runtime::Moment>& moments) {
+  vm::ByteWriter bytes;
+  for (const runtime::Moment& moment : moments) {
+    for (const std::string& text :
+         {scene_hash(*moment.scene), place_of(*moment.scene), view_of(moment.scene->camera)})
+      bytes.text(text);
+    bytes.u32(moment.samples.last);
+  }
+  return vm::digest(bytes.bytes()).text();
+}
+
 std::string layers_of(const runtime::Settings& settings) {
   const runtime::FilmLayers& kept = settings.layers;
   std::string text = "radiance";
@@ -101,7 +113,7 @@ std::string program_hash(const compiler::CompiledScene& scene) {
 runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                   const runtime::RenderOptions& options) {
   const auto name = [](const auto& names, auto value) { return std::string(names[static_cast<std::size_t>(value)]); };
-  return {
+  runtime::Identity identity = {
       {"fathom", std::string(kVersion)},
       {"renderer", std::to_string(kRendererBits)},
       {"scene", scene_hash(scene)},
@@ -126,6 +138,12 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
       {"marching", marching_of(settings.marching)},
       {"layers", layers_of(settings)},
   };
+  // A render without them is what it was before there were any.
+  if (!options.moments.empty()) {
+    identity.emplace_back("shutter times", std::to_string(options.moments.size()));
+    identity.emplace_back("moments", moments_of(options.moments));
+  }
+  return identity;
 }
 
 runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,

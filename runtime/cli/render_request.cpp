@@ -8,6 +8,7 @@
 #include "runtime/adaptive.h"
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/cost_map.h"
+#include "runtime/cli/sequence.h"
 #include "runtime/cli/standard_output.h"
 #include "runtime/image_io.h"
 
@@ -24,7 +25,8 @@ constexpr const char* kRenderExamples =
     "fathom render scene.json --preview --watch            # again when it is saved\n"
     "fathom render scene.json --profile --cost-map cost.png\n"
     "fathom render scene.json -s 4096 --resume             # continues a render\n"
-    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # a part";
+    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # a part\n"
+    "fathom render hop.fathom --frames 0:192 --fps 24 -o frames/hop.png   # and hop-0001.png, ...";
 
 // --preview divides each side by this.
 constexpr int kPreviewShrink = 4;
@@ -32,10 +34,12 @@ constexpr int kPreviewSpp = 4;
 
 void add_output_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Output");
-  arguments.option("-o,--output", "FILE",
-                   "Picture to write: .png, .jpg, .jpeg, .bmp; numbers: .exr (all layers), .pfm, .hdr; sums for "
-                   "`fathom merge`: .film; - is standard output; may be repeated (the scene's name with .png)",
-                   append_to(read_output, request.outputs));
+  arguments.option(
+      "-o,--output", "FILE",
+      "Picture to write: .png, .jpg, .jpeg, .bmp; numbers: .exr (all layers), .pfm, .hdr; sums for "
+      "`fathom merge`: .film; - is standard output; with --frames #### is the frame's number, and DIR/ a folder of "
+      "pictures in --format; may be repeated (the scene's name with .png)",
+      append_to(read_frame_output, request.outputs));
   add_format_option(arguments, false, request.format);
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));
@@ -345,6 +349,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   bool no_denoise = false;
   add_renderer_options(arguments, request);
   add_running_options(arguments, request, no_denoise);
+  add_motion_options(arguments, request.frames);
   add_long_render_options(arguments, request.long_render);
   add_comparing_options(arguments, request);
   add_marching_options(arguments, request);
@@ -356,6 +361,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   }
   if (const auto code = put_formats(request.outputs, request.format, streams)) return *code;
   if (const auto code = check_standard_output(request, streams)) return *code;
+  if (const auto code = check_frames(request, streams)) return *code;
   if (const auto code = check_together(request, no_denoise, streams)) return *code;
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
@@ -364,15 +370,20 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   return request;
 }
 
+std::optional<ExitCode> override_camera(const RenderRequest& request, compiler::CompiledScene& scene,
+                                        const Streams& streams) {
+  if (const auto code = override_fov(request, scene.camera, streams)) return code;
+  return place_camera(request.camera, scene, streams);
+}
+
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams) {
-  if (const auto code = override_fov(request, scene.camera, streams)) return code;
   if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
     return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
                 {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
   if (const auto code = override_size(request, scene.film, streams)) return code;
-  if (const auto code = place_camera(request.camera, scene, streams)) return code;
+  if (const auto code = override_camera(request, scene, streams)) return code;
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
   if (const auto code = check_adaptive(request, scene, streams)) return code;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/cli/camera_options.h"
+#include "runtime/cli/frame_options.h"
 #include "runtime/cli/long_render.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
@@ -45,6 +46,12 @@ struct RenderRequest {
   bool adaptive = false, no_adaptive = false;
   bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
   LongRender long_render;
+  FrameOptions frames;
+  // Of a request for one frame of several: its number, and which it is of how many.
+  struct Frame {
+    int number, index, count;
+  };
+  std::optional<Frame> frame;
   bool preview = false, watch = false;
   bool quiet = false;
 };
@@ -60,5 +67,9 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
 // together.
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
+
+// Puts the request's field of view and camera over those of the scene, whose film is settled. Likewise.
+std::optional<ExitCode> override_camera(const RenderRequest& request, compiler::CompiledScene& scene,
+                                        const Streams& streams);
 
 }  // namespace fathom::cli

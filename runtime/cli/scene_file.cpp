@@ -121,21 +121,25 @@ std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::Compiled
   return compiler::unproved(std::move(stored));
 }
 
+constexpr const char* kKeepText = "`fathom compile` without --no-text keeps the text";
+
+ExitCode fail_without_text(const SceneArguments& arguments, const Streams& streams) {
+  return fail(streams, kUsage,
+              fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
+                          cli::quoted(arguments.path)),
+              {kKeepText});
+}
+
 // Of a file without the scene's text.
 std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
                                                             const SceneArguments& arguments, const Streams& streams,
                                                             const compiler::CompileOptions& options) {
-  const Help help = {"`fathom compile` without --no-text keeps the text"};
-  if (!arguments.definitions.empty()) {
-    return fail(streams, kUsage,
-                fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
-                            cli::quoted(arguments.path)),
-                help);
-  }
+  if (!arguments.definitions.empty()) return fail_without_text(arguments, streams);
   if (asks_for_graph(options)) {
-    return fail(streams, kUsage,
-                fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
-                help);
+    return fail(
+        streams, kUsage,
+        fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
+        {kKeepText});
   }
   note(streams,
        fmt::format("{} holds programs without their scene: nothing is proved of them", cli::quoted(arguments.path)));
@@ -314,6 +318,19 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     return within_limits(std::move(input.stored->scene), arguments, streams);
   }
   return std::move(*scene);
+}
+
+std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
+                                                           const Streams& streams) {
+  if (input.stored && !input.stored->contents.text) return fail_without_text(arguments, streams);
+  compiler::Diagnostics diagnostics;
+  const compiler::Definitions definitions =
+      input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
+  const auto animation = compiler::read_animation(input.source, diagnostics, arguments.limits, definitions,
+                                                  import_reader(arguments, streams));
+  if (animation) return *animation;  // warnings are for who compiles it
+  print(diagnostics, named(input.source, arguments.path), arguments, streams);
+  return about_definitions(diagnostics) ? kUsage : kBadScene;
 }
 
 compiler::CompiledScene proved_or_claimed(const SceneInput& input) {

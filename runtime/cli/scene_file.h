@@ -9,6 +9,7 @@
 
 #include "compiler/artefact/load.h"
 #include "compiler/compile.h"
+#include "compiler/frontend/animation.h"
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/streams.h"
 
@@ -83,6 +84,11 @@ std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, con
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options = {});
+
+// What the scene says of its animation, or the exit code after a message. The input has what the scene imports, then,
+// so that all its frames are of the same files.
+std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
+                                                           const Streams& streams);
 
 // A stored scene as its file has it, places and names of instructions too, but with proofs or without, as they are.
 compiler::CompiledScene proved_or_claimed(const SceneInput& input);

@@ -6,6 +6,7 @@
 
 #include "compiler/compile.h"
 #include "compiler/lowest.h"
+#include "vm/evaluate.h"
 
 namespace fathom::compiler::stage_test {
 namespace {

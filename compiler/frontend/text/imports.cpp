@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kAsText = " (as text)";  // behind the name of what was made of a file
+
 // Where the file of a path stands, from the folder of the scene.
 std::string joined(const std::string& from, const std::string& path) {
   return (fs::path(from).parent_path() / path).lexically_normal().generic_string();
@@ -122,10 +124,15 @@ class ImportLoader {
     return file;
   }
 
+  // Of the source as it was given.
+  const Source* known_file(const std::string& path, bool derived) const {
+    const auto same = [&](const Import& import) { return import.path == path && import.derived == derived; };
+    const auto found = std::ranges::find_if(source_.imports(), same);
+    return found == source_.imports().end() ? nullptr : found->file.get();
+  }
+
   const Source* read(const std::string& path, Span span) {
-    for (const Import& import : source_.imports()) {
-      if (import.path == path && !import.derived) return import.file.get();
-    }
+    if (const Source* known = known_file(path, false)) return known;
     auto text = reader_ ? reader_(path) : ImportFault{"there are no files here", ""};
     if (const auto* fault = std::get_if<ImportFault>(&text)) {
       std::vector<std::string> help;
@@ -146,7 +153,7 @@ class ImportLoader {
     }
     const std::string name = (fs::path(source_.name()).parent_path() / path).lexically_normal().string();
     const Source& file =
-        source_.import(derived ? path + " (as text)" : path, derived ? name + " (as text)" : name, std::move(text), derived);
+        source_.import(derived ? path + kAsText : path, derived ? name + kAsText : name, std::move(text), derived);
     Diagnostics faults;
     if (check_text(file, faults)) return &file;
     diagnostics_.append(faults, file.base());
@@ -154,6 +161,7 @@ class ImportLoader {
   }
 
   const Source* as_text(const Source& file, const std::string& path, Span span) {
+    if (const Source* known = known_file(path + kAsText, true)) return known;
     Diagnostics faults;
     std::optional<std::string> text = to_text_(Source(file.name(), file.text()), faults);
     if (text) return add_source(path, *std::move(text), true, span);

@@ -1,0 +1,127 @@
+#include "runtime/cli/frame_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compiler/frontend/text/read_text.h"
+#include "runtime/cli/values.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr std::size_t kUsualDigits = 4;
+
+Verdict read_frames(std::string_view text, FrameOptions& options) {
+  options.all = text == "all";
+  options.range.reset();
+  if (options.all) return std::nullopt;
+  const auto wrong = [&] {
+    return Complaint{fmt::format("`{}` are no frames", text),
+                     "write 7, 0:48 or 0:48:2, the second number not among them and the third the step; or all"};
+  };
+  std::int64_t parts[3] = {0, 0, 1};
+  std::size_t count = 0;
+  for (std::string_view rest = text;; ++count) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMostFrames, parts[count]))
+      return wrong();
+    if (end == rest.size()) break;
+    rest.remove_prefix(end + 1);
+  }
+  if (count == 0) parts[1] = parts[0] + 1;
+  if (parts[0] >= parts[1]) return wrong();
+  options.range = {static_cast<int>(parts[0]), static_cast<int>(parts[1]), static_cast<int>(parts[2])};
+  return std::nullopt;
+}
+
+// "24", "23.976" or "30000/1001".
+Verdict read_fps(std::string_view text, double& fps) {
+  const std::size_t over = text.find('/');
+  const std::optional<double> number = to_number(text.substr(0, over));
+  const std::optional<double> divisor = over == text.npos ? 1 : to_number(text.substr(over + 1));
+  const double value = number && divisor ? *number / *divisor : 0;
+  if (!(value >= compiler::kLeastFps && value <= compiler::kMostFps)) {
+    return Complaint{fmt::format("`{}` is not a number from {} to {}", text, compiler::kLeastFps, compiler::kMostFps),
+                     "frames a second, as 24, 23.976 or 30000/1001"};
+  }
+  fps = value;
+  return std::nullopt;
+}
+
+ExitCode fail_without_time(const SceneInput& input, const SceneArguments& arguments, const Streams& streams) {
+  return fail(streams, kUsage,
+              fmt::format("--frames: {} has neither a parameter `time` nor `frame`: its frames would be alike",
+                          quoted(arguments.path)),
+              {compiler::is_text_scene(input.source.text())
+                   ? "declare it, param time = 0, and use it: .translate([sin(time), 0, 0])"
+                   : "declare it, \"params\": {\"time\": 0}, and use it: \"translate\": [\"sin(time)\", 0, 0]",
+               "`time` is in seconds, `frame` a whole number"});
+}
+
+}  // namespace
+
+void add_frame_options(Arguments& arguments, FrameOptions& options) {
+  arguments.option("--frames", "A:B[:S]",
+                   "Frames A to B-1, every S-th; 7 is one frame, all what the scene's film says: sets the scene's "
+                   "parameter `time`, in seconds, or `frame`",
+                   [&options](std::string_view text) { return read_frames(text, options); });
+  arguments.option("--fps", "N", "Frames per second, as 25 or 30000/1001 (the scene's, 24)",
+                   into(read_fps, options.fps));
+}
+
+void add_motion_options(Arguments& arguments, FrameOptions& options) {
+  arguments.group("Animation (docs/ANIMATION.md)");
+  add_frame_options(arguments, options);
+  arguments.flag("--fixed-noise", "Use the same random numbers for all frames: their noise stands still",
+                 options.fixed_noise);
+  arguments.option("--shutter-times", "K",
+                   "Moments that a camera's shutter sees, at most half of --spp (16); more for fast motion",
+                   whole(options.shutter_times, 1, compiler::kMaxSpp));
+}
+
+SceneArguments Sequence::at(const SceneArguments& arguments, int frame) const {
+  SceneArguments result = arguments;
+  const compiler::Definitions moment = compiler::moment(animation, frame, time_of(frame));
+  result.definitions.insert(result.definitions.end(), moment.begin(), moment.end());
+  return result;
+}
+
+std::string Sequence::describe(int frame) const { return fmt::format("frame {} ({:.4g} s)", frame, time_of(frame)); }
+
+std::variant<Sequence, ExitCode> sequence_of(const FrameOptions& options, SceneInput& input,
+                                             const SceneArguments& arguments, const Streams& streams) {
+  const auto read = read_animation(input, arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  const auto& animation = std::get<compiler::Animation>(read);
+  if (!animation.time && !animation.frame) return fail_without_time(input, arguments, streams);
+  for (const auto& [name, value] : compiler::moment(animation, 0, 0)) {
+    const auto same = [&name = name](const auto& given) { return given.first == name; };
+    if (std::none_of(arguments.definitions.begin(), arguments.definitions.end(), same)) continue;
+    return fail(streams, kUsage, fmt::format("-D {} does not go with --frames, which sets it for each frame", name),
+                {"leave out one of them"});
+  }
+  if (options.all && !animation.frames) {
+    return fail(streams, kUsage,
+                fmt::format("--frames all: {} does not say how many there are", quoted(arguments.path)),
+                {"write which, as --frames 0:48, or give the scene's `film` the property `frames`"});
+  }
+  const FrameRange frames = options.all ? FrameRange{0, *animation.frames, 1} : *options.range;
+  return Sequence{animation, frames, options.fps.value_or(animation.fps)};
+}
+
+std::string numbered(const std::string& path, int frame) {
+  const std::size_t name = path.rfind('/') + 1;  // 0 where there is none
+  std::size_t begin = path.rfind('#');
+  if (begin != path.npos && begin >= name) {
+    const std::size_t end = begin + 1;
+    while (begin > name && path[begin - 1] == '#') --begin;
+    return fmt::format("{}{:0{}}{}", path.substr(0, begin), frame, end - begin, path.substr(end));
+  }
+  std::size_t dot = path.rfind('.');
+  if (dot == path.npos || dot <= name) dot = path.size();
+  return fmt::format("{}{}{:0{}}{}", path.substr(0, dot), dot > name ? "-" : "", frame, kUsualDigits,
+                     path.substr(dot));
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,63 @@
+// Which moments of a scene that moves are rendered: --frames, --fps and what goes with them.
+// Tested by: tests/runtime/cli_frames_test.cpp
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "compiler/frontend/animation.h"
+#include "runtime/cli/arguments.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/cli/streams.h"
+
+namespace fathom::cli {
+
+// Frames first, first + step, ... before `last`.
+struct FrameRange {
+  int first = 0, last = 1, step = 1;
+
+  int count() const { return (last - first + step - 1) / step; }
+  int at(int index) const { return first + index * step; }
+};
+
+struct FrameOptions {
+  bool all = false;  // that the scene says there are
+  std::optional<FrameRange> range;
+  std::optional<double> fps;
+  bool fixed_noise = false;
+  std::optional<int> shutter_times;
+
+  bool given() const { return all || range; }
+};
+
+// --frames and --fps.
+void add_frame_options(Arguments& arguments, FrameOptions& options);
+// Those of a render, in a group of their own.
+void add_motion_options(Arguments& arguments, FrameOptions& options);
+
+// The frames of a scene that moves.
+struct Sequence {
+  compiler::Animation animation;
+  FrameRange frames;
+  double fps;
+
+  double time_of(int frame) const { return frame / fps; }  // seconds
+  // The scene's arguments for the frame.
+  SceneArguments at(const SceneArguments& arguments, int frame) const;
+  std::string describe(int frame) const;  // "frame 37 (1.542 s)"
+};
+
+// Those asked for, or the exit code after a message when the scene does not move, does not say how many frames there
+// are, or is given its time on the command line, too. The input has what the scene imports, then.
+std::variant<Sequence, ExitCode> sequence_of(const FrameOptions& options, SceneInput& input,
+                                             const SceneArguments& arguments, const Streams& streams);
+
+// The name of a frame's file: the frame's number takes the place of the row of # in the name, of which each is a
+// digit and there are more where the number needs them; without any it comes before the ending, in four digits. Of a
+// folder, "dir/", the number is the name.
+//
+//     "out.png", 7 -> "out-0007.png"      "shot.##.exr", 7 -> "shot.07.exr"      "dir/", 7 -> "dir/0007"
+std::string numbered(const std::string& path, int frame);
+
+}  // namespace fathom::cli

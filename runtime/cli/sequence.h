@@ -1,0 +1,21 @@
+// `fathom render --frames`: a picture for each frame, one after the other, in files that have its number in their
+// names; and a journal of them, by which a run that was ended goes on.
+// Tested by: tests/runtime/cli_frames_test.cpp, scripts/frames-test
+#pragma once
+
+#include <optional>
+
+#include "runtime/cli/interruption.h"
+#include "runtime/cli/render_request.h"
+
+namespace fathom::cli {
+
+// An ExitCode, after a message, when another option of the request does not go with --frames, or one that does is
+// given without.
+std::optional<ExitCode> check_frames(const RenderRequest& request, const Streams& streams);
+
+// All frames that the request asks for.
+ExitCode render_frames(const RenderRequest& request, const Streams& streams,
+                       std::optional<Interruption>& interruption);
+
+}  // namespace fathom::cli
