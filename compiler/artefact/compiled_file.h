@@ -28,7 +28,7 @@
 namespace fathom::compiler {
 
 inline constexpr std::array<std::uint8_t, 8> kFileMagic = {0x89, 'F', 'B', 'C', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kFileVersion = 2;
+inline constexpr std::uint32_t kFileVersion = 3;
 
 // What a file holds beside programs and tables.
 struct FileContents {

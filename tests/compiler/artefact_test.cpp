@@ -39,7 +39,7 @@ constexpr const char* kEverything = R"scene({
   "lights": {"lamp": {"type": "spot", "position": [0, 3, 0], "target": [0, 0, 0], "intensity": [1, 2, 3]}},
   "materials": {
     "glass": {"type": "transparent", "ior": 1.5, "priority": -2},
-    "tiles": {"type": "principled", "base_color": {"pattern": "checker", "a": [1, 0, 0], "b": {"pattern": "noise",
+    "tiles": {"type": "principled", "base_color": {"pattern": "checker", "space": "object", "a": [1, 0, 0], "b": {"pattern": "noise",
               "a": 0, "b": 1}}, "roughness": "0.2 + 0.1 * sin(x)",
                      "coat" : 1
 }
@@ -220,9 +220,9 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   };
   CHECK_THAT(reason_of({'{', '}'}), Contains("no compiled scene"));
   Bytes other = good;
-  other[8] = 3;
+  other[8] = 4;
   CHECK_THAT(reason_of(other),
-             Contains("it is of version 3 of the format with 4 sections; this program reads version 2"));
+             Contains("it is of version 4 of the format with 4 sections; this program reads version 3"));
   CHECK_THAT(reason_of({good.begin(), good.begin() + 10}), Contains("header is damaged or cut off"));
   CHECK_THAT(reason_of(sealed(parts, vm::Digest{1, 2})), Contains("another machine"));
   CHECK_THAT(with([](Sections& s) { s.code.push_back(0); }), Contains("goes on for 1 bytes after its last program"));
@@ -259,7 +259,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
     CHECK_FALSE(compiler::read_listing(source, diagnostics, contents));
     return diagnostics.print(source, compiler::ErrorFormat::Short);
   };
-  CHECK_THAT(refused("fathom 2", "fathom 3"), Contains("test.txt:1:8: error: `2` should be here"));
+  CHECK_THAT(refused("fathom 3", "fathom 4"), Contains("test.txt:1:8: error: `3` should be here"));
   CHECK_THAT(refused("fov ", "fvo "), Contains("`fov` should be here"));
   CHECK_THAT(refused("blades 6", "blades 99"), Contains("99 is not in 0..32"));
   CHECK_THAT(refused("blades 6", "blades six"), Contains("this should be a whole number"));

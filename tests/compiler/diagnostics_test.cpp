@@ -42,7 +42,7 @@ Definitions definitions_in(const std::string& scene) {
 // Of a scene, or of a listing, which opens with its head or a comment of its own kind.
 Diagnostics diagnose(const Source& source) {
   Diagnostics diagnostics;
-  if (source.text().starts_with("fathom 2") || source.text().starts_with(";")) {
+  if (source.text().starts_with("fathom 3") || source.text().starts_with(";")) {
     FileContents contents;
     read_listing(source, diagnostics, contents);
     return diagnostics;
@@ -56,7 +56,7 @@ Diagnostics diagnose(const Source& source) {
 
 TEST_CASE("golden diagnostics", "[diagnostics]") {
   check_golden("diagnostics", [](const std::string& input) {
-    const Source source(is_text_scene(input) && !input.starts_with("fathom 2") ? "scene.fathom" : "scene.json",
+    const Source source(is_text_scene(input) && !input.starts_with("fathom 3") ? "scene.fathom" : "scene.json",
                         input);
     return diagnose(source).print(source, ErrorFormat::Text);
   });
