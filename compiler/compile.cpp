@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <utility>
 
@@ -48,7 +49,7 @@ void place_camera(Elaborated& elaborated, const Box& extent) {
 glm::dvec3 move_to_origin(Elaborated& elaborated, const std::optional<glm::dvec3>& given) {
   const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, elaborated.camera);
   if (origin == glm::dvec3(0)) return origin;
-  elaborated.scene = moved(elaborated.scene, origin);
+  elaborated.scene = moved(elaborated.scene, origin, elaborated.surfaces);
   elaborated.camera.position -= origin;
   elaborated.camera.target -= origin;
   for (Light& light : elaborated.lights) light.position -= origin;
@@ -140,6 +141,11 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
     return std::nullopt;
   }
   return std::move(sound);
+}
+
+// Whether it takes tags to tell surfaces apart, or where a point is in the coordinates of its node.
+bool needs_tags(std::span<const Surface> surfaces) {
+  return surfaces.size() > 1 || std::any_of(surfaces.begin(), surfaces.end(), std::mem_fn(&Surface::placed));
 }
 
 // `optimised` is `scene` after the passes, without paint; `painted`: whether the surface program needs tags.
@@ -321,10 +327,10 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   whole_extent = whole_extent.moved(-origin);
   place_camera(*elaborated, whole_extent);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
-  const bool several = elaborated->surfaces.size() > 1;
-  std::optional<CompiledField> whole = compile_field(elaborated->scene, field, several, source, diagnostics, options);
+  const bool tagged = needs_tags(elaborated->surfaces);
+  std::optional<CompiledField> whole = compile_field(elaborated->scene, field, tagged, source, diagnostics, options);
   if (!whole) return std::nullopt;
-  std::optional<std::vector<Medium>> media = compile_media(*elaborated, several, source, diagnostics, options);
+  std::optional<std::vector<Medium>> media = compile_media(*elaborated, tagged, source, diagnostics, options);
   if (!media) return std::nullopt;
   std::optional<std::vector<vm::VerifiedProgram>> formulas =
       assemble_all(elaborated->formulas, source, options.limits, diagnostics);

@@ -32,6 +32,8 @@ struct Surface {
   std::string name;        // of the object it belongs to
   std::uint32_t material;  // index into CompiledScene::materials
   bool mixed = false;      // part of a blend of several materials: its points can have shares of them all
+  bool placed = false;     // some texture of its material is in the coordinates of the node (TextureSpace::Object)
+  glm::dvec3 shift{0};     // from the coordinates where the `tag` stands to those of the node
 };
 
 struct Camera {

@@ -8,7 +8,9 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -83,10 +85,16 @@ inline bool transmits(const Material& material) {
   return may;
 }
 
-// Formulas in the scene's coordinates, not the programs': indices into CompiledScene::formulas of red, green and
-// blue; three times the same where it is a number or a grey.
+// Whose coordinates a texture is evaluated in: the scene's, wherever the body was moved to, or those of the node that
+// the material was given to, before that node's scale, rotate and translate.
+enum class TextureSpace { World, Object };
+inline constexpr std::array<std::string_view, 2> kTextureSpaces = {"world", "object"};  // [TextureSpace]
+
+// Formulas in the coordinates of their space, not the programs': indices into CompiledScene::formulas of red, green
+// and blue; three times the same where it is a number or a grey.
 struct TextureFormula {
   std::array<std::uint32_t, 3> programs;
+  TextureSpace space = TextureSpace::World;
 };
 
 // Two textures mixed by a number t of each place: a (1 - t) + b t. What t is, runtime/pattern.h says.
@@ -109,11 +117,15 @@ struct Pattern {
     double mortar, shift;  // how wide; share of a brick by which each row is moved against the one below
   };
   std::variant<Checker, Stripes, Gradient, Noise, Bricks> kind;
-  Affine to_pattern;   // from the scene's coordinates to the pattern's
+  Affine to_pattern;   // from the coordinates of its space to the pattern's
   std::uint32_t a, b;  // indices into SceneTables::textures, lower than the pattern's own
+  TextureSpace space = TextureSpace::World;
 };
 
 // A colour (grey where a number is wanted), or what varies.
 using Texture = std::variant<glm::dvec3, TextureFormula, Pattern>;
+
+// Whether some texture of each material is evaluated in the coordinates of its node. [material]
+std::vector<bool> in_object_space(std::span<const Material> materials, std::span<const Texture> textures);
 
 }  // namespace fathom::compiler

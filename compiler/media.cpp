@@ -127,8 +127,14 @@ void mark_mixed(const Scene& scene, std::span<const Material> materials, std::sp
   const Graph& graph = scene.graph;
   const std::vector<bool> reached = reachable(scene);
   const std::vector<Painted> below = painted_below(scene, surfaces, materials);
+  // Bodies of one material have coordinates of their own each, where that counts.
+  std::vector<bool> placed_below(scene.root + 1);
+  for (NodeId id = 0; id <= scene.root; ++id) {
+    placed_below[id] = graph.kind(id) == Kind::Paint && surfaces[surface_of(graph, id)].placed;
+    for (const NodeId child : graph.children(id)) placed_below[id] = placed_below[id] || placed_below[child];
+  }
   const auto mixes = [&](NodeId id) {
-    return below[id].uneven() && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
+    return (below[id].uneven() || placed_below[id]) && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
   };
   const auto mark = [&](NodeId paint) { surfaces[surface_of(graph, paint)].mixed = true; };
   // Upwards: what is bare in such a blend is of the next Paint above it.

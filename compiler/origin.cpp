@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -54,7 +55,8 @@ dvec3 without_periods(dvec3 move, dvec3 period) {
 
 class Mover {
  public:
-  Mover(const Scene& scene, dvec3 origin) : scene_(scene), origin_(origin), moved_(scene) {}
+  Mover(const Scene& scene, dvec3 origin, std::vector<Surface>& surfaces)
+      : scene_(scene), origin_(origin), surfaces_(surfaces), moved_(scene) {}
 
   // Nodes that are moved are added behind the others, children first, as ever.
   Scene run() {
@@ -95,6 +97,9 @@ class Mover {
       case Kind::Quad:
         for (std::size_t i = 0; i + 1 < params.size(); ++i) params[i] -= origin_[static_cast<int>(i % 3)];
         return add(id, params);
+      case Kind::Paint:
+        params[0] = static_cast<double>(shifted(static_cast<std::uint32_t>(params[0])));
+        return add(id, params);
       case Kind::InfiniteCylinder:
         return translated(id, {origin_.x, 0, origin_.z});
       case Kind::Gyroid:
@@ -106,6 +111,17 @@ class Mover {
       default:
         return moves_children(id) ? add(id, params) : translated(id, origin_);
     }
+  }
+
+  // The surface of a Paint that stands at p for what it was at p + origin.
+  std::uint32_t shifted(std::uint32_t surface) {
+    if (surface >= surfaces_.size() || !surfaces_[surface].placed) return surface;
+    const auto [found, is_new] = shifted_.try_emplace(surface, static_cast<std::uint32_t>(surfaces_.size()));
+    if (is_new) {
+      surfaces_.push_back(surfaces_[surface]);
+      surfaces_.back().shift += origin_;
+    }
+    return found->second;
   }
 
   // Along the axes on which all copies are alike.
@@ -136,6 +152,8 @@ class Mover {
 
   const Scene& scene_;
   const dvec3 origin_;
+  std::vector<Surface>& surfaces_;
+  std::map<std::uint32_t, std::uint32_t> shifted_;
   Scene moved_;
   std::vector<NodeId> twins_;  // [node]
 };
@@ -169,6 +187,13 @@ dvec3 choose_origin(const Scene& scene, const Camera& camera) {
   return dvec3(0);
 }
 
-Scene moved(const Scene& scene, dvec3 origin) { return Mover(scene, origin).run(); }
+Scene moved(const Scene& scene, dvec3 origin, std::vector<Surface>& surfaces) {
+  return Mover(scene, origin, surfaces).run();
+}
+
+Scene moved(const Scene& scene, dvec3 origin) {
+  std::vector<Surface> none;
+  return moved(scene, origin, none);
+}
 
 }  // namespace fathom::compiler

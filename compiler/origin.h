@@ -10,6 +10,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "compiler/compiled_scene.h"
 #include "compiler/graph.h"
@@ -28,6 +29,9 @@ glm::dvec3 choose_origin(const Scene& scene, const Camera& camera);
 // numbers of transforms, planes, triangles and quads, or in a new transform. Below that transform points have the
 // scene's coordinates once more: a formula written for a far place, a twist about a far axis stay as coarse as they
 // were, which Knowledge::magnitude says.
+// A Paint that is moved gives a surface of its own where textures are in the node's coordinates: Surface::shift leads
+// back to these.
+Scene moved(const Scene& scene, glm::dvec3 origin, std::vector<Surface>& surfaces);
 Scene moved(const Scene& scene, glm::dvec3 origin);
 
 // Whether the node's children are evaluated at the node's own point, and their distances are all it needs.

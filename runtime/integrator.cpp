@@ -204,8 +204,9 @@ void Integrator::find_places(std::size_t number, std::span<const Arrival> arriva
     places.hits[i] = {ray.origin + arrivals[i].t * ray.direction, glm::vec3(-ray.direction), arrivals[i].side,
                       arrivals[i].width};
   }
-  find_surfaces(world_.scene, field(number), std::span(places.hits).first(arrivals.size()), places.points,
-                marchers_[number]->workspace());
+  const std::span<const Hit> hits = std::span(places.hits).first(arrivals.size());
+  find_surfaces(world_.scene, field(number), hits, places.points, marchers_[number]->workspace());
+  fathom::runtime::find_places(world_.scene, field(number), hits, places.points, scratch_);
   clock.enter(Stage::Shading);
 }
 

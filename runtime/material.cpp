@@ -96,7 +96,8 @@ MaterialPoint typical_point(const compiler::Material& material) {
   return to_point(material, material.type, material.thin_walled);
 }
 
-Materials::Materials(const compiler::CompiledScene& scene) : scene_(&scene) {
+Materials::Materials(const compiler::CompiledScene& scene)
+    : scene_(&scene), placed_(compiler::in_object_space(scene.materials, scene.textures)) {
   for (const compiler::Material& m : scene.materials) {
     points_.push_back(typical_point(m));
     pass_straight_ |= m.thin_walled || points_.back().passes_straight() ||
@@ -104,32 +105,34 @@ Materials::Materials(const compiler::CompiledScene& scene) : scene_(&scene) {
   }
 }
 
-MaterialPoint Materials::at(std::uint32_t material, glm::dvec3 position, vm::Workspace& workspace) const {
+MaterialPoint Materials::at(std::uint32_t material, glm::dvec3 position, glm::dvec3 place,
+                            vm::Workspace& workspace) const {
   const compiler::Material& m = scene_->materials[material];
   if (m.textured.empty()) return points_[material];
   MaterialNumbers numbers = m;
+  const TexturePoint point{position + scene_->origin, place};
   for (const compiler::TexturedParameter& row : m.textured) {
-    put(numbers, row, value(row.texture, position + scene_->origin, workspace));
+    put(numbers, row, value(row.texture, point, workspace));
   }
   return to_point(numbers, m.type, m.thin_walled);
 }
 
-// `position` is the scene's. Patterns nest a few deep at most (frontend/textures.cpp).
-glm::dvec3 Materials::value(std::uint32_t texture, glm::dvec3 position, vm::Workspace& workspace) const {
+// Patterns nest a few deep at most (frontend/textures.cpp).
+glm::dvec3 Materials::value(std::uint32_t texture, const TexturePoint& point, vm::Workspace& workspace) const {
   const compiler::Texture& node = scene_->textures[texture];
   if (const auto* constant = std::get_if<glm::dvec3>(&node)) return *constant;
   if (const auto* formula = std::get_if<compiler::TextureFormula>(&node)) {
     const auto part = [&](std::size_t i) {
-      return vm::evaluate_distance(scene_->formulas[formula->programs[i]], position, workspace);
+      return vm::evaluate_distance(scene_->formulas[formula->programs[i]], point.in(formula->space), workspace);
     };
     const bool grey = formula->programs[0] == formula->programs[1] && formula->programs[1] == formula->programs[2];
     return grey ? glm::dvec3(part(0)) : glm::dvec3(part(0), part(1), part(2));
   }
   const auto& pattern = std::get<compiler::Pattern>(node);
-  const double t = pattern_value(pattern, position);
-  if (t <= 0) return value(pattern.a, position, workspace);
-  if (t >= 1) return value(pattern.b, position, workspace);
-  return value(pattern.a, position, workspace) * (1 - t) + value(pattern.b, position, workspace) * t;
+  const double t = pattern_value(pattern, point.in(pattern.space));
+  if (t <= 0) return value(pattern.a, point, workspace);
+  if (t >= 1) return value(pattern.b, point, workspace);
+  return value(pattern.a, point, workspace) * (1 - t) + value(pattern.b, point, workspace) * t;
 }
 
 MaterialPoint to_principled(const MaterialPoint& m) {

@@ -1,7 +1,7 @@
 // Materials as shading wants them: single precision, ready to use, every texture evaluated.
 //
 //     const Materials materials(scene);
-//     const MaterialPoint m = materials.at(point.material, hit.position, workspace);
+//     const MaterialPoint m = materials.at(point.material, hit.position, point.place, workspace);
 //
 // Tested by: tests/runtime/material_test.cpp, render_test.cpp
 #pragma once
@@ -69,13 +69,17 @@ class Materials {
   explicit Materials(const compiler::CompiledScene& scene);
 
   std::size_t size() const { return points_.size(); }
+  const compiler::CompiledScene& scene() const { return *scene_; }
 
-  // `position` is in the programs' coordinates, as a hit's; `workspace` is the thread's.
-  MaterialPoint at(std::uint32_t material, glm::dvec3 position, vm::Workspace& workspace) const;
+  // `position` is in the programs' coordinates, as a hit's; `place` is the same point in those of the node, which
+  // count where a texture is in object space; `workspace` is the thread's.
+  MaterialPoint at(std::uint32_t material, glm::dvec3 position, glm::dvec3 place, vm::Workspace& workspace) const;
 
   // The same everywhere, or with stand-ins for what varies.
   const MaterialPoint& typical(std::uint32_t material) const { return points_[material]; }
   bool varies(std::uint32_t material) const { return !scene_->materials[material].textured.empty(); }
+  // Whether it varies in the coordinates of the node.
+  bool placed(std::uint32_t material) const { return placed_[material]; }
   // Whether light may come from it at some place.
   bool emits(std::uint32_t material) const { return compiler::emits(scene_->materials[material]); }
   // Whether light may go straight on through any of them.
@@ -84,10 +88,18 @@ class Materials {
   int priority(std::uint32_t material) const { return scene_->materials[material].priority; }
 
  private:
-  glm::dvec3 value(std::uint32_t texture, glm::dvec3 position, vm::Workspace& workspace) const;
+  // A point in the coordinates of both spaces.
+  struct TexturePoint {
+    glm::dvec3 world, object;
+    glm::dvec3 in(compiler::TextureSpace space) const {
+      return space == compiler::TextureSpace::World ? world : object;
+    }
+  };
+  glm::dvec3 value(std::uint32_t texture, const TexturePoint& point, vm::Workspace& workspace) const;
 
   const compiler::CompiledScene* scene_;
   std::vector<MaterialPoint> points_;  // [material]
+  std::vector<bool> placed_;           // [material]
   bool pass_straight_ = false;
 };
 

@@ -28,7 +28,7 @@ double noise(const compiler::Pattern::Noise& noise, glm::dvec3 p);
 // A wall in the xy plane, the same all along z: 1 in the mortar.
 double bricks(const compiler::Pattern::Bricks& bricks, glm::dvec3 p);
 
-// The pattern's value at a place of the scene; NaN where the place is none.
+// The pattern's value at a place in the coordinates of its space; NaN where the place is none.
 double pattern_value(const compiler::Pattern& pattern, glm::dvec3 position);
 
 // Noise that is 0 at whole coordinates and whose gradients there are those of a cube's edges, twice continuously

@@ -189,10 +189,23 @@ vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspac
   return vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), p, workspace);
 }
 
-vm::SurfaceShares Regions::evaluate_shares(glm::dvec3 p, RealScratch& scratch) const {
+// The program of the leaf that a point is in; the whole where the leaf has none.
+vm::Code Regions::code_at(glm::dvec3 p, RealScratch& scratch) const {
   const glm::vec3 f(p);
   const vm::Part& part = part_of(find(f.x, f.y, f.z).node, scratch);
-  return vm::evaluate_shares(part.words.empty() ? whole_ : vm::Code(part), p, scratch.workspace);
+  return part.words.empty() ? whole_ : vm::Code(part);
+}
+
+vm::SurfaceShares Regions::evaluate_shares(glm::dvec3 p, RealScratch& scratch) const {
+  return vm::evaluate_shares(code_at(p, scratch), p, scratch.workspace);
+}
+
+vm::SurfaceShares Regions::evaluate_placed_shares(glm::dvec3 p, RealScratch& scratch) const {
+  return vm::evaluate_placed_shares(code_at(p, scratch), p, scratch.workspace);
+}
+
+vm::SurfacePlace Regions::evaluate_place(glm::dvec3 p, RealScratch& scratch) const {
+  return vm::evaluate_place(code_at(p, scratch), p, scratch.workspace);
 }
 
 }  // namespace fathom::runtime

@@ -109,6 +109,8 @@ class Regions {
   void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
   vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
   vm::SurfaceShares evaluate_shares(glm::dvec3 point, RealScratch& scratch) const;
+  vm::SurfaceShares evaluate_placed_shares(glm::dvec3 point, RealScratch& scratch) const;
+  vm::SurfacePlace evaluate_place(glm::dvec3 point, RealScratch& scratch) const;
 
   struct Facts {
     std::size_t far = 0, programs = 0;  // leaves
@@ -146,6 +148,7 @@ class Regions {
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
   void part_of(const Node& node, vm::Part& part) const;
+  vm::Code code_at(glm::dvec3 point, RealScratch& scratch) const;
   const vm::Part& part_of(const Node& node, RealScratch& scratch) const;
 
   vm::Code whole_;

@@ -124,7 +124,7 @@ void Integrator::find_material(Vertex& v) {
   const std::uint32_t number = v.point->material;
   const glm::dvec3 place = v.hit->position;
   if (world_.scene.surfaces[v.point->surface].mixed) {
-    const vm::SurfaceShares shares = find_shares(field(v.space.field), place, scratch_);
+    const vm::SurfaceShares shares = find_shares(world_.scene, field(v.space.field), place, scratch_);
     if (shares.count > 1) {
       v.made = mix_of(shares, place);
       v.material = &v.made;
@@ -133,21 +133,21 @@ void Integrator::find_material(Vertex& v) {
   }
   v.material = &world_.materials.typical(number);
   if (!world_.materials.varies(number)) return;
-  v.made = world_.materials.at(number, place, scratch_.workspace);
+  v.made = world_.materials.at(number, place, v.point->place, scratch_.workspace);
   v.material = &v.made;
 }
 
 MaterialPoint Integrator::mix_of(const vm::SurfaceShares& shares, glm::dvec3 place) {
   const Materials& materials = world_.materials;
-  const auto material = [&](int i) {
-    return world_.scene.surfaces[shares.all[static_cast<std::size_t>(i)].surface].material;
+  const auto material = [&](const vm::SurfaceShare& share) {
+    return materials.at(world_.scene.surfaces[share.surface].material, place, share.place, scratch_.workspace);
   };
-  MaterialPoint mixed = materials.at(material(0), place, scratch_.workspace);
+  MaterialPoint mixed = material(shares.all[0]);
   double weight = shares.all[0].weight;
   for (int i = 1; i < shares.count; ++i) {
-    const double more = shares.all[static_cast<std::size_t>(i)].weight;
-    weight += more;
-    mixed = mix(mixed, materials.at(material(i), place, scratch_.workspace), static_cast<float>(more / weight));
+    const vm::SurfaceShare& share = shares.all[static_cast<std::size_t>(i)];
+    weight += share.weight;
+    mixed = mix(mixed, material(share), static_cast<float>(share.weight / weight));
   }
   return mixed;
 }
@@ -177,7 +177,7 @@ Space Integrator::beyond(const Vertex& v) {
   space.side = -1;
   const std::uint32_t material = media.material(*medium);
   const MaterialPoint filling =
-      material == v.point->material ? *v.material : world_.materials.at(material, place, scratch_.workspace);
+      material == v.point->material ? *v.material : filling_at(place, *medium, media, world_.materials, scratch_);
   if (filling.fills()) {
     space.ior = filling.ior;
     space.absorption = filling.absorption;
@@ -246,7 +246,9 @@ std::optional<Integrator::ShadowRay> Integrator::look_for_light(Vertex& v) {
   if (!(light.pdf > 0) || (!light.delta && way == LightSampling::Hits)) return std::nullopt;
   if (light.material != kNoMaterial && world_.materials.varies(light.material)) {
     const glm::dvec3 lamp = v.query.position + light.distance * glm::dvec3(light.wi);
-    light.radiance = world_.materials.at(light.material, lamp, scratch_.workspace).emitted();
+    const glm::dvec3 place =
+        world_.materials.placed(light.material) ? find_place(world_.scene, world_.field, lamp, scratch_).place : lamp;
+    light.radiance = world_.materials.at(light.material, lamp, place, scratch_.workspace).emitted();
   }
   const BsdfValue value = v.bsdf->evaluate(light.wi);
   const bool both = !light.delta && way == LightSampling::Both;

@@ -22,6 +22,10 @@ struct Space {
 // filled with nothing.
 Space space_at(glm::dvec3 place, const Media& media, const Materials& materials, RealScratch& scratch);
 
+// What the medium is filled with at a place within it.
+MaterialPoint filling_at(glm::dvec3 place, std::uint32_t medium, const Media& media, const Materials& materials,
+                         RealScratch& scratch);
+
 // Whether all places within `radius` of this one are in the same space. `scene`: its field. May say no where it is
 // so.
 bool is_even_around(glm::dvec3 place, double radius, const Field& scene, const Media& media, RealScratch& scratch);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 
 #include "runtime/field.h"
@@ -87,9 +88,41 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   }
 }
 
-vm::SurfaceShares find_shares(const Field& field, glm::dvec3 place, RealScratch& scratch) {
-  if (field.regions) return field.regions->evaluate_shares(place, scratch);
-  return vm::evaluate_shares(*field.surface, place, scratch.workspace);
+void find_places(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+                 std::span<SurfacePoint> points, RealScratch& scratch) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!scene.surfaces[points[i].surface].placed) continue;
+    const vm::SurfacePlace found = find_place(scene, field, hits[i].position, scratch);
+    points[i].surface = found.surface;
+    points[i].material = scene.surfaces[found.surface].material;
+    points[i].place = found.place;
+  }
+}
+
+vm::SurfacePlace find_place(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
+                            RealScratch& scratch) {
+  vm::SurfacePlace found = field.regions ? field.regions->evaluate_place(position, scratch)
+                                         : vm::evaluate_place(*field.surface, position, scratch.workspace);
+  CHECK(found.surface < scene.surfaces.size(), "the surface program names a surface that is not there");
+  found.place += scene.surfaces[found.surface].shift;
+  return found;
+}
+
+vm::SurfaceShares find_shares(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
+                              RealScratch& scratch) {
+  const bool placed =
+      std::any_of(scene.surfaces.begin(), scene.surfaces.end(), std::mem_fn(&compiler::Surface::placed));
+  if (!placed) {
+    if (field.regions) return field.regions->evaluate_shares(place, scratch);
+    return vm::evaluate_shares(*field.surface, place, scratch.workspace);
+  }
+  vm::SurfaceShares shares = field.regions ? field.regions->evaluate_placed_shares(place, scratch)
+                                           : vm::evaluate_placed_shares(*field.surface, place, scratch.workspace);
+  for (int i = 0; i < shares.count; ++i) {
+    vm::SurfaceShare& share = shares.all[static_cast<std::size_t>(i)];
+    share.place += scene.surfaces[share.surface].shift;
+  }
+  return shares;
 }
 
 }  // namespace fathom::runtime

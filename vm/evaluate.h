@@ -77,9 +77,19 @@ void evaluate_distance(const Code& program, RealPoints points, std::size_t count
                        Workspace& workspace);
 SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace);
 
+// Where a surface's point lies in the coordinates of the node that the surface was given to: the `tag` that won, and
+// the point on top of the stack where it stands.
+struct SurfacePlace {
+  std::uint32_t surface;  // the number of the `tag`, 0 in a program without tags
+  glm::dvec3 place;       // the evaluated point itself in a program without tags
+};
+// Where two tags of one surface win equally, the first in the program counts.
+SurfacePlace evaluate_place(const Code& program, glm::dvec3 point, Workspace& workspace);
+
 struct SurfaceShare {
   std::uint32_t surface;  // the number of a `tag`
   double weight;          // above 0
+  glm::dvec3 place{0};    // as of SurfacePlace; only of evaluate_placed_shares()
 };
 // The surfaces that have a share in a point, at most the kMost largest; their weights add up to 1. None in a program
 // without tags.
@@ -91,6 +101,9 @@ struct SurfaceShares {
 // A surface's share is by how much the distance changes when that surface moves, over the sum of all: where one alone
 // decides 1, along a smooth blend from 0 to 1 as Quilez's mix factor ("Smooth minimum").
 SurfaceShares evaluate_shares(const Code& program, glm::dvec3 point, Workspace& workspace);
+// The same with a share for each `tag` instruction and point, so that a surface can have several, each with its
+// place.
+SurfaceShares evaluate_placed_shares(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct Range {
   double lo, hi;

@@ -1,9 +1,26 @@
 // The evaluators in double: one point, its gradient and surface, or a box. Slopes: vm/slope.cpp.
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
 #include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
+
+// Each execution of a tag has a number of its own: the surface's in units of kTags, plus how many came before. So the
+// winner is found again, and ties are decided by the surface first, as everywhere.
+template <>
+struct TagObserver<Tagged<Real>> {
+  static constexpr double kTags = 0x1p28;  // more than a verified program has instructions; with 24 bits still exact
+  std::vector<glm::dvec3> seen;
+  double see(std::uint32_t surface, const Vec3<Real>& p) {
+    seen.emplace_back(p.x.v, p.y.v, p.z.v);
+    return surface * kTags + static_cast<double>(seen.size() - 1);
+  }
+};
+
 namespace {
 
 template <class T, class P>
@@ -29,6 +46,18 @@ SurfaceValue surface(const Code& program, glm::dvec3 p, Workspace& workspace) {
           {finite_or_zero(d.dx), finite_or_zero(d.dy), finite_or_zero(d.dz)},
           result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v),
           result.v.convex.v};
+}
+
+SurfacePlace place(const Code& program, glm::dvec3 p, Workspace& workspace) {
+  using T = Tagged<Real>;
+  Machine<T> machine(program, workspace, 1);
+  *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
+  machine.interpret();
+  const double tag = machine.result()->surface.v;
+  if (tag < 0) return {0, p};
+  const double surface = std::floor(tag / TagObserver<T>::kTags);
+  const auto number = static_cast<std::size_t>(tag - surface * TagObserver<T>::kTags);
+  return {static_cast<std::uint32_t>(surface), machine.tags().seen[number]};
 }
 
 Range range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
@@ -61,6 +90,10 @@ double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& works
 
 SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace) {
   return HWY_NAMESPACE::surface(program, point, workspace);
+}
+
+SurfacePlace evaluate_place(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::place(program, point, workspace);
 }
 
 Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {

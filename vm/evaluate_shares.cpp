@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
@@ -14,7 +15,9 @@ namespace fathom::vm::HWY_NAMESPACE {
 constexpr std::uint32_t kUnclaimed = std::numeric_limits<std::uint32_t>::max();
 
 // A number and by how much it grows when one of the surfaces it was made from moves in: the derivative, of which only
-// the largest parts are kept.
+// the largest parts are kept. The surfaces of a Placed one are numbers of tags in the order of their execution.
+enum class Shares { Plain, Placed };
+template <Shares kShares>
 struct Shared {
   using Constant = Real;
   Real v;
@@ -42,8 +45,9 @@ void add_shares(SurfaceShares& to, const SurfaceShares& from, double scale) {
   }
 }
 
-template <>
-struct ValueTraits<Shared> {
+template <Shares kShares>
+struct ValueTraits<Shared<kShares>> {
+  using Shared = HWY_NAMESPACE::Shared<kShares>;
   using Point = Real;
   using D = Dual<Real>;
   static constexpr bool kConvex = false;
@@ -76,12 +80,25 @@ struct ValueTraits<Shared> {
 };
 
 // Of shapes that are joined in one instruction.
-HWY_INLINE Shared min(const Shared& a, const Shared& b) { return ValueTraits<Shared>::apply<MinOp>(a, b, nullptr); }
+template <Shares kShares>
+HWY_INLINE Shared<kShares> min(const Shared<kShares>& a, const Shared<kShares>& b) {
+  return ValueTraits<Shared<kShares>>::template apply<MinOp>(a, b, nullptr);
+}
+
+template <>
+struct TagObserver<Shared<Shares::Placed>> {
+  std::vector<SurfacePlace> seen;  // [number of the tag]
+  std::uint32_t see(std::uint32_t surface, const Vec3<Real>& p) {
+    seen.push_back({surface, {p.x.v, p.y.v, p.z.v}});
+    return static_cast<std::uint32_t>(seen.size() - 1);
+  }
+};
 
 namespace {
 
+template <Shares kShares>
 SurfaceShares shares(const Code& program, glm::dvec3 p, Workspace& workspace) {
-  Machine<Shared> machine(program, workspace, 1);
+  Machine<Shared<kShares>> machine(program, workspace, 1);
   *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
   machine.interpret();
   SurfaceShares result = machine.result()->shares;
@@ -91,6 +108,12 @@ SurfaceShares shares(const Code& program, glm::dvec3 p, Workspace& workspace) {
   double sum = 0;
   for (int i = 0; i < result.count; ++i) sum += result.all[i].weight;
   for (int i = 0; i < result.count; ++i) result.all[i].weight /= sum;
+  if constexpr (kShares == Shares::Placed) {
+    for (int i = 0; i < result.count; ++i) {
+      const SurfacePlace& seen = machine.tags().seen[result.all[i].surface];
+      result.all[i].surface = seen.surface, result.all[i].place = seen.place;
+    }
+  }
   return result;
 }
 
@@ -101,7 +124,11 @@ HWY_AFTER_NAMESPACE();
 namespace fathom::vm {
 
 SurfaceShares evaluate_shares(const Code& program, glm::dvec3 point, Workspace& workspace) {
-  return HWY_NAMESPACE::shares(program, point, workspace);
+  return HWY_NAMESPACE::shares<HWY_NAMESPACE::Shares::Plain>(program, point, workspace);
+}
+
+SurfaceShares evaluate_placed_shares(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::shares<HWY_NAMESPACE::Shares::Placed>(program, point, workspace);
 }
 
 }  // namespace fathom::vm

@@ -29,6 +29,15 @@ struct ChoiceObserver {
   HWY_INLINE void next() {}
 };
 
+// Numbers the tags: by the surface that the instruction names, wherever the top point is.
+template <class T>
+struct TagObserver {
+  template <class Place>
+  HWY_INLINE std::uint32_t see(std::uint32_t surface, const Place&) {
+    return surface;
+  }
+};
+
 // Numbers per stack slot. Sixteen registers a block measured best or equal: with fewer, an instruction waits for the
 // one before it, with more, the cache is too small. Types that are many registers wide take shorter blocks.
 template <class T>
@@ -115,6 +124,7 @@ class Machine {
   float* immediate_table() { return table_; }
   const T* result() const { return values_; }
   ChoiceObserver<T>& observer() { return observer_; }
+  const TagObserver<T>& tags() const { return tags_; }
 
   // Runs the program on the block of points at first_point(); its values are at result() afterwards.
   void interpret() {
@@ -157,7 +167,7 @@ class Machine {
           copy(c.top, locals_ + operand_of(word) * kBlock);
           break;
         case Opcode::Tag:
-          for (std::size_t i = 0; i < used_; ++i) Traits::tag(c.top[i], operand_of(word));
+          for (std::size_t i = 0; i < used_; ++i) Traits::tag(c.top[i], tags_.see(operand_of(word), c.point[i]));
           break;
       }
     }
@@ -337,6 +347,7 @@ class Machine {
   T* spares_;
   float* table_;
   [[no_unique_address]] ChoiceObserver<T> observer_;
+  [[no_unique_address]] TagObserver<T> tags_;
 };
 
 }  // namespace fathom::vm::HWY_NAMESPACE

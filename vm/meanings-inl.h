@@ -131,7 +131,7 @@ struct ValueTraits<Tagged<T>> {
     if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
     return {Number::template apply<Op>(a.v, b.v, k), a.surface};
   }
-  static HWY_INLINE void tag(Tagged<T>& value, std::uint32_t surface) {
+  static HWY_INLINE void tag(Tagged<T>& value, double surface) {
     value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);
   }
 };

@@ -160,6 +160,7 @@ void fields(Archive& a, Pattern& p, std::size_t textures) {
     field(a, kFrameRows[row], p.to_pattern.rows[static_cast<std::size_t>(row)], -kAny, kAny);
   }
   field(a, "translation", p.to_pattern.translation, -kAny, kAny);
+  field(a, "space", p.space, ChoiceNames(kTextureSpaces));
   index(a, "a", p.a, textures);
   index(a, "b", p.b, textures);
 }
@@ -172,6 +173,7 @@ void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) 
     for (std::size_t i = 0; i < 3; ++i) {
       index(a, kChannels[i], formula->programs[i], formulas);
     }
+    field(a, "space", formula->space, ChoiceNames(kTextureSpaces));
   }
 }
 
@@ -349,6 +351,8 @@ void fields(Archive& a, CompiledScene& scene) {
     field(archive, "name", surface.name);
     index(archive, "material", surface.material, scene.materials.size());
     field(archive, "mixed", surface.mixed);
+    field(archive, "placed", surface.placed);
+    field(archive, "shift", surface.shift, -kAny, kAny);
   });
   if (a.reading() && !a.failed() && scene.surfaces.empty()) a.fail("there is no surface");
   list(a, "lamps", scene.lamps, [&](Archive& archive, Lamp& lamp) { fields(archive, lamp, scene); });

@@ -1,6 +1,6 @@
 // A compiled scene as text that loses nothing: what `fathom dump --stage file` prints and `fathom asm` reads.
 //
-//     fathom 2
+//     fathom 3
 //     machine 6f1c...            ; the digest of the opcodes
 //     tables {
 //       summary "1 node, ..."

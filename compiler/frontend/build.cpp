@@ -23,10 +23,11 @@ bool gives_material(const CheckedNode& node) {
 
 SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
                            const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
-                           const Limits& limits, Diagnostics& diagnostics)
+                           std::span<const Texture> textures, const Limits& limits, Diagnostics& diagnostics)
     : named_(named),
       uses_(uses),
       materials_(materials),
+      placed_(in_object_space(materials, textures)),
       limits_(limits),
       has_paint_(named.size(), false),
       diagnostics_(diagnostics) {
@@ -87,8 +88,9 @@ void SceneBuilder::add_object(const CheckedNode& node) {
   for (const Use& use : uses_of(node)) build_named(use.target, {object, use.material});
   if (full_) return;
   const Context context{object, node.material};
-  const Built built = build(node, {object, std::nullopt});
-  objects_.push_back(built.painted ? built.id : paint(built.id, context, {node.span, node.name}));
+  Built built = build(node, {object, std::nullopt});
+  if (!built.painted) paint(built, context, {node.span, node.name});
+  objects_.push_back(built.id);
   too_many_nodes(node);
 }
 
@@ -131,18 +133,18 @@ void SceneBuilder::build_named(std::uint32_t name, Context context) {
 }
 
 SceneBuilder::Built SceneBuilder::build(const CheckedNode& root, Context context) {
-  const auto enter = [](const CheckedNode& node, Context above) {
-    return node.material ? Context{above.object, node.material, node.material != above.material}
-                         : Context{above.object, above.material, false};
+  const auto enter = [this](const CheckedNode& node, Context above) {
+    if (!node.material) return Context{above.object, above.material, false};
+    return Context{above.object, node.material, node.material != above.material || is_placed(node.material)};
   };
   return fold_nodes<Built>(root, context, enter,
                            [this](const CheckedNode& node, Context here, std::span<const Built> children) {
                              ++built_nodes_;
                              Built built = node.use ? built_.at(key(*node.use, here)) : make(node, children);
                              const Origin origin{node.span, node.name};
-                             if (node.between) built.id = transform(built.id, *node.between, origin);
-                             if (node.transform) built.id = transform(built.id, *node.transform, origin);
-                             if (here.is_new && !built.painted) built = {paint(built.id, here, origin), true};
+                             if (node.between) transform(built, *node.between, origin);
+                             if (node.transform) transform(built, *node.transform, origin);
+                             if (here.is_new && !built.painted) paint(built, here, origin);
                              return built;
                            });
 }
@@ -163,28 +165,53 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
   const bool painted = !over.empty() && std::all_of(over.begin(), over.end(), std::mem_fn(&Built::painted));
   const NodeId id = maker_.make(node.kind, node.params, children, {node.span, node.name});
   check_size(node, id);
-  return {id, painted};
+  Built built{id, painted};
+  // A combinator of one is that one.
+  if (spec(scene_.graph.kind(id)).category == Category::Combinator && over.size() == 1) {
+    built.placements = over[0].placements;
+    built.placements.push_back(id);
+  }
+  return built;
 }
 
-NodeId SceneBuilder::transform(NodeId child, std::span<const double> params, const Origin& origin) {
-  const NodeId children[] = {child};
-  return scene_.graph.add(Kind::Transform, params, children, origin);
+void SceneBuilder::transform(Built& built, std::span<const double> params, const Origin& origin) {
+  const NodeId children[] = {built.id};
+  built.id = scene_.graph.add(Kind::Transform, params, children, origin);
+  built.placements.push_back(built.id);
 }
 
-NodeId SceneBuilder::paint(NodeId child, Context context, const Origin& origin) {
+void SceneBuilder::paint(Built& built, Context context, const Origin& origin) {
   if (!context.material) {
     if (!default_material_) {
       default_material_ = static_cast<std::uint32_t>(materials_.size());
       materials_.emplace_back().name = "default";
+      placed_.push_back(false);
     }
     context.material = default_material_;
   }
   const auto number = static_cast<std::uint32_t>(surfaces_.size());
   const auto [found, is_new] = surface_numbers_.emplace(std::pair(context.object, *context.material), number);
-  if (is_new) surfaces_.push_back({object_names_[context.object], *context.material});
+  const bool placed = is_placed(context.material);
+  if (is_new) {
+    surfaces_.push_back({.name = object_names_[context.object], .material = *context.material, .placed = placed});
+  }
   const double params[] = {static_cast<double>(found->second)};
-  const NodeId children[] = {child};
-  return scene_.graph.add(Kind::Paint, params, children, origin);
+  const auto add = [&](NodeId child) {
+    return scene_.graph.add(Kind::Paint, params, std::array<NodeId, 1>{child}, origin);
+  };
+  built.painted = true;
+  if (!placed || built.placements.empty()) {
+    built.id = add(built.id);
+    return;
+  }
+  built.id = add(scene_.graph.children(built.placements[0])[0]);
+  for (NodeId& placement : built.placements) {
+    const std::span<const double> old = scene_.graph.params(placement);
+    const std::vector<double> own(old.begin(), old.end());
+    const Origin place = scene_.graph.origin(placement);
+    placement = scene_.graph.add(scene_.graph.kind(placement), own, std::array<NodeId, 1>{built.id}, place);
+    built.id = placement;
+  }
 }
 
 std::string SceneBuilder::unique_name(const CheckedNode& node) {

@@ -26,10 +26,11 @@ namespace fathom::compiler {
 class SceneBuilder {
  public:
   // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
-  // material is added to `materials` when an object needs it. All must outlive the builder.
+  // material is added to `materials`, whose textures are `textures`, when an object needs it. All must outlive the
+  // builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
-               const std::vector<std::uint32_t>& order, std::vector<Material>& materials, const Limits& limits,
-               Diagnostics& diagnostics);
+               const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
+               std::span<const Texture> textures, const Limits& limits, Diagnostics& diagnostics);
 
   // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);
@@ -43,11 +44,14 @@ class SceneBuilder {
   struct Context {
     std::uint32_t object;
     std::optional<std::uint32_t> material;
-    bool is_new = false;  // the material is the node's own, and another than around it
+    bool is_new = false;  // the material is the node's own, and another than around it or in the node's coordinates
   };
   struct Built {
     NodeId id;
     bool painted;  // every point has a surface
+    // The nodes that place it, a move or a union of one each, the innermost first. A material in the node's
+    // coordinates is given to what they hold: so to move a thing is the same before it is painted and after.
+    std::vector<NodeId> placements = {};
   };
   using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // named node, object, material
 
@@ -55,8 +59,9 @@ class SceneBuilder {
   void build_named(std::uint32_t name, Context context);
   Built build(const CheckedNode& root, Context context);
   Built make(const CheckedNode& node, std::span<const Built> over);
-  NodeId transform(NodeId child, std::span<const double> params, const Origin& origin);
-  NodeId paint(NodeId child, Context context, const Origin& origin);
+  void transform(Built& built, std::span<const double> params, const Origin& origin);
+  bool is_placed(std::optional<std::uint32_t> material) const { return material && placed_[*material]; }
+  void paint(Built& built, Context context, const Origin& origin);
   std::string unique_name(const CheckedNode& node);
   bool too_many_nodes(const CheckedNode& node);
   void check_size(const CheckedNode& node, NodeId id);
@@ -64,6 +69,7 @@ class SceneBuilder {
   const std::vector<CheckedNode>& named_;
   const std::vector<std::vector<Use>>& uses_;
   std::vector<Material>& materials_;
+  std::vector<bool> placed_;  // [material] whether it is in the coordinates of its node
   const Limits& limits_;
   std::size_t built_nodes_ = 0;  // those of equal nodes, too: what is used in many objects is built anew in each
   bool full_ = false;            // there are more nodes than the limit, which was reported

@@ -182,7 +182,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   warn_of_shutter(*record, out.camera, parameters, diagnostics);
   for (const Scope::Entry& entry : parameters.entries()) out.parameters.push_back(entry.parameter);
 
-  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, limits, diagnostics);
+  SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, out.textures, limits, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);
   if (diagnostics.has_errors()) return std::nullopt;
   out.scene = level(builder.finish());

@@ -18,6 +18,8 @@ PropertySpec varying(PropertySpec property) {
   return property;
 }
 
+PropertySpec space_row(std::string_view doc) { return choice("space", doc, kTextureSpaces); }
+
 RecordSpec material(std::string type, std::vector<PropertySpec> own) {
   RecordSpec record{type,
                     "`" + type + "`",
@@ -25,6 +27,8 @@ RecordSpec material(std::string type, std::vector<PropertySpec> own) {
                     {choice({"diffuse", "emissive", "specular", "transparent", "principled"},
                             "how the surface scatters light", true)}};
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
+  record.properties.push_back(
+      space_row("whose coordinates formulas and patterns are in: the scene's, or the node's"));
   return record;
 }
 
@@ -104,6 +108,8 @@ RecordSpec pattern(std::string type, std::vector<PropertySpec> own) {
   // As of a node.
   for (const char* name : {"scale", "rotate"}) record.properties.push_back(*use_record().find(name));
   record.properties.push_back(vec3("translate", "how far to move the pattern, after scale and rotate", {0, 0, 0}));
+  record.properties.push_back(
+      space_row("whose coordinates it is in, and all that it mixes: the scene's, or the node's"));
   return record;
 }
 

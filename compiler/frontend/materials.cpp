@@ -98,12 +98,13 @@ class MaterialReader {
  private:
   void read_parameters(const RecordReader& reader, const RecordSpec& row, Material& material) {
     const MaterialPreset* preset = find_preset(reader);
+    const TextureSpace space = space_of(reader, TextureSpace::World);
     for (const Slot& place : kPlaces) {
       const PropertySpec* property = row.find(place.property);
       if (property == nullptr || !property->alias_of.empty()) continue;
       const syntax::Value* given = reader.value(place.property);
       if (given && varies(*given)) {
-        read_texture(*given, *property, place, material);
+        read_texture(*given, *property, space, place, material);
       } else if (const glm::dvec3* known = given ? nullptr : find(preset, place.property)) {
         put(material, place, *known);
       } else {
@@ -115,8 +116,9 @@ class MaterialReader {
     if (reader.value("emission_color") && !reader.value("emission_luminance")) material.emission_luminance = 1;
   }
 
-  void read_texture(const syntax::Value& value, const PropertySpec& row, const Slot& place, Material& material) {
-    const std::optional<ReadTexture> texture = textures_.read(value, row);
+  void read_texture(const syntax::Value& value, const PropertySpec& row, TextureSpace space, const Slot& place,
+                    Material& material) {
+    const std::optional<ReadTexture> texture = textures_.read(value, row, space);
     if (!texture) return;
     put(material, place, texture->typical);
     if (texture->index) material.textured.push_back(textured(place, *texture->index, row));

@@ -56,27 +56,36 @@ bool is_sound(const Pattern& pattern, Span place, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::optional<ReadTexture> TextureReader::read(const syntax::Value& value, const PropertySpec& parameter, int depth) {
-  if (!std::holds_alternative<syntax::Record>(value.data)) return read_formulas(value, parameter);
-  if (depth <= kDeepestPattern) return read_pattern(value, parameter, depth);
+TextureSpace space_of(const RecordReader& reader, TextureSpace otherwise) {
+  const syntax::Value* value = reader.value("space");
+  if (value == nullptr) return otherwise;
+  const bool world = std::get<std::string>(value->data) == kTextureSpaces[0];
+  return world ? TextureSpace::World : TextureSpace::Object;
+}
+
+std::optional<ReadTexture> TextureReader::read(const syntax::Value& value, const PropertySpec& parameter,
+                                               Context context) {
+  if (!std::holds_alternative<syntax::Record>(value.data)) return read_formulas(value, parameter, context.space);
+  if (context.depth <= kDeepestPattern) return read_pattern(value, parameter, context);
   diagnostics_.error("E0109", opening(value.span), "patterns nested too deep",
                      fmt::format("this is within {} others", kDeepestPattern), {"mix fewer patterns, or write a formula"});
   return std::nullopt;
 }
 
 std::optional<ReadTexture> TextureReader::read_pattern(const syntax::Value& value, const PropertySpec& parameter,
-                                                       int depth) {
+                                                       Context context) {
   const auto& record = std::get<syntax::Record>(value.data);
   const Span place = opening(value.span);
   const RecordSpec* found = row_by_type(pattern_records(), "pattern", record, place, diagnostics_, "pattern");
   if (found == nullptr) return std::nullopt;
   const RecordSpec row = row_for(*found, parameter);
   const RecordReader reader(row, record, place, scope_, diagnostics_);
-  const std::optional<ReadTexture> a = read_end(reader, row, "a", depth), b = read_end(reader, row, "b", depth);
+  context.space = space_of(reader, context.space);
+  const std::optional<ReadTexture> a = read_end(reader, row, "a", context), b = read_end(reader, row, "b", context);
   const auto placement = read_placement(reader, scope_, diagnostics_);
   if (!reader.good() || !a || !b) return std::nullopt;
   if (!a->index && !b->index && a->typical == b->typical) return a;
-  Pattern pattern{kind_of(reader, row.type), {}, 0, 0};
+  Pattern pattern{kind_of(reader, row.type), {}, 0, 0, context.space};
   if (!is_sound(pattern, place, diagnostics_)) return std::nullopt;
   constexpr std::array<double, 13> kStill = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1};
   const std::array<double, 13> params = placement.value_or(kStill);
@@ -88,20 +97,21 @@ std::optional<ReadTexture> TextureReader::read_pattern(const syntax::Value& valu
 
 // What the pattern has as its `a` or `b`.
 std::optional<ReadTexture> TextureReader::read_end(const RecordReader& reader, const RecordSpec& row,
-                                                   const char* name, int depth) {
+                                                   const char* name, Context context) {
   const syntax::Value* value = reader.value(name);
   if (value == nullptr) return std::nullopt;
-  if (varies(*value)) return read(*value, *row.find(name), depth + 1);
+  if (varies(*value)) return read(*value, *row.find(name), Context{context.space, context.depth + 1});
   return ReadTexture{*three_numbers(*value)};
 }
 
-std::optional<ReadTexture> TextureReader::read_formulas(const syntax::Value& value, const PropertySpec& parameter) {
+std::optional<ReadTexture> TextureReader::read_formulas(const syntax::Value& value, const PropertySpec& parameter,
+                                                        TextureSpace space) {
   const double usual = parameter.fallback.empty() ? 0 : parameter.fallback[0];
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) {
     const std::optional<std::uint32_t> one = add_formula(value);
     if (!one) return std::nullopt;
-    return ReadTexture{glm::dvec3(usual), add(TextureFormula{{*one, *one, *one}})};
+    return ReadTexture{glm::dvec3(usual), add(TextureFormula{{*one, *one, *one}, space})};
   }
   if (parameter.type != ValueType::Color || list->size() != 3) {
     diagnostics_.error(
@@ -111,7 +121,7 @@ std::optional<ReadTexture> TextureReader::read_formulas(const syntax::Value& val
         "", {fmt::format("`{}`: {}", parameter.name, parameter.doc)});
     return std::nullopt;
   }
-  TextureFormula texture{};
+  TextureFormula texture{{}, space};
   bool good = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::optional<std::uint32_t> one = add_formula((*list)[i]);

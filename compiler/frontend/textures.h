@@ -22,24 +22,34 @@ struct ReadTexture {
   std::optional<std::uint32_t> index = {};  // of the texture; none of a constant
 };
 
+// The `space` of a record of a material or pattern, else `otherwise`.
+TextureSpace space_of(const RecordReader& reader, TextureSpace otherwise);
+
 class TextureReader {
  public:
   TextureReader(const Scope& scope, Diagnostics& diagnostics) : scope_(scope), diagnostics_(diagnostics) {}
 
-  // `value` is of a property with the row `parameter`, and varies() (frontend/written_numbers.h). nullopt after a
-  // report. A pattern of twice the same constant is that constant.
-  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter) {
-    return read(value, parameter, 1);
+  // `value` is of a property with the row `parameter`, and varies() (frontend/written_numbers.h). `space` is the
+  // material's: a pattern may have another, for itself and what it mixes. nullopt after a report. A pattern of twice
+  // the same constant is that constant.
+  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, TextureSpace space) {
+    return read(value, parameter, Context{space, 1});
   }
 
   std::vector<Texture> textures;
   std::vector<Scene> formulas;  // numbers; TextureFormula::programs are indices
 
  private:
-  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, int depth);
-  std::optional<ReadTexture> read_pattern(const syntax::Value& value, const PropertySpec& parameter, int depth);
-  std::optional<ReadTexture> read_end(const RecordReader& reader, const RecordSpec& row, const char* name, int depth);
-  std::optional<ReadTexture> read_formulas(const syntax::Value& value, const PropertySpec& parameter);
+  struct Context {
+    TextureSpace space;
+    int depth;  // in patterns
+  };
+  std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, Context context);
+  std::optional<ReadTexture> read_pattern(const syntax::Value& value, const PropertySpec& parameter, Context context);
+  std::optional<ReadTexture> read_end(const RecordReader& reader, const RecordSpec& row, const char* name,
+                                      Context context);
+  std::optional<ReadTexture> read_formulas(const syntax::Value& value, const PropertySpec& parameter,
+                                           TextureSpace space);
   std::optional<std::uint32_t> add_formula(const syntax::Value& value);
   std::uint32_t add(Texture texture);
   std::uint32_t index_of(const ReadTexture& end);

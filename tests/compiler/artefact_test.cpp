@@ -39,7 +39,7 @@ constexpr const char* kEverything = R"scene({
   "lights": {"lamp": {"type": "spot", "position": [0, 3, 0], "target": [0, 0, 0], "intensity": [1, 2, 3]}},
   "materials": {
     "glass": {"type": "transparent", "ior": 1.5, "priority": -2},
-    "tiles": {"type": "principled", "base_color": {"pattern": "checker", "a": [1, 0, 0], "b": {"pattern": "noise",
+    "tiles": {"type": "principled", "base_color": {"pattern": "checker", "space": "object", "a": [1, 0, 0], "b": {"pattern": "noise",
               "a": 0, "b": 1}}, "roughness": "0.2 + 0.1 * sin(x)",
                      "coat" : 1
 }

@@ -26,7 +26,7 @@ CompiledScene scene_of(const std::string& material, const std::string& translate
 MaterialPoint at(const std::string& material, dvec3 place) {
   const CompiledScene scene = scene_of(material);
   vm::Workspace workspace;
-  return Materials(scene).at(0, place - scene.origin, workspace);
+  return Materials(scene).at(0, place - scene.origin, place, workspace);
 }
 
 void check_same(const MaterialPoint& a, const MaterialPoint& b) {
@@ -102,7 +102,7 @@ TEST_CASE("material: a formula is what it says in the scene's coordinates", "[ma
     vm::Workspace workspace;
     CHECK(materials.varies(0));
     for (const dvec3 p : {dvec3(1, 0.25, 2), dvec3(100000.5, 0.001, 1000)}) {
-      const vec3 color = materials.at(0, p - scene.origin, workspace).base_color;
+      const vec3 color = materials.at(0, p - scene.origin, p, workspace).base_color;
       CHECK(static_cast<double>(color.x) == Approx(0.5 + 0.25 * std::sin(2 * p.x)).epsilon(1e-6));
       CHECK(color.y == 0.125f);
       CHECK(static_cast<double>(color.z) == Approx(p.x * p.y / p.z).epsilon(1e-6));
@@ -155,8 +155,8 @@ TEST_CASE("material: noise is evaluated at the scene's own coordinates, whatever
   REQUIRE(far.origin != dvec3(0));
   vm::Workspace workspace;
   const dvec3 p(100000.375, 0.625, -0.25);
-  const vec3 color = Materials(far).at(0, p - far.origin, workspace).base_color;
-  CHECK(color == Materials(near).at(0, p, workspace).base_color);
+  const vec3 color = Materials(far).at(0, p - far.origin, p, workspace).base_color;
+  CHECK(color == Materials(near).at(0, p, p, workspace).base_color);
   CHECK(static_cast<double>(color.x) == Approx(noise({4, 0.5, 2, 1, 3}, p)).epsilon(1e-6));
 }
 

@@ -115,12 +115,18 @@ double primitive(Kind kind, Params k, dvec3 p) {
   }
 }
 
-Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint);
+// The innermost paint around a node, and the evaluated point in its coordinates.
+struct Coat {
+  std::uint32_t surface;
+  dvec3 place;
+};
+
+Verdict visit(const Graph& graph, NodeId node, dvec3 p, const Coat& coat);
 
 // A formula's nodes: libm's functions of the operands, which may be distances.
 double judge_number(const Graph& graph, NodeId node, dvec3 p) {
   const auto operands = graph.children(node);
-  const auto operand = [&](std::size_t i) { return visit(graph, operands[i], p, 0).distance; };
+  const auto operand = [&](std::size_t i) { return visit(graph, operands[i], p, {0, p}).distance; };
   const double a = operands.empty() ? 0 : operand(0), b = operands.size() < 2 ? 0 : operand(1);
   const auto quotient = [&] { return a - b * std::floor(a / b); };
   switch (graph.kind(node)) {
@@ -256,16 +262,16 @@ double xor_of(double a, double b) { return std::max(std::min(a, b), -std::max(a,
 // Every other combinator is a joined union of its operands or of their complements: A intersected with B is the
 // complement of the union of the complements, A minus B the intersection of A with B's complement. All fold from the
 // left.
-Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
+Verdict combinator(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
   const Kind kind = graph.kind(node);
   const Params params = graph.params(node);
   const bool special = kind == Kind::Xor || kind == Kind::Morph;
   const Combination c = special ? Combination{Join::Hard, false, false} : combination(kind);
   const double k = c.join == Join::Hard ? 0.0 : params[0];
-  Verdict sum{0, paint, kInfinity};
+  Verdict sum{0, coat.surface, kInfinity, coat.place};
   const std::span<const NodeId> children = graph.children(node);
   for (std::size_t i = 0; i < children.size(); ++i) {
-    Verdict next = visit(graph, children[i], p, paint);
+    Verdict next = visit(graph, children[i], p, coat);
     if (c.complement && !(c.subtract && i > 0)) next.distance = -next.distance;
     if (i == 0) {
       sum = next;
@@ -277,29 +283,31 @@ Verdict combinator(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
       // Of an xor the operand whose distance it is: the lesser, or the greater turned inside out.
       const bool second = kind == Kind::Xor && ((a + b > 0) == (b < a));
       const double value = kind == Kind::Xor ? xor_of(a, b) : (1 - params[0]) * a + params[0] * b;
-      sum = {value, second ? next.surface : sum.surface, margin};
+      sum = {value, second ? next.surface : sum.surface, margin, second ? next.place : sum.place};
       continue;
     }
     const double to_edge_of_blend = k > 0 ? std::abs(gap - k) : kInfinity;
     const Verdict& winner = b < a ? next : sum;
     sum = {joined(c.join, a, b, params), winner.surface,
-           std::min({k > 0 ? std::min(sum.margin, next.margin) : winner.margin, gap, to_edge_of_blend})};
+           std::min({k > 0 ? std::min(sum.margin, next.margin) : winner.margin, gap, to_edge_of_blend}),
+           winner.place};
   }
   if (c.complement) sum.distance = -sum.distance;
   return sum;
 }
 
-Verdict alteration(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
+Verdict alteration(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
   const Kind kind = graph.kind(node);
   const Params k = graph.params(node);
   const NodeId child = graph.children(node)[0];
   if (kind == Kind::Revolve && k[1] != 0 &&
       compiler::spec(graph.kind(child)).category == compiler::Category::Primitive) {
-    return {judge_turned_outline(graph.kind(child), graph.params(child), k[0], half_plane(p)), paint, kInfinity};
+    return {judge_turned_outline(graph.kind(child), graph.params(child), k[0], half_plane(p)), coat.surface,
+            kInfinity, coat.place};
   }
-  Verdict least{kInfinity, paint, kInfinity};
+  Verdict least{kInfinity, coat.surface, kInfinity, coat.place};
   for (const dvec3& q : child_points(kind, k, p)) {
-    Verdict next = visit(graph, graph.children(node)[0], q, paint);
+    Verdict next = visit(graph, graph.children(node)[0], q, coat);
     const double gap = std::abs(next.distance - least.distance);
     if (next.distance < least.distance) std::swap(next, least);
     least.margin = std::min(least.margin, gap);
@@ -309,27 +317,32 @@ Verdict alteration(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint
   // Where the way to what is left out decides, the value is no surface's.
   const bool limited = kind == Kind::Repetition || kind == Kind::PolarRepetition || kind == Kind::Bend;
   if (limited && value != least.distance) least.margin = 0;
-  return {value, least.surface, folds ? std::min(least.margin, std::abs(least.distance)) : least.margin};
+  const double margin = folds ? std::min(least.margin, std::abs(least.distance)) : least.margin;
+  return {value, least.surface, margin, least.place};
 }
 
-Verdict visit(const Graph& graph, NodeId node, dvec3 p, std::uint32_t paint) {
+Verdict visit(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
   const Kind kind = graph.kind(node);
   const compiler::Category category = compiler::spec(kind).category;
-  if (category == compiler::Category::Primitive) return {primitive(kind, graph.params(node), p), paint, kInfinity};
-  if (category == compiler::Category::Combinator) return combinator(graph, node, p, paint);
+  if (category == compiler::Category::Primitive) {
+    return {primitive(kind, graph.params(node), p), coat.surface, kInfinity, coat.place};
+  }
+  if (category == compiler::Category::Combinator) return combinator(graph, node, p, coat);
   if (kind == Kind::Displaced) {
-    Verdict sum = visit(graph, graph.children(node)[0], p, paint);
-    sum.distance += visit(graph, graph.children(node)[1], p, paint).distance;
+    Verdict sum = visit(graph, graph.children(node)[0], p, coat);
+    sum.distance += visit(graph, graph.children(node)[1], p, coat).distance;
     return sum;
   }
-  if (category == compiler::Category::Function) return {judge_number(graph, node, p), paint, kInfinity};
-  if (kind == Kind::Paint) paint = static_cast<std::uint32_t>(graph.params(node)[0]);
-  return alteration(graph, node, p, paint);
+  if (category == compiler::Category::Function) {
+    return {judge_number(graph, node, p), coat.surface, kInfinity, coat.place};
+  }
+  if (kind != Kind::Paint) return alteration(graph, node, p, coat);
+  return alteration(graph, node, p, {static_cast<std::uint32_t>(graph.params(node)[0]), p});
 }
 
 }  // namespace
 
-Verdict judge(const Graph& graph, NodeId node, dvec3 p) { return visit(graph, node, p, 0); }
+Verdict judge(const Graph& graph, NodeId node, dvec3 p) { return visit(graph, node, p, {0, p}); }
 double judge_distance(const Graph& graph, NodeId node, dvec3 p) { return judge(graph, node, p).distance; }
 std::uint32_t judge_surface(const Graph& graph, NodeId node, dvec3 p) { return judge(graph, node, p).surface; }
 

@@ -21,6 +21,7 @@ struct Verdict {
   double distance;        // of the node's field, in the space of p
   std::uint32_t surface;  // number of the innermost paint around the winning primitive; 0 when there is none
   double margin;          // from the nearest tie between operands, scene units; infinite without choices
+  glm::dvec3 place{0};    // p in the coordinates of that paint; p itself when there is none
 };
 
 Verdict judge(const compiler::Graph& graph, compiler::NodeId node, glm::dvec3 p);
