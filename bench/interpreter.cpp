@@ -5,6 +5,9 @@
 //
 //     build/release/bench_interpreter
 #include <cmath>
+#include <initializer_list>
+#include <utility>
+#include <variant>
 
 #include "bench/clouds.h"
 #include "bench/comparison.h"
@@ -60,6 +63,31 @@ class Scene {
   vm::Workspace workspace_;
 };
 
+// A function's instructions alone: one value at each point of a cloud that is 8 units wide.
+class Function {
+ public:
+  explicit Function(std::initializer_list<vm::Opcode> opcodes)
+      : program_(program_of(opcodes)), cloud_(make_cloud(kPoints, {{-4, -4, -4}, {4, 4, 4}})), out_(kPoints) {}
+
+  void run(int repeats) {
+    for (int i = 0; i < repeats; ++i) {
+      vm::evaluate_distance(program_, cloud_.points(), kPoints, out_.data(), workspace_);
+    }
+  }
+
+ private:
+  static vm::VerifiedProgram program_of(std::initializer_list<vm::Opcode> opcodes) {
+    vm::Program program;
+    for (const vm::Opcode opcode : opcodes) program.append(opcode, 0, {}, {});
+    return std::get<vm::VerifiedProgram>(vm::verify(std::move(program)));
+  }
+
+  vm::VerifiedProgram program_;
+  Cloud cloud_;
+  std::vector<float> out_;
+  vm::Workspace workspace_;
+};
+
 struct Bars {
   const char* scene;
   double ahead, scalar;  // the ratio at most
@@ -90,5 +118,10 @@ int main(int argc, char** argv) {
     add({name + ": machine / its scalar interpreter", "ns a point", 1e9 / kPoints, bars.scalar, 0, kRounds,
          [&scene] { scene.interpret(1); }, [&scene] { scene.interpret_scalar(); }});
   }
+  using vm::Opcode;
+  Function noise{Opcode::X, Opcode::Y, Opcode::Z, Opcode::Noise}, sine{Opcode::X, Opcode::Sin};
+  constexpr int kRepeats = 50;
+  add({"noise(x, y, z) / sin(x)", "ns a point", 1e9 / kPoints / kRepeats, INFINITY, 0, kRounds,
+       [&noise] { noise.run(kRepeats); }, [&sine] { sine.run(kRepeats); }});
   return run_benches(argc, argv, fmt::format("Interpreter, {} points at random", kPoints));
 }

@@ -61,6 +61,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"E0407", "a name that a parameter or definition cannot have"},
     {"E0408", "a parameter out of its range"},
     {"E0409", "a number in a formula that float cannot hold"},
+    {"E0410", "a number of times that is not a constant whole number"},
     // E05xx: the command line's values for a scene
     {"E0501", "a value for a parameter that the scene does not have"},
     {"E0502", "a value for a parameter out of its range"},

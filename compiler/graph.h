@@ -166,9 +166,10 @@ enum class Kind : std::uint8_t {
   And,
   Or,
   Step,
+  Noise,
 };
 
-inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Step) + 1;
+inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;
 
 // A blend narrower than this changes no float and counts as none.
 inline constexpr double kLeastBlend = 1e-30;

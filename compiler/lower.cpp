@@ -201,7 +201,8 @@ class Lowering {
     std::uint32_t result = 1;
     for (std::size_t i = 0; i < order_.size(); ++i) {
       // After the first, a fold holds one value while it evaluates the next.
-      result = std::max(result, values_[order_[i]].height + (i == 0 ? 0 : 1));
+      const auto held = static_cast<std::uint32_t>(code.all_at_once ? i : std::min<std::size_t>(i, 1));
+      result = std::max(result, values_[order_[i]].height + held);
     }
     // What follows may push one value of its own.
     const bool pushes = std::any_of(code.after.begin(), code.after.end(),
@@ -331,6 +332,7 @@ class Lowering {
     if (swapped) tasks_.push_back({id, Step::Append, code, &code->swapped_first});
     for (std::size_t i = 1; i < order_.size(); ++i) {
       tasks_.push_back({order_[i]});
+      if (code->all_at_once && i + 1 < order_.size()) continue;
       tasks_.push_back({id, Step::Append, code, swapped && i == 1 ? &code->swapped_join : &code->after});
     }
   }

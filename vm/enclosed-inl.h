@@ -72,6 +72,18 @@ HWY_INLINE Ball smaller(const Ball& a, const Ball& b) {
           pick(a.radius, b.radius)};
 }
 
+// By the noise in the middle of the box and how fast it changes; both values are rounded.
+HWY_INLINE Enclosure noise(const Enclosure& x, const Enclosure& y, const Enclosure& z) {
+  const Ball ball = ball_around({x, y, z});
+  const Batch error = Batch::broadcast(0x1p-18), most = Batch::broadcast(kNoiseRange) + error;
+  static_assert(2 * kNoiseUnits * 0x1p-24 < 0x1p-18 - 0x1p-20);  // and what is rounded here
+  const Batch value = noise(ball.centre.x, ball.centre.y, ball.centre.z);
+  const Batch spread = ball.radius * Batch::broadcast(kNoiseSlope * (1 + 0x1p-20)) + error;
+  // Of a box without an end the radius is no number: then the first operand is none, and the second is the bound.
+  return whole_where(is_whole(x) | is_whole(y) | is_whole(z),
+                     {max(value - spread, -most), min(value + spread, most)});
+}
+
 // How much an affine map can lengthen, and how much its terms add up to: the largest singular value is no more than
 // the root of the largest row sum of |M^T M| (Gershgorin), 1 for a rotation; then the root of the sum of squares.
 struct Stretch {

@@ -58,7 +58,7 @@ struct ValueTraits<Shared<kShares>> {
   static HWY_INLINE Shared apply(const Shared& a, const Real* k) {
     return {Op::template apply<Real>(a.v, k), a.shares};
   }
-  // What an operation over two numbers makes of each, whatever it is, its derivatives tell.
+  // What an operation over several numbers makes of each, whatever it is, its derivatives tell.
   template <class Op>
   static HWY_INLINE Shared apply(const Shared& a, const Shared& b, const Real* k) {
     const Real zero{0}, one{1};
@@ -66,6 +66,16 @@ struct ValueTraits<Shared<kShares>> {
     Shared out{result.v, {}};
     add_shares(out.shares, a.shares, std::fabs(result.dx.v));
     add_shares(out.shares, b.shares, std::fabs(result.dy.v));
+    return out;
+  }
+  template <class Op>
+  static HWY_INLINE Shared apply(const Shared& a, const Shared& b, const Shared& c) {
+    const Real zero{0}, one{1};
+    const D result = Op::template apply<D>(D{a.v, one, zero, zero}, D{b.v, zero, one, zero}, D{c.v, zero, zero, one});
+    Shared out{result.v, {}};
+    add_shares(out.shares, a.shares, std::fabs(result.dx.v));
+    add_shares(out.shares, b.shares, std::fabs(result.dy.v));
+    add_shares(out.shares, c.shares, std::fabs(result.dz.v));
     return out;
   }
   static HWY_INLINE void tag(Shared& value, std::uint32_t surface) {

@@ -41,6 +41,7 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
 #define OP_Outline(Name, ...)
 #define OP_Unary(Name, ...)
 #define OP_Binary(Name, ...)
+#define OP_Ternary(Name, ...)
 #define OP_Machine(Name, ...)
 #define OP_Shape(Name, immediates, cost)                                           \
   case Opcode::Name:                                                               \

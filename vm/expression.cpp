@@ -58,6 +58,9 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint3
       if (row.choice) enter_choice(node, self);
       break;
     }
+    case Form::Ternary:
+      for (std::uint32_t* operand : {&node.c, &node.b, &node.a}) sound = take(*operand) && sound;
+      break;
     case Form::Machine:
       if (row.opcode == Opcode::Drop && height_ == 0) return false;
       sound = row.opcode == Opcode::Load ? use_local(operand_of(word), node.a) : take(node.a);

@@ -14,9 +14,10 @@ namespace fathom::vm {
 // An instruction and where its operands come from; nodes are numbered as the instructions are.
 struct ExpressionNode {
   std::uint32_t at;  // of the opcode word
-  // The instructions whose values are its operands: of a Unary a, of a Binary a and b, of a joined Shape a (b is the
-  // shape itself), of drop, tee, load and tag a; kNone for a coordinate or a constant. A local's value is its tee's.
-  std::uint32_t a = kNone, b = kNone;
+  // The instructions whose values are its operands: of a Unary a, of a Binary a and b, of a Ternary all, of a joined
+  // Shape a (b is the shape itself), of drop, tee, load and tag a; kNone for a coordinate or a constant. A local's
+  // value is its tee's.
+  std::uint32_t a = kNone, b = kNone, c = kNone;
   std::uint32_t point = kNone;   // of drop: the Point instruction whose point it forgets
   std::uint32_t choice = kNone;  // its number, in program order, when it is a choice
 };

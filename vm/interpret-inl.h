@@ -149,6 +149,7 @@ class Machine {
 #define OP_Outline(Name) APPLY(Name, apply_outline)
 #define OP_Unary(Name) APPLY(Name, apply_unary)
 #define OP_Binary(Name) APPLY(Name, apply_binary)
+#define OP_Ternary(Name) APPLY(Name, apply_ternary)
 #define OP_Machine(Name)
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
@@ -289,6 +290,14 @@ class Machine {
       to[i] = Traits::template apply<Op>(x, y, immediates.k);
     });
     if constexpr (Op::kChoice != Choice::None) observer_.next();
+  }
+
+  template <class Op, int Count>
+  HWY_INLINE void apply_ternary(Cursor& c) {
+    static_assert(Count == 0);
+    T* to = c.top -= 2 * kBlock;
+    for_used([&](std::size_t i)
+                 HWY_ATTR { to[i] = Traits::template apply<Op>(to[i], to[i + kBlock], to[i + 2 * kBlock]); });
   }
 
   // The numbers of an operand, wherever they lie.

@@ -62,6 +62,13 @@ namespace fathom::vm::HWY_NAMESPACE {
       return meaning;                                                                          \
     }                                                                                          \
   };
+#define OP_Ternary(Name, meaning)                                   \
+  struct Name##Op {                                                 \
+    template <class T>                                              \
+    static HWY_INLINE T apply(const T& a, const T& b, const T& c) { \
+      return meaning;                                               \
+    }                                                               \
+  };
 #define OP_Machine(Name, meaning)
 #define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
 #include "vm/opcodes.def"
@@ -81,6 +88,10 @@ struct ValueTraits {
   template <class Op>
   static HWY_INLINE T apply(const T& a, const T& b, const Constant<T>* k) {
     return Op::apply(a, b, k);
+  }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const T& b, const T& c) {
+    return Op::apply(a, b, c);
   }
   static HWY_INLINE void tag(T&, std::uint32_t) {}
 };
@@ -109,6 +120,10 @@ struct ValueTraits<Convex<T>> {
     if constexpr (std::is_same_v<Op, MeetOp>) result.convex = max(convex_intersection(a, b), result.convex);
     return result;
   }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Convex<T>& b, const Convex<T>& c) {
+    return plain(Op::apply(a.v, b.v, c.v));
+  }
   static HWY_INLINE void tag(Convex<T>&, std::uint32_t) {}
 };
 // A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing
@@ -130,6 +145,10 @@ struct ValueTraits<Tagged<T>> {
   static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Tagged<T>& b, const Constant<T>* k) {
     if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
     return {Number::template apply<Op>(a.v, b.v, k), a.surface};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Tagged<T>& b, const Tagged<T>& c) {
+    return {Number::template apply<Op>(a.v, b.v, c.v), a.surface};
   }
   static HWY_INLINE void tag(Tagged<T>& value, double surface) {
     value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);

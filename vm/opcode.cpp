@@ -17,6 +17,8 @@ constexpr StackEffect plain_effect(Opcode opcode, Form form) {
       return {1, 0, 0, 0};
     case Form::Binary:
       return {2, -1, 0, 0};
+    case Form::Ternary:
+      return {3, -2, 0, 0};
     case Form::Machine:
       break;
   }

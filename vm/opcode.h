@@ -20,7 +20,7 @@ inline constexpr int kOpcodeCount = 0
 #undef OP
     ;
 
-enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Machine };
+enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Ternary, Machine };
 enum class Choice : std::uint8_t { None, Lesser, Greater, Carve, Either };
 
 // How an instruction changes the heights of the two stacks. `needs` is the height that must be there before.
@@ -47,7 +47,7 @@ inline constexpr std::uint32_t kMoved = 1, kJoined = 2;
 // Of skeletons' round boxes alone (vm/skeleton.h): it is another shape in every lane.
 inline constexpr std::uint32_t kAnyShape = 4;
 // A Unary's or Binary's operand can come from elsewhere than the stack: a coordinate of the top point, an immediate
-// before the row's own, or a local.
+// before the row's own, or a local. Those of a Ternary lie on the stack.
 enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };
 struct Sources {
   Source a = Source::Stack, b = Source::Stack;  // a Unary has a alone

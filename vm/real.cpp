@@ -1,7 +1,7 @@
 #include "vm/real.h"
 
 #undef HWY_TARGET_INCLUDE
-#include "vm/number/elementary-inl.h"
+#include "vm/number/noise-inl.h"
 
 namespace fathom::vm::real {
 namespace {
@@ -21,5 +21,6 @@ double atan2(double y, double x) { return kernels::atan2(Real{y}, Real{x}).v; }
 double exp(double x) { return kernels::exp(Real{x}).v; }
 double log(double x) { return kernels::log(Real{x}).v; }
 double pow(double x, double y) { return kernels::pow(Real{x}, Real{y}).v; }
+double noise(double x, double y, double z) { return kernels::noise(Real{x}, Real{y}, Real{z}).v; }
 
 }  // namespace fathom::vm::real

@@ -14,5 +14,6 @@ double atan2(double y, double x);
 double exp(double x);
 double log(double x);
 double pow(double x, double y);
+double noise(double x, double y, double z);  // vm/number/noise-inl.h
 
 }  // namespace fathom::vm::real

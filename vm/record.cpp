@@ -29,7 +29,7 @@ std::vector<Ref> run(Opcode opcode, std::span<const std::uint32_t> words) {
   const OpcodeInfo& row = info(opcode);
   const std::size_t operands = row.form == Form::Unary ? 1 : row.form == Form::Binary ? 2 : 3;
   const Vec3<Number> p = point_parameter();
-  const Number a = p.x, b = p.y;
+  const Number a = p.x, b = p.y, c = p.z;
   const std::vector<Number> immediates = parameters<Batch>(operands, static_cast<std::size_t>(row.immediates));
   const Number* k = immediates.data();
   switch (opcode) {
@@ -39,13 +39,14 @@ std::vector<Ref> run(Opcode opcode, std::span<const std::uint32_t> words) {
 #define OP_Outline(Name) case Opcode::Name: break;
 #define OP_Unary(Name) case Opcode::Name: return results(Name##Op::apply(a, k));
 #define OP_Binary(Name) case Opcode::Name: return results(Name##Op::apply(a, b, k));
+#define OP_Ternary(Name) case Opcode::Name: return results(Name##Op::apply(a, b, c));
 #define OP_Machine(Name) case Opcode::Name: break;
 #define OP(Name, mnemonic, form, ...) OP_##form(Name)
 #include "vm/opcodes.def"
 #include "vm/opcodes_end.def"
     // clang-format on
   }
-  CHECK(false, "an opcode that computes something of a point or of one or two numbers");
+  CHECK(false, "an opcode that computes something of a point or of up to three numbers");
 }
 
 std::vector<Ref> run_outline(Opcode opcode, std::span<const double> groups) {
@@ -62,6 +63,7 @@ std::vector<Ref> run_outline(Opcode opcode, std::span<const double> groups) {
 #define OUTLINE_Shape(...)
 #define OUTLINE_Unary(...)
 #define OUTLINE_Binary(...)
+#define OUTLINE_Ternary(...)
 #define OUTLINE_Machine(...)
 #define OP(Name, mnemonic, form, immediates, ...) OUTLINE_##form(Name, immediates)
 #include "vm/opcodes.def"
@@ -71,6 +73,7 @@ std::vector<Ref> run_outline(Opcode opcode, std::span<const double> groups) {
 #undef OUTLINE_Shape
 #undef OUTLINE_Unary
 #undef OUTLINE_Binary
+#undef OUTLINE_Ternary
 #undef OUTLINE_Machine
     // clang-format on
     default:

@@ -20,6 +20,8 @@
 #include "vm/number/convex-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/interval_elementary-inl.h"
+#include "vm/number/noise-inl.h"
+#include "vm/number/noise_range-inl.h"
 #include "vm/number/number-inl.h"
 #include "vm/number/real-inl.h"
 #include "vm/number/slope_elementary-inl.h"

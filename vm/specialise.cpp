@@ -101,7 +101,7 @@ void Specialiser::link_choices() {
       under_[i] = under_[node.a];
       under_[i].less += std::bit_cast<float>(program_->words[node.at + 1]);
     } else {
-      for (const std::uint32_t operand : {node.a, node.b}) {
+      for (const std::uint32_t operand : {node.a, node.b, node.c}) {
         if (operand != kNone && under_[operand].choice != kNone) links_[under_[operand].choice].always = true;
       }
     }
@@ -177,6 +177,8 @@ void Specialiser::count_uses() {
       const Sources sources = sources_of(word);
       need_operand(sources.a, node.a, a);
       if (row.form == Form::Binary) need_operand(sources.b, node.b, b);
+    } else if (row.form == Form::Ternary) {
+      for (const std::uint32_t operand : {node.a, node.b, node.c}) need(operand, boxes);
     } else if (row.opcode == Opcode::Load) {
       need_operand(Source::Local, node.a, boxes);
     } else if (row.form == Form::Machine || is_joined(word)) {
@@ -224,6 +226,9 @@ void Specialiser::emit(std::uint32_t id) {
   emit_whole(id);
   if (row.opcode == Opcode::Drop) push(node.point, Task::Instruction);
   if (node.a != kNone) push(node.a, Task::Value);
+  if (row.form != Form::Ternary) return;
+  push(node.b, Task::Value);  // what comes last in the code is written first
+  push(node.c, Task::Value);
 }
 
 void Specialiser::emit_whole(std::uint32_t id) {

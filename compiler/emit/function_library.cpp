@@ -13,7 +13,11 @@ namespace {
 using vm::Form;
 using vm::OpcodeInfo;
 
-bool takes_point(const OpcodeInfo& row) { return row.form != Form::Unary && row.form != Form::Binary; }
+// Numbers that a row takes; 0 when it takes a point.
+std::size_t numbers_of(const OpcodeInfo& row) {
+  return row.form == Form::Unary ? 1 : row.form == Form::Binary ? 2 : row.form == Form::Ternary ? 3 : 0;
+}
+bool takes_point(const OpcodeInfo& row) { return numbers_of(row) == 0; }
 
 // The rows' names of the immediates that are parameters.
 std::vector<std::string> parameter_names(const Language& language, const OpcodeInfo& row) {
@@ -102,8 +106,8 @@ void FunctionLibrary::print(Function& function, const OpcodeInfo& row) {
     operands = {{"p"}};
     parameters = {"vec3 p"};
   } else {
-    operands = {{"a"}, {"b"}};
-    if (row.form == Form::Unary) operands.pop_back();
+    operands = {{"a"}, {"b"}, {"c"}};
+    operands.resize(numbers_of(row));
     for (const Expression& operand : operands)
       parameters.push_back(fmt::format("{} {}", language_.number_type, operand.text));
   }

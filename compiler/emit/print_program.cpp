@@ -66,6 +66,9 @@ class ProgramPrinter {
       case Form::Binary:
         function(row, word, immediates);
         break;
+      case Form::Ternary:
+        ternary(row, immediates);
+        break;
       case Form::Machine:
         machine(row, word);
         break;
@@ -92,6 +95,11 @@ class ProgramPrinter {
     operands.push_back(operand(sources.a, sources.local));
     if (row.form == Form::Binary) operands.push_back(stack ? top : operand(sources.b, sources.local));
     push(functions_.apply(row.opcode, operands, immediates));
+  }
+
+  void ternary(const OpcodeInfo& row, const Immediates& immediates) {
+    Expression c = pop(), b = pop(), a = pop();
+    push(functions_.apply(row.opcode, {std::move(a), std::move(b), std::move(c)}, immediates));
   }
 
   Expression operand(vm::Source source, std::uint32_t local) {

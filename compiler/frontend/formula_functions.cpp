@@ -1,6 +1,9 @@
 #include "compiler/frontend/formula_functions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace fathom::compiler {
 namespace {
@@ -46,6 +49,25 @@ FormulaId expand_tan(const FormulaMaker& make, Arguments a) {
   return make("divide", {make("sin", {a[0]}), make("cos", {a[0]})});
 }
 
+// Fractional Brownian motion (Mandelbrot & Van Ness, 1968), as noise makes it: the sum of noise(2^k p + c_k) / 2^k.
+// The c_k are 0 and then (2 k + 1) c with odd sixteenths in c, so that no two octaves have their zeros, which noise
+// has at whole coordinates, at one place: if 2^j p + c_j is whole, 2^k p + c_k is an odd number of sixteenths off.
+FormulaId expand_fbm(const FormulaMaker& make, Arguments a) {
+  constexpr double kApart[] = {37.0 / 16, 55.0 / 16, 91.0 / 16};
+  FormulaId sum = make("noise", {a[0], a[1], a[2]});
+  const int octaves = static_cast<int>(*make.builder.value(a[3]));
+  for (int k = 1; k < octaves; ++k) {
+    const FormulaId scale = make(std::ldexp(1.0, k));
+    const auto moved = [&](std::size_t axis) {
+      return make("add", {make("multiply", {a[axis], scale}), make((2 * k + 1) * kApart[axis])});
+    };
+    const FormulaId octave = make("noise", {moved(0), moved(1), moved(2)});
+    sum = make("add", {sum, make("multiply", {octave, make(std::ldexp(1.0, -k))})});
+  }
+  return sum;
+}
+constexpr int kMostOctaves = 12;
+
 constexpr FormulaFunction kDerived[] = {
     {"clamp", 3, 3, "", expand_clamp},            // value, least, most
     {"mix", 3, 3, "", expand_mix},                // a at t = 0, b at t = 1, t
@@ -54,9 +76,16 @@ constexpr FormulaFunction kDerived[] = {
     {"hypot", 2, 3, "", expand_length},
     {"pow", 2, 2, "", expand_pow},
     {"tan", 1, 1, "", expand_tan},
+    {"fbm", 4, 4, "", expand_fbm, kMostOctaves},  // x, y, z, octaves
 };
 
 }  // namespace
+
+std::string FormulaFunction::misfit_of(std::optional<double> last) const {
+  if (most_times == 0 || (last && *last >= 1 && *last <= most_times && *last == std::floor(*last))) return "";
+  return fmt::format("the last argument of `{}` is a whole number from 1 to {}, not {}", name, most_times,
+                     last ? fmt::format("{}", *last) : "one that varies");
+}
 
 FormulaId FormulaFunction::call(FormulaBuilder& builder, std::span<const FormulaId> arguments, Span span) const {
   return expand ? expand({builder, span}, arguments) : builder.call(basic, arguments, span);

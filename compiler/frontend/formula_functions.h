@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,8 +19,13 @@ struct FormulaFunction {
   std::size_t least, most;  // how many arguments it takes
   std::string_view basic;   // the machine's function; empty for one that is made of others
   FormulaId (*expand)(const FormulaMaker& make, std::span<const FormulaId> arguments) = nullptr;
+  // The last argument says how often something is done: a constant whole number from 1 to this. 0: there is none
+  // such.
+  int most_times = 0;
 
   // `arguments` are as many as it takes.
+  // What is wrong with `last` as the last of them, nullopt being a number that varies; empty when nothing is.
+  std::string misfit_of(std::optional<double> last) const;
   FormulaId call(FormulaBuilder& builder, std::span<const FormulaId> arguments, Span span) const;
 };
 

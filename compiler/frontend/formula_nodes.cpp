@@ -19,6 +19,8 @@ int arity(const NodeSpec& row) {
       return 1;
     case vm::Form::Binary:
       return 2;
+    case vm::Form::Ternary:
+      return 3;
     default:
       return 0;
   }

@@ -189,7 +189,11 @@ FormulaParser::Result FormulaParser::call(const Token& name) {
   if (arguments.size() < function->least || arguments.size() > function->most) {
     return wrong_count(name, place, *function, arguments.size());
   }
-  return function->call(context_.builder, arguments, place);
+  const FormulaId last = arguments.back();
+  const std::string misfit = function->misfit_of(context_.builder.value(last));
+  if (misfit.empty()) return function->call(context_.builder, arguments, place);
+  report("E0410", context_.builder.span(last), misfit);
+  return stand_in(name);
 }
 
 FormulaId FormulaParser::stand_in(const Token& name) {
@@ -257,7 +261,7 @@ FormulaId FormulaParser::wrong_count(const Token& name, Span place, const Formul
                                 ? count_of_arguments(function.least)
                                 : fmt::format("{} or {}", function.least, count_of_arguments(function.most));
   report("E0404", place, fmt::format("`{}` takes {}, not {}", name.text, right, count), "",
-         {fmt::format("write {}({})", name.text, std::string_view("a, b, c").substr(0, 3 * function.most - 2))});
+         {fmt::format("write {}({})", name.text, std::string_view("a, b, c, d").substr(0, 3 * function.most - 2))});
   return stand_in(name);
 }
 

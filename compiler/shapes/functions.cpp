@@ -36,6 +36,14 @@ Code minus_code(Params) {
   return {.after = {{Opcode::Minus}}, .swapped_first = {{Opcode::Negate}}, .swapped_join = {{Opcode::Add}}};
 }
 
+template <Opcode Op>
+Code all_at_once(Params) {
+  Code code;
+  code.after = {{Op}};
+  code.all_at_once = true;
+  return code;
+}
+
 NodeSpec function(Kind kind, std::string_view name, Code (*code)(Params), std::string_view doc,
                   std::vector<ParamSpec> params = {}) {
   return {.kind = kind,
@@ -115,6 +123,7 @@ std::vector<NodeSpec> function_rows() {
       function(Kind::And, "and", code_of<Opcode::And>, "b where a is not 0, else a"),
       function(Kind::Or, "or", code_of<Opcode::Or>, "a where it is not 0, else b"),
       function(Kind::Step, "step", code_of<Opcode::Step>, "0 where b is less than a, else 1"),
+      function(Kind::Noise, "noise", all_at_once<Opcode::Noise>, "gradient noise at the point (a, b, c)"),
       {.kind = Kind::Expression,
        .name = "expression",
        .category = Category::Alteration,

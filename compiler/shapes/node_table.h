@@ -68,6 +68,8 @@ struct Code {
   // How a combinator of two operands is evaluated with the second first: what follows the second, then what joins the
   // first to it. Empty `swapped_join`: not possible.
   std::vector<Instruction> swapped_first = {}, swapped_join = {};
+  // `after` follows the last operand alone and takes all of them.
+  bool all_at_once = false;
   // The operands may come in any order.
   bool any_order = false;
 };

@@ -23,7 +23,7 @@ constexpr const char* kMeanings[] = {
 #include "vm/opcodes.def"
 #undef OP
 };
-constexpr const char* kForms[] = {"Point", "Shape", "Outline", "Unary", "Binary", "Machine"};
+constexpr const char* kForms[] = {"Point", "Shape", "Outline", "Unary", "Binary", "Ternary", "Machine"};
 constexpr const char* kChoices[] = {"", "Lesser", "Greater", "Carve", "Either"};
 
 std::string opcode_table() {

@@ -82,6 +82,13 @@ TEST_CASE("formula: errors are where they are", "[formula]") {
       {"add(x, y)", "E0403", "add", "unknown function `add`"},
       {"1 + max(x)", "E0404", "max(x)", "`max` takes 2 arguments, not 1", "write max(a, b)"},
       {"sin()", "E0404", "sin()", "`sin` takes 1 argument, not 0", "write sin(a)"},
+      {"noise(x, y)", "E0404", "noise(x, y)", "`noise` takes 3 arguments, not 2", "write noise(a, b, c)"},
+      {"fbm(x, y, z)", "E0404", "fbm(x, y, z)", "`fbm` takes 4 arguments, not 3", "write fbm(a, b, c, d)"},
+      {"fbm(x, y, z, 2.5)", "E0410", "2.5", "the last argument of `fbm` is a whole number from 1 to 12, not 2.5"},
+      {"1 + fbm(x, y, z, 1 - 1)", "E0410", "1 - 1", "from 1 to 12, not 0"},
+      {"fbm(x, y, z, 13)", "E0410", "13", "from 1 to 12, not 13"},
+      {"fbm(x, y, z, 0/0)", "E0410", "0/0", "from 1 to 12, not "},
+      {"fbm(1, 2, 3, floor(x))", "E0410", "floor(x)", "from 1 to 12, not one that varies"},
       {"length(1,2,3,4)", "E0404", "length(1,2,3,4)", "`length` takes 2 or 3 arguments, not 4"},
   };
   for (const Wrong& wrong : cases) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/text/read_text.h"
 #include "tests/compiler/formula_texts.h"
+#include "tests/support/judge_noise.h"
 
 namespace fathom::formula_test {
 
@@ -103,6 +105,41 @@ TEST_CASE("formula: numbers", "[formula]") {
   CHECK(value_of("tau") == 2 * std::numbers::pi);
   CHECK(value_of("e") == std::numbers::e);
   CHECK(value_of("r") == 0.5);
+}
+
+TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[formula]") {
+  CHECK(made_of("noise(x, 2*y, z + 1)") == "noise(x, multiply(2, y), add(z, 1))");
+  CHECK(made_of("fbm(x, y, z, 1)") == "noise(x, y, z)");
+  CHECK(made_of("fbm(x, 0, y, n - 1)") ==
+        "add(noise(x, 0, y), multiply(noise(add(multiply(x, 2), 6.9375), 10.3125, add(multiply(y, 2), 17.0625)), "
+        "0.5))");
+  const Formula finest = read("fbm(sqrt(x), y, z, 12)");  // what the octaves have in common is there once
+  CHECK(std::ranges::count(finest.nodes, "sqrt", &Formula::Node::function) == 1);
+  for (const glm::dvec3 p : {glm::dvec3(0.25, 0.5, -1.75), glm::dvec3(-3.125, 40, 0.0625)}) {
+    const std::string at = fmt::format("{}, {}, {}", p.x, p.y, p.z);
+    CHECK(std::abs(value_of("noise(" + at + ")") - judge_noise(p)) <= 1e-15);
+    for (int octaves = 1; octaves <= 12; ++octaves) {
+      double sum = 0;
+      for (int k = 0; k < octaves; ++k) {
+        const double apart = k == 0 ? 0 : 2 * k + 1, scale = std::ldexp(1, k);
+        sum += judge_noise(p * scale + apart * glm::dvec3(2.3125, 3.4375, 5.6875)) / scale;
+      }
+      CHECK(std::abs(value_of(fmt::format("fbm({}, {})", at, octaves)) - sum) <= 1e-14);
+    }
+  }
+}
+
+TEST_CASE("formula: no two octaves of fbm are 0 at one place", "[formula]") {
+  // Where octave j is at a whole coordinate, octave k > j is not: along each axis.
+  for (const double apart : {37.0 / 16, 55.0 / 16, 91.0 / 16}) {
+    const auto offset = [&](int k) { return k == 0 ? 0 : (2 * k + 1) * apart; };
+    for (int k = 1; k < 12; ++k) {
+      for (int j = 0; j < k; ++j) {
+        const double off = offset(k) - std::ldexp(offset(j), k - j);
+        CHECK(std::abs(off - std::round(off)) >= 1.0 / 16);
+      }
+    }
+  }
 }
 
 TEST_CASE("formula: precedence and associativity", "[formula]") {

@@ -89,6 +89,30 @@ TEST_CASE("text: the project's texts are one scene as JSON", "[text]") {
   CHECK(scenes >= 2);
 }
 
+TEST_CASE("text: noise the pattern and noise the function are told apart, there and back", "[text]") {
+  Source source("a.fathom", R"(fathom 1
+param height = 0.5
+param octaves = 5
+let soil = diffuse(color = noise(scale = 2, octaves = 3, a = [0.2, 0.1, 0], b = 0.8))
+let ground = y - height*fbm(x, 0, z, octaves) + 0.1*noise(3*x, noise(y, z, 0.5), z)
+object expression(ground, half_size = [2, 1, 2]).material(soil)
+)");
+  Diagnostics diagnostics;
+  const auto kept = read_text_with_formulas(source, {}, diagnostics);
+  INFO(diagnostics.print(source, ErrorFormat::Text));
+  REQUIRE(kept);
+  const std::string json = write_json(kept->file);
+  CAPTURE(json);
+  CHECK(json.find("\"pattern\": \"noise\"") != json.npos);
+  CHECK(json.find("fbm(x, 0, z, octaves)") != json.npos);
+  CHECK(json.find("noise(3*x, noise(y, z, 0.5), z)") != json.npos);
+  CHECK(digest_of(Source("a.json", json)) == digest_of(source));
+  Source converted("a.json", json);
+  const auto read = read_scene(converted, diagnostics);
+  REQUIRE(read);
+  CHECK(there_and_back(read->file, json) == canonical(read->file.root));
+}
+
 }  // namespace
 
 }  // namespace fathom::text_convert_test

@@ -44,6 +44,9 @@ vm::Program program_of(const vm::OpcodeInfo& row, std::uint32_t operand, Random&
   const bool function = row.form == Form::Unary || row.form == Form::Binary;
   if (joined || (function && sources.a == Source::Stack)) program.append(Opcode::X, 0, {}, {});
   if (row.form == Form::Binary && sources.b == Source::Stack) program.append(Opcode::Y, 0, {}, {});
+  if (row.form == Form::Ternary) {
+    for (const Opcode coordinate : {Opcode::X, Opcode::Y, Opcode::Z}) program.append(coordinate, 0, {}, {});
+  }
   const std::uint32_t word = vm::opcode_word(row.opcode, row.form == Form::Outline ? 5 : operand);
   program.append(row.opcode, operand, random_immediates(row, word, random), {});
   if (row.form == Form::Point) {

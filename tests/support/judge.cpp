@@ -12,6 +12,7 @@
 #include "compiler/shapes/node_table.h"
 #include "tests/support/judge_domain.h"
 #include "tests/support/judge_geometry.h"
+#include "tests/support/judge_noise.h"
 #include "tests/support/judge_outlines.h"
 #include "vm/check.h"
 
@@ -200,6 +201,8 @@ double judge_number(const Graph& graph, NodeId node, dvec3 p) {
       return a == 0 ? b : a;
     case Kind::Step:
       return b < a ? 0 : 1;
+    case Kind::Noise:
+      return judge_noise({a, b, operand(2)});
     default:
       CHECK(false, "a function");
       return 0;

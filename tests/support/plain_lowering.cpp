@@ -65,9 +65,9 @@ class Lowering {
       alter(node, code, frame, paint);
     } else {
       emit(children[0], frame, paint);
-      for (NodeId child : children.subspan(1)) {
-        emit(child, frame, paint);
-        append(code.after);
+      for (std::size_t i = 1; i < children.size(); ++i) {
+        emit(children[i], frame, paint);
+        if (!code.all_at_once || i + 1 == children.size()) append(code.after);
       }
     }
   }

@@ -122,9 +122,10 @@ TEST_CASE("enclosures of functions hold every float of short runs", "[enclosure]
   Random random(3);
   for (int i = 0; i < vm::kOpcodeCount; ++i) {
     const vm::OpcodeInfo& info = *vm::find_opcode(static_cast<std::uint32_t>(i));
-    if ((info.form != vm::Form::Unary && info.form != vm::Form::Binary) || info.immediates > 0) continue;
+    if (info.effect.values_needed == 0 || info.form == vm::Form::Machine || info.immediates > 0) continue;
     std::vector<Step> steps = {{Opcode::X}};
-    if (info.form == vm::Form::Binary) steps.push_back({Opcode::Y});
+    if (info.effect.values_needed > 1) steps.push_back({Opcode::Y});
+    if (info.effect.values_needed > 2) steps.push_back({Opcode::Z});
     steps.push_back({info.opcode});
     const vm::VerifiedProgram program = formula(steps);
     int outside = 0;

@@ -1,4 +1,5 @@
-// Formulas for the tests of scalar mathematics: programs of leaves, unary and binary opcodes, at random or by hand.
+// Formulas for the tests of scalar mathematics: programs of leaves, functions of one, two and three numbers, at
+// random or by hand.
 #pragma once
 
 #include <cmath>
@@ -41,6 +42,12 @@ inline void append_random_formula(Random& random, int size, std::vector<Step>& s
     } else {
       steps.push_back({Opcode::Constant, {leaf == 3 ? random.below(7) - 3 : random.uniform(-2, 2)}});
     }
+  } else if (random.chance(0.06)) {
+    const int first = random.below(size), second = random.below(size - first);
+    append_random_formula(random, first, steps);
+    append_random_formula(random, second, steps);
+    append_random_formula(random, size - 1 - first - second, steps);
+    steps.push_back({Opcode::Noise});
   } else if (random.chance(0.5)) {
     append_random_formula(random, size - 1, steps);
     steps.push_back({kUnary[random.below(20)]});
@@ -78,7 +85,7 @@ inline std::vector<vm::VerifiedProgram> subexpressions(const std::vector<Step>& 
       starts.push_back(i);
       continue;
     }
-    if (form == vm::Form::Binary) starts.pop_back();
+    for (int n = 1; n < vm::info(steps[i].opcode).effect.values_needed; ++n) starts.pop_back();
     const auto first = steps.begin() + static_cast<std::ptrdiff_t>(starts.back());
     programs.push_back(formula({first, steps.begin() + static_cast<std::ptrdiff_t>(i) + 1}));
   }

@@ -90,6 +90,8 @@ TEST_CASE("forms, stack effects and choices go together", "[opcode]") {
     if (row.form == Form::Shape || row.form == Form::Outline)
       CHECK((effect.values_change == 1 && effect.points_change == 0));
     if (row.form == Form::Point) CHECK((effect.values_change == 0 && effect.points_change == 1));
+    if (row.form == Form::Ternary)
+      CHECK((effect.values_change == -2 && effect.values_needed == 3 && row.immediates == 0));
     if (row.form == Form::Binary) CHECK((effect.values_change == -1 && effect.values_needed == 2));
   });
   CHECK(vm::info(Opcode::Tee).has_operand);

@@ -6,6 +6,7 @@
 //   sin cos tan asin acos atan exp log    no libm; asin and acos clamp their argument, log(0) = -infinity
 //   floor ceil round_nearest sign         round_nearest: half to even; sign: -1, 0, 1
 //   atan2(y, x)  pow(x, y)  mod(a, b)     atan2(0, 0) = 0; mod(a, b) = a - b floor(a / b)
+//   noise(x, y, z)                        gradient noise, noise-inl.h
 //   divide(a, b)                          a / b, whose derivative is 0 where b is
 //   logical_not(a)  logical_and(a, b)  logical_or(a, b)  compare(a, b)  step(edge, x)    as in vm/opcodes.def
 //   min(a, b) = a < b ? a : b             max(a, b) = a > b ? a : b        (one rule for ties and NaN: b)

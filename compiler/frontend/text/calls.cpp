@@ -48,7 +48,9 @@ Value Evaluator::call(const Expr& expr) {
   }
   if (expr.word == nullptr) throw Failure();  // reported when names were resolved
   const Word& word = *expr.word;
-  if (word.is_record()) return call_record(expr);
+  // `noise` is a pattern, whose arguments have names, and a function of numbers.
+  const bool has_positional = std::ranges::any_of(expr.arguments, [](const Argument& a) { return a.name.empty(); });
+  if (word.is_record() && !(word.formula && has_positional)) return call_record(expr);
   if (word.builtin == Builtin::Require) return call_require(expr);
   const std::vector<Value> arguments = positional_arguments(expr);
   if (word.placement != Placement::None) return place(expr, arguments);
@@ -126,13 +128,16 @@ Value Evaluator::call_formula(const Expr& expr, Values arguments) {
                                   ? arguments_of(function.least)
                                   : fmt::format("{} or {}", function.least, arguments_of(function.most));
     fail("E0404", expr.span, fmt::format("`{}` takes {}, not {}", expr.name, right, arguments.size()),
-         {fmt::format("write {}({})", expr.name, std::string_view("a, b, c").substr(0, 3 * function.most - 2))});
+         {fmt::format("write {}({})", expr.name, std::string_view("a, b, c, d").substr(0, 3 * function.most - 2))});
   }
   for (const Value& argument : arguments) {
     if (!is_number(argument)) {
       fail("E0807", argument.span, fmt::format("`{}` takes numbers, not {}", expr.name, describe(argument)), {});
     }
   }
+  const Value& last = arguments.back();
+  const std::string misfit = function.misfit_of(last.is(Type::Number) ? std::optional(last.number) : std::nullopt);
+  if (!misfit.empty()) fail("E0410", last.span, misfit);
   Value value = apply_function(function, arguments, expr.span);
   spell_call(value, expr.name, arguments);
   return value;
