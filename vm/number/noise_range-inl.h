@@ -90,6 +90,11 @@ class NoiseCell {
   static constexpr double kSlack = 1e-14;  // far above what the polynomials round off within a cell
   static constexpr std::size_t kBit[] = {1, 2, 4};
 
+  // Of a finite range and 1, 2 or their negatives: nothing is rounded.
+  static Interval times(double s, Interval t) {
+    return s > 0 ? Interval{s * t.lo, s * t.hi} : Interval{s * t.hi, s * t.lo};
+  }
+
   static Interval fade_range(Interval t) {
     return intersect({noise_fade(Real{t.lo}).v - kSlack, noise_fade(Real{t.hi}).v + kSlack}, 0, 1);
   }
@@ -104,7 +109,7 @@ class NoiseCell {
     for (std::size_t i = 0; i < 3; ++i) {
       if (g_[c][i] == 0) continue;
       const double from = c & kBit[i] ? 1 : 0;
-      sum = sum + Interval{g_[c][i], g_[c][i]} * (at[i] - Interval{from, from});
+      sum = sum + times(g_[c][i], at[i] - Interval{from, from});
     }
     return sum;
   }
@@ -124,7 +129,7 @@ class NoiseCell {
       Interval difference{-g_[d][i], -g_[d][i]};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from = axis != i && c & kBit[axis] ? 1 : 0, turn = g_[d][axis] - g_[c][axis];
-        if (turn != 0) difference = difference + Interval{turn, turn} * (at_[axis] - Interval{from, from});
+        if (turn != 0) difference = difference + times(turn, at_[axis] - Interval{from, from});
       }
       return slope_[i] * difference + mix_ranges({g_[c][i], g_[c][i]}, {g_[d][i], g_[d][i]}, fade_[i]);
     };
