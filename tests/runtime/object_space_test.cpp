@@ -218,7 +218,7 @@ TEST_CASE("object space: hits, blends and lamps show the patterns of the moved b
   }
 }
 
-TEST_CASE("object space: light that is sampled and light that is hit are the same", "[object_space][render]") {
+TEST_CASE("object space: light that is sampled and light that is hit are the same", "[object_space][render][released]") {
   RenderOptions options;
   options.width = 24, options.height = 16, options.spp = 4096, options.threads = 2, options.bounces = 2;
   const CompiledScene own = room(kOwn);

@@ -181,19 +181,19 @@ NodeId random_formula(compiler::NodeMaker& maker, Random& random) {
   const auto times = [&](NodeId a, double by) { return of(Kind::Multiply, {a, number(by)}); };
   const auto wave = [&] { return of(Kind::Sin, {times(coordinate(), random.length(0.5, 8))}); };
   NodeId formula = 0;
-  switch (random.below(5)) {
-    case 0:
-      formula = of(Kind::Add, {wave(), of(Kind::Multiply, {wave(), wave()})});
+  Random other = random;  // what it says of noise changes nothing that is drawn after it
+  switch (random.below(4)) {
+    case 0: {
+      // Finding the slope of noise takes a hundred times as long as of the others.
+      const bool noisy = other.chance(0.5) && other.chance(0.3);
+      const NodeId a = wave(), b = wave(), c = wave();
+      formula = noisy ? of(Kind::Noise, {times(a, 3), b, c}) : of(Kind::Add, {a, of(Kind::Multiply, {b, c})});
       break;
+    }
     case 1:
       formula = of(Kind::Minus, {of(Kind::Abs, {coordinate()}), number(random.length(0.1, 1))});
       break;
-    case 2: {
-      const double scale = random.length(0.5, 4);
-      formula = of(Kind::Noise, {times(coordinate(), scale), of(Kind::Add, {coordinate(), wave()}), coordinate()});
-      break;
-    }
-    case 3:
+    case 2:
       formula = of(Kind::Maximum, {coordinate(), of(Kind::Minus, {wave(), coordinate()})});
       break;
     default:

@@ -194,13 +194,21 @@ class Resolver {
     if (!call && expr.kind != Expr::Kind::Member) return false;
     const std::optional<std::uint32_t> import = import_of(call ? *expr.arguments[0].value : *expr.of[0]);
     if (!import) return false;
-    imported_[*import] = true;
-    const Statement& statement = tree_.statements[*import];
+    refer_into(expr, *import, call);
+    if (!call) return true;
+    for (const Argument& argument : expr.arguments) resolve(*argument.value);
+    return true;
+  }
+
+  // Not inlined, nor what it calls: resolve() goes a thousand levels deep, and messages take room on the stack.
+  [[gnu::noinline]] void refer_into(Expr& expr, std::uint32_t import, bool call) {
+    imported_[import] = true;
+    const Statement& statement = tree_.statements[import];
     if (tree_.statements[current_].kind == Kind::Param) {
       error("E0402", expr.name_span, fmt::format("`{}.{}` has no value yet", statement.name, expr.name), "",
             {"parameters have their values before anything else"});
     }
-    uses_[current_].push_back({*import, expr.name_span});
+    uses_[current_].push_back({import, expr.name_span});
     if (call) {
       expr.arguments.erase(expr.arguments.begin());
     } else {
@@ -208,9 +216,6 @@ class Resolver {
       expr.of.clear();
     }
     refer_to(expr, statement, call);
-    if (!call) return true;
-    for (const Argument& argument : expr.arguments) resolve(*argument.value);
-    return true;
   }
 
   // A name of the module that the import names.
@@ -278,7 +283,7 @@ class Resolver {
     }
   }
 
-  void resolve_name(Expr& expr) {
+  [[gnu::noinline]] void resolve_name(Expr& expr) {
     for (std::size_t i = locals_.size(); i-- > 0;) {
       if (locals_[i].name != expr.name) continue;
       locals_[i].used = true;
@@ -342,7 +347,7 @@ class Resolver {
     return names;
   }
 
-  void resolve_function(Expr& expr) {
+  [[gnu::noinline]] void resolve_function(Expr& expr) {
     const auto found = globals().find(expr.name);
     const bool is_def = found != globals().end() && tree_.statements[found->second].kind == Kind::Def;
     if (is_def) {
