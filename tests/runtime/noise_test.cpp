@@ -206,7 +206,7 @@ TEST_CASE("noise: samples come by twos, no fewer than the least, and progress en
   }
 }
 
-TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[render][threads]") {
+TEST_CASE("noise: what was stopped at any moment goes on to the same bits", "[render][threads][released]") {
   const auto scene = lamp_and_sky();
   RenderOptions options = noisy_options();
   options.light_sampling = LightSampling::Hits;

@@ -358,7 +358,7 @@ TEST_CASE("regions: a limit of time ends building them, except where costs are k
 
 // Building them took ten times what they may take: a cell keeps its part of the program until it is split, and in a
 // wide scene the cells of the first levels keep most of the program each.
-TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions]") {
+TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions][released]") {
   const compiler::CompiledScene scene = tests::compiled(grid(100));
   const auto facts_of = [&](std::size_t memory) {
     const auto regions = Regions::build(scene.surface, scene.contents, {.memory = memory});

@@ -116,7 +116,7 @@ Estimate load(const fs::path& scene) {
 
 }  // namespace
 
-TEST_CASE("scenes open with a comment and compile without a word", "[scenes]") {
+TEST_CASE("scenes open with a comment and compile without a word", "[scenes][released]") {
   REQUIRE(scene_files().size() >= 5);
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());

@@ -88,7 +88,7 @@ void check_all(const std::string& scene) {
   }
 }
 
-TEST_CASE("shared graphs: every verb visits a node that is used in many ways once", "[limits]") {
+TEST_CASE("shared graphs: every verb visits a node that is used in many ways once", "[limits][released]") {
   const std::string ball = R"({"type": "sphere", "radius": 1, "material": "lamp"})";
   check_all(doublings(ball, R"({"type": "union", "of": [$, $]})"));
   check_all(doublings(R"({"type": "union", "of": [{"type": "sphere", "radius": 1, "material": "glass"},
