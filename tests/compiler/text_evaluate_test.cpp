@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
 #include "compiler/frontend/text/read_text.h"
 #include "compiler/frontend/write_json.h"
@@ -120,37 +119,6 @@ TEST_CASE("text: chains of names are as long as they like", "[text]") {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += fmt::format("let a{} = a{}\n", i, i + 1);
   CHECK(radius("a0", text + "let a20000 = 7") == "7");
-}
-
-std::string digest_of(const Source& source) {
-  Diagnostics diagnostics;
-  const auto scene = compile(source, diagnostics, {});
-  INFO(diagnostics.print(source, ErrorFormat::Text));
-  REQUIRE(scene);
-  const vm::Digest digest = scene_digest(*scene);
-  return std::string(reinterpret_cast<const char*>(&digest), sizeof(digest));
-}
-
-// Loops and functions are gone in JSON, formulas and parameters stay.
-TEST_CASE("text: the JSON scene of a text is the same scene", "[text]") {
-  const char* const texts[] = {
-      "param n = 7\nobject \"posts\" [for i in 0..n: cylinder(0.1 + 0.02*i, random(i)).translate([i, 0, 0])]",
-      "param r(min = 0.1) = 0.5\nlet d = 2*r\nobject sphere(d + 1/3).translate([d^2, sqrt(r), -r])",
-      "def wave(n) = 0.01*sin(n*x)*sin(n*y)\nobject sphere(1).displacement(wave(20) + wave(31))",
-      "let skin = principled(color = [0.2 + 0.6*smoothstep(0, 1, x), 0.3, clamp(y, 0, 1)])\n"
-      "object box([1, 1, 1]).material(skin)",
-      "object expression(let a = x*y let b = a + a in (a*b - a)/4 + z, half_size = [1, 1, 1])",
-  };
-  for (const char* const body : texts) {
-    CAPTURE(body);
-    Source text("a.fathom", std::string("fathom 1\n") + body);
-    Diagnostics diagnostics;
-    const auto kept = read_text_with_formulas(text, {}, diagnostics);
-    REQUIRE(kept);
-    const Source json("a.json", write_json(kept->file));
-    CAPTURE(json.text());
-    CHECK(digest_of(json) == digest_of(text));
-  }
 }
 
 }  // namespace

@@ -31,6 +31,9 @@ class ExpressionParser : public TokenCursor {
   static Span join(Span a, Span b);
   Expr* bounded(Expr* made);
   std::nullptr_t too_deep(Span span);
+  using Reader = Expr* (ExpressionParser::*)();
+  Expr* nested(Reader read);
+  Expr* any();
   Expr* choice();
   Expr* choice(Span begin, Expr* condition);
   Expr* bindings();
@@ -44,7 +47,6 @@ class ExpressionParser : public TokenCursor {
   bool add(Expr& to, Argument argument);
   bool close(Expr& made, std::string_view bracket);
   Expr* sign();
-  Expr* inner_sign();
   Expr* postfix();
   Expr* member(Expr* of);
   bool call(Expr& made);
@@ -55,6 +57,7 @@ class ExpressionParser : public TokenCursor {
   Expr* group();
   Expr* list();
   Expr* item();
+  Expr* any_item();
   Expr* spread();
   Expr* loop();
   Expr* guard();

@@ -12,18 +12,6 @@
 namespace fathom::compiler::text {
 namespace {
 
-struct Keyword {
-  std::string_view word;
-  Statement::Kind kind;
-};
-constexpr Keyword kKeywords[] = {
-    {"import", Statement::Kind::Import}, {"param", Statement::Kind::Param},
-    {"let", Statement::Kind::Let},       {"def", Statement::Kind::Def},
-    {"object", Statement::Kind::Object}, {"light", Statement::Kind::Light},
-    {"camera", Statement::Kind::Camera}, {"film", Statement::Kind::Film},
-    {"render", Statement::Kind::Render}, {"background", Statement::Kind::Background},
-};
-
 class StatementParser : public ExpressionParser {
  public:
   using ExpressionParser::ExpressionParser;
@@ -85,25 +73,24 @@ class StatementParser : public ExpressionParser {
 
   std::optional<Statement> statement() {
     const Token& first = take();
-    const auto* row = std::ranges::find_if(kKeywords, [&](const Keyword& k) { return first.is_word(k.word); });
-    if (row == std::end(kKeywords)) {
+    const auto* word = std::ranges::find_if(kStatementWords, [&](std::string_view w) { return first.is_word(w); });
+    if (word == std::end(kStatementWords)) {
       report_no_statement(first);
       return std::nullopt;
     }
     inside_ = true;
     Statement out{};
-    out.kind = row->kind, out.span = first.span;
+    out.kind = static_cast<Statement::Kind>(word - std::begin(kStatementWords)), out.span = first.span;
     using enum Statement::Kind;
-    const bool good = row->kind == Import                      ? import(out)
-                      : row->kind == Param || row->kind == Let ? named(out)
-                      : row->kind == Def                       ? definition(out)
-                                                               : part(out);
+    const bool good = out.kind == Import                     ? import(out)
+                      : out.kind == Param || out.kind == Let ? named(out)
+                      : out.kind == Def                      ? definition(out)
+                                                             : part(out);
     return good ? std::optional(std::move(out)) : std::nullopt;
   }
 
   void report_no_statement(const Token& first) {
-    std::vector<std::string_view> words;
-    for (const Keyword& row : kKeywords) words.push_back(row.word);
+    const std::vector<std::string_view> words(std::begin(kStatementWords), std::end(kStatementWords));
     std::vector<std::string> help;
     if (first.kind == Token::Kind::Name && peek().is("=")) {
       help = {fmt::format("a name is given by `let {} = ...`", first.text)};

@@ -13,6 +13,7 @@
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_lexer.h"
 #include "compiler/frontend/formula_text.h"
+#include "compiler/frontend/text/print_lines.h"
 #include "compiler/frontend/text/token_cursor.h"
 #include "compiler/frontend/text/vocabulary.h"
 
@@ -23,7 +24,6 @@ using syntax::Property;
 using SyntaxRecord = syntax::Record;
 using SyntaxValue = syntax::Value;
 
-constexpr std::size_t kWidestText = 120;  // columns of a line, where there is a choice
 constexpr std::size_t kMostOperands = 8;  // of a row; longer ones are calls
 
 bool is_no_name(std::string_view word) {
@@ -68,14 +68,6 @@ struct Printed {
   std::string text;
   bool is_row = false;
   std::string atom() const { return is_row ? "(" + text + ")" : text; }
-};
-
-struct PrintedStatement {
-  std::string_view group;  // the property of the scene that it is from
-  std::string text;
-  Span span;                          // in the source
-  std::vector<std::string> comments;  // on lines before it
-  std::string aside;                  // a comment at its end
 };
 
 class TextPrinter {
@@ -336,111 +328,10 @@ class TextPrinter {
   std::vector<PrintedStatement> out_;
 };
 
-// The places in a statement where a line may begin: before the operators outside all brackets; where there is none
-// before the dots; and where there is none after the commas and the opening bracket.
-std::vector<std::size_t> breaks(std::string_view text) {
-  std::vector<std::size_t> operators, dots, commas;
-  int depth = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"') {
-      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
-      continue;
-    }
-    if (c == ')' || c == ']' || c == '}') --depth;
-    if (c == '(' || c == '[' || c == '{') ++depth;
-    const char next = i + 2 < text.size() ? text[i + 2] : ' ';
-    const bool joint = c == ' ' && i + 1 < text.size() && std::string_view("+-&").find(text[i + 1]) != std::string_view::npos;
-    if (depth == 0 && joint && (next == ' ' || next == '{')) operators.push_back(i + 1);
-    const bool calls = c == '.' && i + 1 < text.size() && text[i + 1] >= 'a' && text[i + 1] <= 'z';
-    if (depth == 0 && calls) dots.push_back(i);
-    if (depth == 1 && c == ',') commas.push_back(i + 2);
-    if (depth == 1 && (c == '(' || c == '[')) commas.push_back(i + 1);
-  }
-  return !operators.empty() ? operators : !dots.empty() ? dots : commas;
-}
-
-// In lines of at most kWidestText columns where that is possible.
-std::string in_lines(const std::string& text) {
-  if (text.size() <= kWidestText) return text;
-  std::string out;
-  std::size_t copied = 0;
-  for (const std::size_t at : breaks(text)) {
-    std::string_view part = std::string_view(text).substr(copied, at - copied);
-    if (part.ends_with(' ')) part.remove_suffix(1);
-    out += std::string(part) + "\n  ";
-    copied = at;
-  }
-  return out + text.substr(copied);
-}
-
-struct SourceComment {
-  Span span;
-  bool is_first;  // on its line
-};
-
-std::vector<SourceComment> comments_of_json(std::string_view text) {
-  std::vector<SourceComment> comments;
-  bool first = true;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '"') {
-      for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\';
-    } else if (text.substr(i).starts_with("//") || text.substr(i).starts_with("/*")) {
-      const bool block = text[i + 1] == '*';
-      std::size_t end = block ? text.find("*/", i + 2) + 2 : std::min(text.find('\n', i), text.size());
-      const std::size_t next = end - (block ? 1 : 1);
-      while (!block && end > i && (text[end - 1] == ' ' || text[end - 1] == '\r')) --end;
-      comments.push_back({{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(end)}, first});
-      i = next;
-      continue;
-    }
-    first = text[i] == '\n' || (first && (text[i] == ' ' || text[i] == '\t' || text[i] == '\r' || text[i] == '{'));
-  }
-  return comments;
-}
-
-// Gives each comment to the statement it stands before or beside in the source; returns those behind the last.
-std::vector<std::string> share_out(const Source& source, std::vector<PrintedStatement>& statements) {
-  std::vector<std::string> rest;
-  for (const SourceComment& comment : comments_of_json(source.text())) {
-    const std::string text = source.text().substr(comment.span.begin, comment.span.end - comment.span.begin);
-    PrintedStatement *next = nullptr, *last = nullptr;
-    for (PrintedStatement& statement : statements) {
-      const std::uint32_t begin = statement.span.begin;
-      if (begin >= comment.span.end && (!next || begin < next->span.begin)) next = &statement;
-      if (begin < comment.span.begin && (!last || begin > last->span.begin)) last = &statement;
-    }
-    const bool beside = !comment.is_first && text.starts_with("//");
-    if (beside && last && last->aside.empty()) {
-      last->aside = text;
-    } else if (beside && last) {
-      last->comments.push_back(text);
-    } else if (next) {
-      next->comments.push_back(text);
-    } else {
-      rest.push_back(text);
-    }
-  }
-  return rest;
-}
-
 }  // namespace
 
 std::string print_text(const syntax::File& file, const Source& source) {
-  std::vector<PrintedStatement> statements = TextPrinter(*as_record(&file.root)).statements();
-  const bool json = source.text().find_first_not_of(" \t\r\n") != std::string::npos &&
-                    std::string_view("{/\xEF").find(source.text()[source.text().find_first_not_of(" \t\r\n")]) != std::string_view::npos;
-  const std::vector<std::string> rest = json ? share_out(source, statements) : std::vector<std::string>{};
-  std::string out = "fathom 1\n";
-  std::string_view group;
-  for (const PrintedStatement& statement : statements) {
-    if (statement.group != group || !statement.comments.empty()) out += '\n';
-    group = statement.group;
-    for (const std::string& comment : statement.comments) out += comment + "\n";
-    out += in_lines(statement.text) + (statement.aside.empty() ? "" : "  " + statement.aside) + "\n";
-  }
-  for (const std::string& comment : rest) out += "\n" + comment + "\n";
-  return out;
+  return print_lines(TextPrinter(*as_record(&file.root)).statements(), source);
 }
 
 }  // namespace fathom::compiler::text

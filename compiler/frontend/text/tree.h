@@ -87,6 +87,7 @@ struct Expr {
 };
 
 struct Statement {
+  // As kStatementWords of lexer.h.
   enum class Kind : std::uint8_t { Import, Param, Let, Def, Object, Light, Camera, Film, Render, Background };
   Kind kind;
   bool is_spread = false;        // object ...[a, b]: an object each
