@@ -337,15 +337,21 @@ class Emitter {
     return make_value(value.span, found->second);
   }
 
-  syntax::Value to_value(const Value& value, Place place) {
-    // A list may hold the same list many times.
-    if (++values_ > limits_.tokens) {
-      if (values_ == limits_.tokens + 1) {
-        diagnostics_.error("E0008", value.span, fmt::format("the scene has more than {} values and names", limits_.tokens),
-                           "one too many", {raise(&Limits::tokens, 2 * limits_.tokens)});
-      }
-      return {value.span, {}};
+  // A list may hold the same list many times: too many are refused before they are made.
+  bool has_room(const Value& value) {
+    if (full_) return false;
+    full_ = values_ + extent_of(value).values > limits_.tokens;
+    ++values_;
+    if (full_) {
+      diagnostics_.error("E0008", value.span,
+                         fmt::format("the scene has more than {} values and names", limits_.tokens),
+                         "too many with these", {raise(&Limits::tokens, 2 * limits_.tokens)});
     }
+    return !full_;
+  }
+
+  syntax::Value to_value(const Value& value, Place place) {
+    if (!has_room(value)) return {value.span, {}};
     if (value.spelling && (!value.spelling->is_literal || place == Place::Formula)) return spelled(value, place);
     switch (value.type) {
       case Value::Type::Truth:
@@ -402,6 +408,7 @@ class Emitter {
   std::vector<std::uint32_t> pending_;  // entries in the order they are written in
   std::vector<std::pair<const Node*, const Statement*>> objects_, globals_;
   double values_ = 0;  // written out
+  bool full_ = false;
   Names node_names_, material_names_, light_names_;
   std::unordered_map<const Record*, std::string> material_labels_;
   std::unordered_map<std::string, std::string> equal_materials_;  // as they are written out

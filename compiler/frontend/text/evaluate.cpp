@@ -13,7 +13,7 @@ namespace fathom::compiler::text {
 namespace {
 
 // An element that no expression made takes memory all the same.
-constexpr double kStepsPerElement = 2;
+constexpr double kStepsPerElement = 3;
 
 }  // namespace
 

@@ -34,6 +34,12 @@ struct Spelling {
   std::vector<const Line*> lines;   // definitions that the text needs, in order
 };
 
+// How far a list or a record goes.
+struct Extent {
+  std::uint32_t depth = 0;  // levels of lists and records within each other
+  double values = 1;        // written out, where the same list may stand many times
+};
+
 struct Value {
   enum class Type : std::uint8_t { Truth, Number, Formula, Text, List, Record, Node };
   Type type;
@@ -52,6 +58,8 @@ struct Value {
   bool is(Type t) const { return type == t; }
 };
 
+Extent extent_of(const Value& value);
+
 // A value whose content is still to be set.
 inline Value blank(Value::Type type, Span span) {
   Value value{};
@@ -59,10 +67,9 @@ inline Value blank(Value::Type type, Span span) {
   return value;
 }
 
-// `depth` of lists and records: levels of them within each other.
 struct List {
   std::vector<Value> of;
-  std::uint32_t depth = 1;
+  Extent extent = {};
 };
 
 struct Field {
@@ -77,7 +84,7 @@ struct Record {
   Span span;
   Span word_span;
   std::vector<Field> fields;
-  std::uint32_t depth = 1;
+  Extent extent = {};
   mutable std::string_view name = {};  // the first that it was given; empty when there is none
 };
 

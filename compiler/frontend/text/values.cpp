@@ -9,11 +9,19 @@
 namespace fathom::compiler::text {
 namespace {
 
-std::uint32_t depth_of(const Value& value) {
-  return value.is(Value::Type::List) ? value.list->depth : value.is(Value::Type::Record) ? value.record->depth : 0;
+void add_part(Extent& whole, const Value& part) {
+  const Extent extent = extent_of(part);
+  whole.depth = std::max(whole.depth, extent.depth + 1);
+  whole.values += extent.values;
 }
 
 }  // namespace
+
+Extent extent_of(const Value& value) {
+  return value.is(Value::Type::List)     ? value.list->extent
+         : value.is(Value::Type::Record) ? value.record->extent
+                                         : Extent();
+}
 
 std::string describe(const Value& value) {
   switch (value.type) {
@@ -70,16 +78,17 @@ Value Evaluator::text(const std::string& value, Span span) {
   return made;
 }
 Value Evaluator::list(std::vector<Value> of, Span span) {
-  text::List stored{std::move(of)};
-  for (const Value& part : stored.of) stored.depth = std::max(stored.depth, depth_of(part) + 1);
-  check_depth(stored.depth, span);
+  text::List stored{std::move(of), {.depth = 1}};
+  for (const Value& part : stored.of) add_part(stored.extent, part);
+  check_depth(stored.extent.depth, span);
   Value made = blank(Type::List, here(span));
   made.list = &out_.store.lists.emplace_back(std::move(stored));
   return made;
 }
 Value Evaluator::record(text::Record from) {
-  for (const Field& field : from.fields) from.depth = std::max(from.depth, depth_of(field.value) + 1);
-  check_depth(from.depth, from.span);
+  from.extent = {.depth = 1};
+  for (const Field& field : from.fields) add_part(from.extent, field.value);
+  check_depth(from.extent.depth, from.span);
   Value made = blank(Type::Record, from.span);
   made.record = &out_.store.records.emplace_back(std::move(from));
   return made;
