@@ -9,8 +9,8 @@
 namespace fathom::fuzz {
 
 // Compiles the text with all that can be asked for; every message prints in every format; there is a scene exactly
-// when there is no error; what was read can be written as a scene file, and read again as the same. Of a scene, every
-// program is checked. Throws BrokenPromise.
+// when there is no error; what was read can be written as a scene file, and read again as the same; of a text when it
+// is a scene. Of a scene, every program is checked. Throws BrokenPromise.
 void check_scene(const std::string& text);
 
 // Of a scene that came compiled, from anyone: every program gives the same bits wherever it runs, can be read as an
