@@ -117,6 +117,7 @@ void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, s
   nodes.resize(static_cast<std::size_t>(std::count_if(list.begin(), list.end(), is_record)));
   CheckedNode none;
   std::size_t next = 0;
+  const std::ptrdiff_t before = std::ssize(pending_);
   for (const syntax::Value& item : list) {
     if (is_record(item)) {
       pending_.push_back({&item, &nodes[next++]});
@@ -124,6 +125,7 @@ void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, s
       check_node(item, none);
     }
   }
+  std::reverse(pending_.begin() + before, pending_.end());  // the first is checked first: errors may be too many
 }
 
 void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes) {

@@ -180,6 +180,15 @@ TEST_CASE("twenty errors are printed and the rest counted, in every format", "[d
   CHECK(std::count(json.begin(), json.end(), '\n') == 21);
 }
 
+// The last hundred were kept: the list of nodes was checked from its end.
+TEST_CASE("of more errors than are kept the first are", "[diagnostics]") {
+  std::string text = "{\"version\": 1, \"objects\": [\n";
+  for (int i = 0; i < 200; ++i) text += "{\"type\": \"sphere\", \"radius\": -1},\n";
+  Source source("many.json", text + "{\"type\": \"sphere\", \"radius\": 1}]}");
+  const Diagnostics diagnostics = diagnose(source);
+  CHECK(diagnostics.print(source, ErrorFormat::Short).starts_with("many.json:2:"));
+}
+
 TEST_CASE("nearest", "[diagnostics]") {
   const std::vector<std::string_view> words = {"fov", "position", "target", "up", "k"};
   CHECK(nearest("fvo", words) == "fov");
