@@ -31,6 +31,8 @@ struct CompileOptions {
   bool lint = false;
   // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
   bool lint_picture = false;
+  // The file of the background's picture when the caller has the picture: it is not looked for.
+  std::string file_at_hand = "";
   // A model from elsewhere gets a ground, a lamp and a camera that has it in the picture (compiler/frontend/stage.h).
   bool stage = false;
   // Called with the source and the files that it imports, in which the spans of all diagnostics are; also when it is

@@ -50,9 +50,9 @@ void Arguments::positional(const std::string& name, const std::string& doc, std:
 }
 
 void Arguments::positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
-                            const std::string& value) {
-  app_->add_option(name, targets)->required();
-  table_.positionals.push_back({name, value, doc, "", {}, true, true});
+                            const std::string& value, bool required) {
+  app_->add_option(name, targets)->required(required);
+  table_.positionals.push_back({name, value, doc, "", {}, required, true});
 }
 
 void Arguments::flag(const std::string& names, const std::string& doc, bool& target) {
@@ -112,6 +112,24 @@ std::optional<int> Arguments::parse(std::span<const std::string> args, const Str
     }
   }
   return std::nullopt;
+}
+
+std::vector<std::string> Arguments::Given::arguments() const {
+  if (values.empty()) return {name};
+  std::vector<std::string> result;
+  for (const std::string& value : values) result.push_back(name + "=" + value);
+  return result;
+}
+
+std::vector<Arguments::Given> Arguments::given() const {
+  std::vector<Given> result;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->count() == 0 || option->get_positional()) continue;
+    const auto own =
+        std::ranges::find(options_, option, [](const Option& o) -> const CLI::Option* { return o.option; });
+    result.push_back({longest_name(*option), own == options_.end() ? std::vector<std::string>{} : own->texts});
+  }
+  return result;
 }
 
 int Arguments::report_unknown(const std::vector<std::string>& remaining, const Streams& streams) const {

@@ -39,9 +39,9 @@ class Arguments {
   // Names as CLI11 takes them: "-s,--spp".
   void positional(const std::string& name, const std::string& doc, std::string& target, bool required = true,
                   const std::string& value = "FILE", std::vector<std::string> words = {});
-  // One or more.
+  // One or more where they are required.
   void positionals(const std::string& name, const std::string& doc, std::vector<std::string>& targets,
-                   const std::string& value = "FILE");
+                   const std::string& value = "FILE", bool required = true);
   void flag(const std::string& names, const std::string& doc, bool& target);
   void counter(const std::string& names, const std::string& doc, int& target);  // how often the flag was given
   void option(const std::string& names, const std::string& value, const std::string& doc, Setter setter);
@@ -49,6 +49,15 @@ class Arguments {
   // nullopt to go on; otherwise help or an error was printed, or the options were put where Streams::options says,
   // and the verb ends with that code.
   std::optional<int> parse(std::span<const std::string> args, const Streams& streams);
+
+  // What parse() was given beside positional arguments, each option by its longest name and with its values as they
+  // were written: parsing it again gives the same.
+  struct Given {
+    std::string name;                 // "--spp"
+    std::vector<std::string> values;  // none of a flag
+    std::vector<std::string> arguments() const;
+  };
+  std::vector<Given> given() const;
 
  private:
   struct Option {

@@ -27,7 +27,7 @@ inline constexpr std::array kExitCodes = {
     ExitCodeInfo{kDone, "done"},
     ExitCodeInfo{kFoundProblems,
                  "`check` found errors in the scene, or with --probe a broken constant (warnings do not count); "
-                 "`diff` found more than --tol"},
+                 "`diff` found more than --tol; `plan --status` found units to be rendered"},
     ExitCodeInfo{kUsage, "the command line is wrong"},
     ExitCodeInfo{kBadScene, "the scene, a list of points or a picture has errors; trying again will not help"},
     ExitCodeInfo{kInternal, "a defect of fathom, or not enough memory"},

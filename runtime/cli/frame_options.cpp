@@ -61,11 +61,16 @@ ExitCode fail_without_time(const SceneInput& input, const SceneArguments& argume
 
 }  // namespace
 
-void add_frame_options(Arguments& arguments, FrameOptions& options) {
-  arguments.option("--frames", "A:B[:S]",
-                   "Frames A to B-1, every S-th; 7 is one frame, all what the scene's film says: sets the scene's "
-                   "parameter `time`, in seconds, or `frame`",
+void add_frames_option(Arguments& arguments, const std::string& doc, FrameOptions& options) {
+  arguments.option("--frames", "A:B[:S]", doc,
                    [&options](std::string_view text) { return read_frames(text, options); });
+}
+
+void add_frame_options(Arguments& arguments, FrameOptions& options) {
+  add_frames_option(arguments,
+                    "Frames A to B-1, every S-th; 7 is one frame, all what the scene's film says: sets the scene's "
+                    "parameter `time`, in seconds, or `frame`",
+                    options);
   arguments.option("--fps", "N", "Frames per second, as 25 or 30000/1001 (the scene's, 24)",
                    into(read_fps, options.fps));
 }

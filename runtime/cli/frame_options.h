@@ -31,6 +31,8 @@ struct FrameOptions {
   bool given() const { return all || range; }
 };
 
+// --frames alone.
+void add_frames_option(Arguments& arguments, const std::string& doc, FrameOptions& options);
 // --frames and --fps.
 void add_frame_options(Arguments& arguments, FrameOptions& options);
 // Those of a render, in a group of their own.

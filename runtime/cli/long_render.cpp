@@ -61,14 +61,18 @@ std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::C
 
 }  // namespace
 
+void add_interval_option(Arguments& arguments, LongRender& request) {
+  arguments.option("--checkpoint-interval", "TIME", "Time between checkpoints, as 30s, 5m or 1h (60s)",
+                   into(read_duration, request.interval));
+}
+
 void add_long_render_options(Arguments& arguments, LongRender& request) {
   arguments.group("Long renders (docs/RENDERING.md)");
   arguments.option("--checkpoint", "FILE",
                    "File that keeps the samples so far, written at intervals and when a signal or --time-limit ends "
                    "the render (the first output's name with .checkpoint, which goes when the render is done)",
                    into(read_file_name, request.checkpoint));
-  arguments.option("--checkpoint-interval", "TIME", "Time between checkpoints, as 30s, 5m or 1h (60s)",
-                   into(read_duration, request.interval));
+  add_interval_option(arguments, request);
   arguments.flag("--resume",
                  "Continue from the checkpoint; the picture has the same bits as without the interruption",
                  request.resume);

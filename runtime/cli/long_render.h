@@ -21,6 +21,8 @@ struct LongRender {
   std::optional<runtime::SampleRange> sample_range;
 };
 
+// --checkpoint-interval alone.
+void add_interval_option(Arguments& arguments, LongRender& request);
 void add_long_render_options(Arguments& arguments, LongRender& request);
 
 // Puts them into the options, over the scene's settings. An ExitCode, after a message, when they do not go together.

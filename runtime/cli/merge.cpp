@@ -10,8 +10,7 @@
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/cli/picture_attributes.h"
-#include "runtime/cli/picture_files.h"
+#include "runtime/cli/plan_merge.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise.h"
@@ -25,20 +24,9 @@ constexpr const char* kMergeExamples =
     "fathom merge a.film b.film -o out.exr -o out.png\n"
     "fathom merge left.film right.film -o whole.film   # to be merged again";
 
-struct MergeRequest {
-  std::vector<std::string> inputs;
-  PictureFiles pictures;
-  std::optional<double> exposure;
-  int tone = -1;  // a compiler::ToneCurve; -1: not given
-  int bits = 0;   // an index into 8, 16
-  bool denoise = false, quiet = false;
-  int format = -1;  // of -o -, see put_formats()
-  compiler::Limits limits;
-};
-
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MergeRequest& request) {
   Arguments arguments("merge", "Adds up the films of parts of a render.", kMergeExamples);
-  arguments.positionals("film", "Films to add up, each of another part", request.inputs);
+  arguments.positionals("film", "Films to add up, each of another part", request.inputs, "FILE", false);
   arguments.option(
       "-o,--output", "FILE",
       "File to write: .film, or a picture as `fathom render` writes it; - is standard output; may be repeated",
@@ -52,7 +40,17 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.flag("--denoise", "Denoise the pictures; the noisy ones go to FILE-noisy", request.denoise);
   arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
   add_limit_option(arguments, request.limits);
+  arguments.group("Plans (docs/FARM.md)");
+  arguments.option("--plan", "FILE", "Add up the units of a plan; #### in -o is a frame's number",
+                   any_text(request.plan));
+  add_frames_option(arguments, "Frames A to B-1 of the plan, every S-th; 7 is one frame (all)", request.frames);
   if (const auto code = arguments.parse(args, streams)) return code;
+  if (request.inputs.empty() != request.plan.has_value()) {
+    return fail(streams, kUsage,
+                request.plan ? "--plan has all films: it goes with no other" : "the films are missing",
+                {"`fathom merge --help` lists the options"});
+  }
+  if (request.frames.given() && !request.plan) return fail(streams, kUsage, "--frames goes with --plan");
   request.pictures.deep = request.bits != 0;
   request.pictures.noisy = request.denoise;
   if (request.pictures.outputs.empty()) return fail(streams, kUsage, "no file to write", {"name it with -o FILE"});
@@ -199,18 +197,12 @@ std::optional<ExitCode> add_up(const std::vector<Part>& parts, const compiler::L
   return std::nullopt;
 }
 
-void put_tone(const MergeRequest& request, runtime::Attributes& attributes) {
-  if (request.exposure) attributes["fathom.exposure"] = static_cast<float>(*request.exposure);
-  if (request.tone >= 0) {
-    attributes["fathom.tone"] = std::string(compiler::kToneCurves[static_cast<std::size_t>(request.tone)]);
-  }
-}
-
 }  // namespace
 
 int run_merge(std::span<const std::string> args, const Streams& streams) {
   MergeRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
+  if (request.plan) return merge_plan(request, streams);
   auto read = read_parts(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   const auto& parts = std::get<std::vector<Part>>(read);

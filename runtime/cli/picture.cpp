@@ -68,6 +68,7 @@ MaybeScene compile_moment(const Picture& picture, const SceneInput& input, doubl
   compiler::CompileOptions options;
   options.stage = true;
   options.origin = picture.scene.origin;
+  options.file_at_hand = picture.scene.background.image.file;
   HeldMessages held(streams);
   MaybeScene compiled = compile_scene(input, arguments, held.streams(), options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) {
@@ -137,6 +138,7 @@ std::variant<std::unique_ptr<Picture>, ExitCode> prepare_picture(const RenderReq
   compiler::CompileOptions options = verbosity.watch_compiler();
   options.lint_picture = true;
   options.stage = true;
+  if (kept.background) options.file_at_hand = kept.background_file;
   HeldMessages held(streams);
   MaybeScene compiled = compile_scene(input, request.scene, held.streams(), options);
   held.release_news(kept.messages);

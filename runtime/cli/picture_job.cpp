@@ -27,8 +27,9 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return write_text(text, path);
 }
 
-// What stands before lines about one frame of several.
+// What stands before lines about one frame, or unit, of several.
 std::string frame_text(const RenderRequest& request) {
+  if (request.unit) return fmt::format("unit {}: ", *request.unit);
   if (!request.frame) return "";
   return fmt::format("frame {}, {} of {}: ", request.frame->number, request.frame->index + 1, request.frame->count);
 }
@@ -93,7 +94,7 @@ std::optional<ExitCode> PictureJob::begin() {
   if (!checkpoint_) return std::nullopt;
   if (request_.long_render.resume)
     return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_,
-                               request_.frame.has_value());
+                               request_.frame || request_.unit);
   return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
 }
 
@@ -166,10 +167,11 @@ ExitCode PictureJob::end(runtime::RenderResult& result) {
   if (keep) checkpoint_->write(header_, result, streams_);
   if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
   // A picture without any would take the place of one that may be good.
-  const bool pictures = ended != End::Cancelled || result.film.samples() > 0;
+  // Nor is a part of a unit its film.
+  const bool pictures = request_.unit ? !undone : ended != End::Cancelled || result.film.samples() > 0;
   if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
   if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
-  if (!pictures) note(streams_, kNoPictureYet);
+  if (!pictures && !request_.unit) note(streams_, kNoPictureYet);
   if (ended == End::Noise && !request_.quiet) {
     note(streams_, "the noise is below the limit: " + samples_in(result.film));
   }
@@ -239,7 +241,7 @@ void PictureJob::print_closing(const runtime::RenderResult& result, const std::v
   std::ostream& err = streams_.err;
   const bool all = request_.verbosity > 0 || request_.options.profile;
   if (all) err << runtime::to_table(result.stats);
-  if ((watching_ || request_.frame) && !all) {
+  if ((watching_ || request_.frame || request_.unit) && !all) {
     err << frame_text(request_) << closing_line(scene_.source.name(), result, lines);
     return;
   }

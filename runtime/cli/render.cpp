@@ -9,15 +9,18 @@
 
 #include "runtime/cli/picture_job.h"
 #include "runtime/cli/render_files.h"
+#include "runtime/cli/render_options.h"
 #include "runtime/cli/sequence.h"
+#include "runtime/cli/unit_run.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
 namespace {
 
 bool asks_for_checkpoint(std::span<const std::string> args) {
-  return std::any_of(args.begin(), args.end(),
-                     [](const std::string& arg) { return arg.starts_with("--checkpoint") || arg == "--resume"; });
+  return std::any_of(args.begin(), args.end(), [](const std::string& arg) {
+    return arg.starts_with("--checkpoint") || arg == "--resume" || arg.starts_with("--plan");
+  });
 }
 
 // One picture of the file as it is now.
@@ -62,6 +65,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
+  if (request.units.given()) return render_units(request, streams, interruption);
   if (const auto code = check_bits(pictures_of(request), streams)) return *code;
   if (request.frames.given()) return render_frames(request, streams, interruption);
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;

@@ -2,6 +2,7 @@
 // Tested by: tests/runtime/cli_test.cpp
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "runtime/cli/long_render.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/unit_options.h"
 #include "runtime/options.h"
 
 namespace fathom::cli {
@@ -45,13 +47,17 @@ struct RenderRequest {
   int light_sampling = -1;  // a runtime::LightSampling; -1: not given
   bool adaptive = false, no_adaptive = false;
   bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
+  bool no_denoise = false;
   LongRender long_render;
   FrameOptions frames;
+  UnitOptions units;
   // Of a request for one frame of several: its number, and which it is of how many.
   struct Frame {
     int number, index, count;
   };
   std::optional<Frame> frame;
+  // Of a request for one unit of a plan: its number.
+  std::optional<std::uint64_t> unit;
   bool preview = false, watch = false;
   bool quiet = false;
 };
@@ -60,8 +66,9 @@ struct RenderRequest {
 // when standard output is the only one.
 std::optional<std::string> default_checkpoint(const RenderRequest& request);
 
-// The request, or the exit code after help or a message.
-std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
+// Puts what was asked for together. An ExitCode, after a message, when some of it does not go with other of it,
+// whatever the scene.
+std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams);
 
 // Puts the request's camera, size, tone and crop over the scene's. An ExitCode, after a message, when they do not fit
 // together.

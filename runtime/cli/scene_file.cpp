@@ -179,14 +179,11 @@ constexpr const char* kAboutScene =
     "Scene file: text or JSON, a file of `fathom compile`, or another format that Fathom reads; - is standard input";
 
 void add_scene_options(Arguments& arguments, SceneArguments& scene) {
-  arguments.option("-D,--define", "NAME=VALUE",
-                   "Set a parameter of the scene to a number or a formula, as r=0.5 or angle=pi/4",
-                   append_to(read_definition, scene.definitions));
+  add_define_option(arguments, scene);
   arguments.option("--root", "DIR", "Folder that the scene may import files from (the scene's own)",
                    any_text(scene.root));
   add_limit_option(arguments, scene.limits);
-  arguments.option("--error-format", "FORMAT", "Format of errors and warnings: text (default), short or json",
-                   one_of({"text", "short", "json"}, scene.error_format));
+  add_error_format_option(arguments, scene);
 }
 
 }  // namespace
@@ -199,6 +196,17 @@ void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool requi
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, std::vector<std::string>& paths) {
   arguments.positionals("scene", kAboutScene, paths);
   add_scene_options(arguments, scene);
+}
+
+void add_define_option(Arguments& arguments, SceneArguments& scene) {
+  arguments.option("-D,--define", "NAME=VALUE",
+                   "Set a parameter of the scene to a number or a formula, as r=0.5 or angle=pi/4",
+                   append_to(read_definition, scene.definitions));
+}
+
+void add_error_format_option(Arguments& arguments, SceneArguments& scene) {
+  arguments.option("--error-format", "FORMAT", "Format of errors and warnings: text (default), short or json",
+                   one_of({"text", "short", "json"}, scene.error_format));
 }
 
 void add_limit_option(Arguments& arguments, compiler::Limits& limits) {

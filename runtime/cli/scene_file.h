@@ -34,7 +34,9 @@ void add_scene_arguments(Arguments& arguments, SceneArguments& scene, bool requi
 // The same for a verb that takes several scenes, one after the other.
 void add_scene_arguments(Arguments& arguments, SceneArguments& scene, std::vector<std::string>& paths);
 
-// The option --limit alone, for verbs that read no scene.
+// The options --define, --limit and --error-format alone, for who reads no scene, or has it already.
+void add_define_option(Arguments& arguments, SceneArguments& scene);
+void add_error_format_option(Arguments& arguments, SceneArguments& scene);
 void add_limit_option(Arguments& arguments, compiler::Limits& limits);
 
 // The text of a file, or of standard input for "-"; otherwise the reason, for people. No more than the limit

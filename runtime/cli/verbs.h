@@ -20,6 +20,7 @@ int run_asm(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
 int run_slice(std::span<const std::string> args, const Streams& streams);
 int run_tonemap(std::span<const std::string> args, const Streams& streams);
+int run_plan(std::span<const std::string> args, const Streams& streams);
 int run_merge(std::span<const std::string> args, const Streams& streams);
 int run_diff(std::span<const std::string> args, const Streams& streams);
 int run_chart(std::span<const std::string> args, const Streams& streams);
@@ -46,6 +47,7 @@ inline constexpr std::array kVerbs = {
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
     Verb{"tonemap", "in.exr -o out.png", "converts a render's numbers to a picture", run_tonemap},
+    Verb{"plan", "scene.json -o plan.json", "cuts a render into units for many machines", run_plan},
     Verb{"merge", "a.film b.film -o out.png", "adds up renders of parts of a picture", run_merge},
     Verb{"diff", "out.png reference.png", "compares two pictures", run_diff},
     Verb{"chart", "[scene.json] -o folder", "charts speed against accuracy", run_chart},

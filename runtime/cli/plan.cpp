@@ -1,0 +1,209 @@
+// fathom plan: a render cut into units for many machines; and how far they are.
+// Tested by: tests/runtime/cli_plan_test.cpp
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <ostream>
+
+#include "runtime/cli/plan_pilot.h"
+#include "runtime/cli/plan_status.h"
+#include "runtime/cli/render_identity.h"
+#include "runtime/cli/render_options.h"
+#include "runtime/cli/verbs.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kPlanExamples =
+    "fathom plan scene.fathom -s 4096 -o still.json\n"
+    "fathom plan hop.fathom --frames 0:1000 --tiles 2x2 --sample-block 64 -o hop.json\n"
+    "fathom render --plan hop.json --unit 7        # any machine, any order\n"
+    "fathom plan --status hop.json                 # what is missing\n"
+    "fathom merge --plan hop.json -o hop.####.png";
+constexpr double kUnitSeconds = 120;  // that a unit takes where nothing is said
+
+struct PlanRequest {
+  RenderRequest render;
+  std::optional<std::string> output;
+  std::optional<PixelSize> tiles;   // columns and rows
+  std::optional<int> block;         // samples
+  std::optional<double> unit_time;  // seconds
+  std::optional<int> workers, per_task;
+  bool no_pilot = false, status = false, sums = false, json = false;
+  std::vector<std::string> arguments;  // of the plan
+  std::vector<std::string> running;    // of the pilot
+};
+
+// Options that say nothing of what is rendered, and limits, which whoever renders may raise.
+constexpr std::array<std::string_view, 14> kOwn = {
+    "--limit",    "--output",   "--frames", "--tiles", "--sample-block", "--unit-time", "--workers",
+    "--no-pilot", "--per-task", "--status", "--quiet", "--threads",      "--root",      "--error-format",
+};
+
+void add_options(Arguments& arguments, PlanRequest& request) {
+  arguments.option("-o,--output", "FILE", "Plan to write, .json; its units go to the folder FILE.units beside it",
+                   any_text(request.output));
+  arguments.option("--tiles", "CxR", "Cut frames into C columns and R rows (by --unit-time)",
+                   into(read_size, request.tiles));
+  arguments.option("--sample-block", "N", "Samples per pixel in a unit (by --unit-time)",
+                   whole(request.block, 1, compiler::kMaxSpp));
+  arguments.option("--unit-time", "TIME", "Time that a unit is to take on this machine, as 90s or 5m (2m)",
+                   into(read_duration, request.unit_time));
+  arguments.option("--workers", "N", "Say how long so many machines like this one take",
+                   whole(request.workers, 1, 1'000'000));
+  arguments.flag("--no-pilot", "Render no small picture to learn what a unit costs", request.no_pilot);
+  arguments.option("--threads", "N", "Number of threads of the pilot (one per processor)",
+                   whole(request.render.threads, 1, 4096));
+  arguments.group("Status");
+  arguments.flag("--status", "Say which units of a plan are done, and which are to be rendered", request.status);
+  arguments.option("--per-task", "N", "List tasks of N units in place of units", whole(request.per_task, 1));
+  arguments.flag("--sums", "Read the films whole, not their heads alone", request.sums);
+  arguments.flag("--json", "Print the status as JSON", request.json);
+}
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, PlanRequest& request) {
+  Arguments arguments("plan", "Cuts a render into units for many machines; see docs/FARM.md.", kPlanExamples);
+  add_scene_arguments(arguments, request.render.scene);
+  add_options(arguments, request);
+  arguments.group("Picture");
+  add_picture_options(arguments, request.render);
+  if (const auto code = arguments.parse(args, streams)) return *code;
+  for (const Arguments::Given& option : arguments.given()) {
+    const bool own = std::ranges::find(kOwn, option.name) != kOwn.end();
+    const bool runs = option.name == "--threads" || option.name == "--limit" || option.name == "--error-format";
+    if (own && !runs) continue;
+    std::ranges::copy(option.arguments(), std::back_inserter(runs ? request.running : request.arguments));
+  }
+  if (request.status) return std::nullopt;
+  if (request.per_task || request.sums || request.json) {
+    return fail(streams, kUsage, "--per-task, --sums and --json go with --status");
+  }
+  if (!request.output) return fail(streams, kUsage, "no file to write", {"name it with -o plan.json"});
+  if (const auto code = check_collisions(request.render.scene.path, {*request.output}, streams)) return *code;
+  if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
+  if (const auto code = settle(request.render, streams)) return *code;
+  return std::nullopt;
+}
+
+// The scene's text with all that it imports, and its values of parameters among the plan's arguments.
+std::optional<ExitCode> take_scene(PlanRequest& request, RenderPlan& plan, const Streams& streams) {
+  SceneArguments& arguments = request.render.scene;
+  const std::size_t given = arguments.definitions.size();
+  auto text = read_scene_text(arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&text)) return *code;
+  SceneInput input{std::get<SceneText>(std::move(text)).source, std::nullopt};
+  // Those that a compiled file came with come first.
+  for (std::size_t i = 0; i + given < arguments.definitions.size(); ++i) {
+    const auto& [name, value] = arguments.definitions[i];
+    plan.arguments.push_back(fmt::format("--define={}={}", name, value));
+  }
+  plan.arguments.insert(plan.arguments.end(), request.arguments.begin(), request.arguments.end());
+  if (request.render.frames.given()) {
+    const auto sequence = sequence_of(request.render.frames, input, arguments, streams);
+    if (const auto* code = std::get_if<ExitCode>(&sequence)) return *code;
+    plan.grid.frames = std::get<Sequence>(sequence).frames;
+  } else {
+    const auto animation = read_animation(input, arguments, streams);
+    if (const auto* code = std::get_if<ExitCode>(&animation)) return *code;
+  }
+  plan.source = std::move(input.source);
+  return std::nullopt;
+}
+
+// What the first frame says of all.
+std::optional<ExitCode> take_settings(const Picture& picture, RenderPlan& plan, const Streams& streams) {
+  const runtime::RenderOptions& options = picture.request.options;
+  const runtime::Settings settings = runtime::resolve(picture.scene, options);
+  if (settings.adaptive) {
+    return fail(streams, kUsage, "adaptive sampling does not go with a plan: a pixel's samples depend on all others",
+                {"add --no-adaptive"});
+  }
+  plan.grid.width = settings.width, plan.grid.height = settings.height;
+  plan.grid.spp = plan.grid.block = static_cast<std::uint32_t>(settings.spp);
+  plan.identity = render_identity(picture.scene, settings, options);
+  const compiler::Background& background = picture.scene.background;
+  if (background.type != compiler::Background::Type::Image) return std::nullopt;
+  auto bytes = read_text(background.image.file, picture.request.scene.limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&bytes))
+    return fail(streams, background.image.file, *unreadable);
+  plan.background_name = background.image.file;
+  plan.background = std::get<std::string>(std::move(bytes));
+  return std::nullopt;
+}
+
+std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot, PlanGrid& grid,
+                                 const Streams& streams) {
+  if (request.tiles) grid.columns = request.tiles->width, grid.rows = request.tiles->height;
+  if (!request.no_pilot) {
+    cut(grid, request.tiles.has_value(), pilot.frame_seconds(grid), request.unit_time.value_or(kUnitSeconds));
+  }
+  if (request.block) grid.block = std::min(static_cast<std::uint32_t>(*request.block), grid.spp);
+  if (grid.columns <= grid.width && grid.rows <= grid.height) return std::nullopt;
+  return fail(streams, kUsage,
+              fmt::format("--tiles: {}x{} are more than the {}x{} pixels of a frame", grid.columns, grid.rows,
+                          grid.width, grid.height));
+}
+
+std::string in_time(double seconds) {
+  if (seconds < 1) return fmt::format("{:.2f} s", seconds);
+  if (seconds < 100) return fmt::format("{:.1f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+void describe(const PlanRequest& request, const RenderPlan& plan, const Pilot& pilot, const Streams& streams) {
+  const PlanGrid& grid = plan.grid;
+  say(streams, fmt::format("wrote {}: {} of {}x{} pixels and {}, in {}x{} tiles and {} of {}: {}", *request.output,
+                           grid.frames ? count_of(grid.frame_count(), "frame") : "a still", grid.width, grid.height,
+                           count_of(grid.spp, "sample"), grid.columns, grid.rows, count_of(grid.blocks(), "block"),
+                           grid.block, count_of(grid.units(), "unit")));
+  if (request.no_pilot) return;
+  const Pilot::UnitCost unit = pilot.unit_cost(grid);
+  const double all = unit.mean * static_cast<double>(grid.units());
+  say(streams, fmt::format("a unit takes {} on this machine, {} at most, beside {} to start (by {} in {})",
+                           in_time(unit.mean), in_time(unit.longest), in_time(pilot.start_seconds()),
+                           count_of(pilot.frames(), "small picture"), in_time(pilot.seconds())));
+  say(streams, fmt::format("all of them take {}", in_time(all)));
+  if (!request.workers) return;
+  // Whoever is free takes the next. Source: R. L. Graham, Bounds on Multiprocessing Timing Anomalies, 1969.
+  const double n = *request.workers;
+  const double least = std::max(all / n, unit.longest), most = all / n + unit.longest * (n - 1) / n;
+  say(streams, fmt::format("{} like it: {} to {}", count_of(static_cast<std::size_t>(*request.workers), "machine"),
+                           in_time(least), in_time(most)));
+}
+
+}  // namespace
+
+int run_plan(std::span<const std::string> args, const Streams& streams) {
+  PlanRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  const SceneArguments& scene = request.render.scene;
+  if (request.status) {
+    const auto per_task = static_cast<std::uint64_t>(request.per_task.value_or(1));
+    return print_status({scene.path, per_task, request.sums, request.json}, scene.limits, streams);
+  }
+  RenderPlan plan;
+  if (const auto code = take_scene(request, plan, streams)) return *code;
+  PlannedPictures pictures(plan, streams);
+  if (const auto code = pictures.open(request.running, "")) return *code;
+  const auto first = pictures.at(0);
+  if (const auto* code = std::get_if<ExitCode>(&first)) return *code;
+  if (const auto code = take_settings(*std::get<Picture*>(first), plan, streams)) return *code;
+  Pilot pilot;
+  if (!request.no_pilot) {
+    if (const auto code = pilot.run(pictures, plan.grid, streams)) return *code;
+  }
+  if (const auto code = put_grid(request, pilot, plan.grid, streams)) return *code;
+  const auto text = write_plan(plan);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    return fail(streams, unreadable->code, unreadable->reason, {unreadable->help});
+  }
+  if (const auto problem = write_text(std::get<std::string>(text), *request.output))
+    return fail(streams, kIo, *problem);
+  describe(request, plan, pilot, streams);
+  return kDone;
+}
+
+}  // namespace fathom::cli

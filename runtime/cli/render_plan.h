@@ -1,0 +1,79 @@
+// A plan: one render, of a still or of frames, cut into units that machines render without each other. A unit is a
+// rectangle of a frame's pixels and a range of their samples; its number says which. The plan has all that a worker
+// needs: the scene's text with what it imports, the options, the background's picture. It is a JSON file
+// (docs/FARM.md); its size does not depend on the number of units.
+//
+// Units are films in a folder beside the plan, frame.json -> frame.units/000/000007.film, by thousands.
+//
+// Tested by: tests/runtime/cli_plan_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "compiler/source.h"
+#include "runtime/cli/frame_options.h"
+#include "runtime/cli/scene_file.h"
+#include "runtime/film_file.h"
+
+namespace fathom::cli {
+
+// What the plan is cut by.
+struct PlanGrid {
+  std::optional<FrameRange> frames;  // nothing: a still
+  int width = 0, height = 0;         // pixels
+  int columns = 1, rows = 1;         // tiles of a frame
+  std::uint32_t spp = 1, block = 1;  // samples of a pixel; of them in a unit
+
+  std::uint64_t frame_count() const { return frames ? static_cast<std::uint64_t>(frames->count()) : 1; }
+  std::uint64_t blocks() const { return (spp + block - 1) / block; }
+  std::uint64_t units_of_frame() const {
+    return static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows) * blocks();
+  }
+  std::uint64_t units() const { return frame_count() * units_of_frame(); }
+};
+
+struct PlanUnit {
+  int frame_index;  // in the grid's frames; 0 of a still
+  runtime::PixelRect area;
+  runtime::SampleRange samples;
+};
+
+// Units count frame by frame, tile by tile, block by block: neighbours have the scene in common.
+PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number);
+
+struct RenderPlan {
+  compiler::Source source;             // with its imports
+  std::vector<std::string> arguments;  // of `fathom render`, but for the scene
+  PlanGrid grid;
+  std::string background_name, background;  // of the picture that the scene's background names: its bytes
+  runtime::Identity identity;               // of the still, or the first frame
+  std::string digest;                       // of all the others, in hexadecimal
+};
+
+// The text of the plan's file; sets the digest. The reason when the scene cannot be written as JSON.
+std::variant<std::string, Unreadable> write_plan(RenderPlan& plan);
+// An ExitCode, after a message, when it cannot be read or is no plan.
+std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const compiler::Limits& limits,
+                                             const Streams& streams);
+
+// What renders of two frames of a plan may differ in; other rows of their identities say how the plan was made.
+bool is_of_frame(std::string_view row);
+
+// "frame.json" -> "frame.units".
+std::string units_folder(const std::string& plan);
+std::string unit_file(const std::string& folder, std::uint64_t number);
+
+// Makes the folder, or sees that what is there is of this plan. An ExitCode, after a message, when it is not.
+std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams);
+// The same without making it; true when there is one.
+std::variant<bool, ExitCode> find_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams);
+
+// Why the file is not the unit's film, whole; nothing when it is. `header` is that of the file.
+std::optional<std::string> fault_of(const runtime::FilmFile& header, const PlanGrid& grid, const PlanUnit& unit);
+
+}  // namespace fathom::cli
