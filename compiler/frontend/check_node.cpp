@@ -43,8 +43,9 @@ std::optional<std::uint32_t> Names::resolve(std::string_view name, std::string_v
   }
   std::string help = did_you_mean(name, names_);
   if (help.empty())
-    help = fmt::format("the scene has no `{0}`; add \"{0}\": {{\"{1}\": {{...}}}}",
-                       code == std::string_view("E0202") ? "materials" : "nodes", name);
+    help = diagnostics.spelled(fmt::format("the scene has no `{0}`; add \"{0}\": {{\"{1}\": {{...}}}}",
+                                           code == std::string_view("E0202") ? "materials" : "nodes", name),
+                               "such as .material(diffuse(color = 0.5)), or that by a name of `let`");
   diagnostics.error(code, span, fmt::format("unknown {} `{}`", what, name), "", {std::move(help)});
   return std::nullopt;
 }

@@ -41,7 +41,7 @@ std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, co
                       {"move repeated parts to `nodes`", raise(&Limits::file_size, size)});
     return std::nullopt;
   }
-  if (is_text_scene(source.text())) {
+  if (is_meant_as_text(source)) {
     auto read = read_text_scene(source, definitions, limits, diagnostics, {imports, text_maker(limits)});
     if (!read) return std::nullopt;
     return ReadScene{SceneFormat::Text, std::move(read->first), std::move(read->second)};

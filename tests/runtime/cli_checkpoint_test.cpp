@@ -13,7 +13,7 @@ using namespace fathom::tests;
 using Catch::Contains;
 
 // Long enough to be interrupted: .6 s of one core as released, 1 s under the sanitizers.
-const std::string kSpp = std::to_string(fathom::test::few(400) < 400 ? 24 : 400);
+const std::string kSpp = std::to_string(fathom::test::few(400) < 400 ? 96 : 400);
 const std::string kSlow = R"({
   "version": 1,
   "params": {"r": 0.5},

@@ -275,6 +275,13 @@ void Evaluator::add_operands(const Expr& expr, Values arguments, Node& made) {
   }
 }
 
+// box(1, 2, 3)
+bool Evaluator::is_spread_vector(const NodeSpec& node, Values arguments) {
+  if (node.params.empty() || arguments.size() != 3) return false;
+  return node.params[0].type == ParamType::Vec3 &&
+         std::ranges::all_of(arguments, [](const Value& value) { return value.is(Type::Number); });
+}
+
 void Evaluator::add_positional(const Expr& expr, Values arguments, Node& made) {
   const std::vector<std::string_view>& names = positional(*made.spec);
   if (arguments.size() > names.size()) {
@@ -284,7 +291,9 @@ void Evaluator::add_positional(const Expr& expr, Values arguments, Node& made) {
     }
     fail("E0805", arguments[names.size()].span,
          fmt::format("`{}` takes {} without a name, not {}", expr.name, arguments_of(names.size()), arguments.size()),
-         {names.empty() ? "" : fmt::format("without a name: {}", fmt::join(names, ", ")),
+         {is_spread_vector(*made.spec, arguments) ? fmt::format("vectors have brackets: {}([1, 2, 3])", expr.name)
+          : names.empty()                         ? ""
+                                                  : fmt::format("without a name: {}", fmt::join(names, ", ")),
           others.empty() ? "" : fmt::format("with a name: {} = ...", fmt::join(others, " = ..., "))});
   }
   for (std::size_t i = 0; i < arguments.size(); ++i) {

@@ -77,6 +77,7 @@ class Evaluator {
   Value call_record(const Expr& expr);
   Value make_node(const Expr& expr, Values arguments);
   void add_operands(const Expr& expr, Values arguments, Node& node);
+  static bool is_spread_vector(const NodeSpec& node, Values arguments);
   void add_positional(const Expr& expr, Values arguments, Node& node);
   void add_field(const Argument& argument, const Value& value, Node& node);
   Value place(const Expr& expr, Values arguments);

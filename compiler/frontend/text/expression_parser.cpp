@@ -145,7 +145,7 @@ Expr* ExpressionParser::operation(int least) {
   while (left != nullptr) {
     const Operator* row = find_operator(peek());
     if (row == nullptr || row->precedence < least) {
-      if (begins_value(peek())) return missing_operator(left);
+      if (begins_value(peek())) return missing_operator(left, least);
       return left;
     }
     left = row->precedence >= kRow ? gather(left, row->precedence) : pair(left, *row);
@@ -153,15 +153,20 @@ Expr* ExpressionParser::operation(int least) {
   return nullptr;
 }
 
-Expr* ExpressionParser::missing_operator(Expr* left) {
+Expr* ExpressionParser::missing_operator(Expr* left, int least) {
   const Token& token = peek();
   const bool unit = token.is_word("deg") || token.is_word("rad");
-  const bool product = left->kind == Expr::Kind::Number;
+  const bool product = left->kind == Expr::Kind::Number, named = left->kind == Expr::Kind::Name;
+  // The end of a range.
+  if (least == kRow && product) {
+    return unexpected("`:` or an operator is missing before it", {"such as [for i in 0..3: sphere(i)]"});
+  }
   return unexpected(
       "an operator is missing before it",
-      {unit ? "units are not written: angles of a scene are in degrees, those of sin, cos and tan in radians"
+      {unit      ? "units are not written: angles of a scene are in degrees, those of sin, cos and tan in radians"
        : product ? "for a product write a*b"
-                 : "a statement begins on a line of its own"});
+       : named && token.kind == Token::Kind::Number ? "an argument by name is written name = value"
+                                                    : "a statement begins on a line of its own"});
 }
 
 Expr* ExpressionParser::pair(Expr* left, const Operator& row) {

@@ -39,7 +39,7 @@ class ExpressionParser : public TokenCursor {
   Expr* bindings();
   Expr* fold();
   Expr* operation(int least);
-  Expr* missing_operator(Expr* left);
+  Expr* missing_operator(Expr* left, int least);
   Expr* pair(Expr* left, const Operator& row);
   Expr* gather(Expr* first, int precedence);
   bool is_clear(const std::vector<Joint>& joints);

@@ -37,8 +37,12 @@ class StatementParser : public ExpressionParser {
 
  private:
   void header() {
-    if (tokens_[at_].is_word("fathom")) ++at_;
-    const Token& version = tokens_[at_];
+    if (!tokens_[at_].is_word("fathom")) {
+      diagnostics_.error("E0105", tokens_[at_].span, "the version of the scene format is missing", "",
+                         {fmt::format("a text begins with the line `fathom {}`", kTextVersion)});
+      return;
+    }
+    const Token& version = tokens_[++at_];
     if (version.kind == Token::Kind::Number && version.value == kTextVersion) {
       ++at_;
       return;
@@ -92,7 +96,10 @@ class StatementParser : public ExpressionParser {
   void report_no_statement(const Token& first) {
     const std::vector<std::string_view> words(std::begin(kStatementWords), std::end(kStatementWords));
     std::vector<std::string> help;
-    if (first.kind == Token::Kind::Name && peek().is("=")) {
+    if (first.is_word("for") || first.is_word("if")) {
+      help = {fmt::format("it stands in a list: object [{}: sphere(1)]",
+                          first.is_word("for") ? "for i in 0..3" : "if n > 1")};
+    } else if (first.kind == Token::Kind::Name && peek().is("=")) {
       help = {fmt::format("a name is given by `let {} = ...`", first.text)};
     } else if (first.kind == Token::Kind::Name && peek().is("(") && suggest(first.text, words).empty()) {
       help = {fmt::format("what is to be seen is an object: `object {}(...)`", first.text)};
@@ -163,8 +170,6 @@ class StatementParser : public ExpressionParser {
 };
 
 }  // namespace
-
-bool is_text_scene(std::string_view text) { return first_word(text) == "fathom"; }
 
 ParsedFile parse(const Source& source, Diagnostics& diagnostics, const Limits& limits) {
   return StatementParser(source, diagnostics, limits).run();

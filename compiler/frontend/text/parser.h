@@ -16,9 +16,6 @@ namespace fathom::compiler::text {
 
 inline constexpr int kTextVersion = 1;
 
-// Whether a text is a scene in this notation: its first word is `fathom`.
-bool is_text_scene(std::string_view text);
-
 // The tree holds parts of the source's text. What is in error is left out of it.
 ParsedFile parse(const Source& source, Diagnostics& diagnostics, const Limits& limits);
 

@@ -1,5 +1,6 @@
 #include "compiler/frontend/text/read_text.h"
 
+#include <algorithm>
 #include <iterator>
 #include <set>
 
@@ -41,6 +42,13 @@ std::optional<ReadText> read(Source& source, const ImportedFiles& files, const D
 }  // namespace
 
 bool is_text_scene(std::string_view text) { return text::first_word(text) == "fathom"; }
+
+bool is_meant_as_text(const Source& source) {
+  const std::string_view name = source.name(), first = text::first_word(source.text());
+  if (first == "fathom" || name.ends_with(".vm")) return first == "fathom";
+  if (name.ends_with(".fathom")) return !first.empty();
+  return std::ranges::find(text::kStatementWords, first) != std::end(text::kStatementWords);
+}
 
 std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, const Definitions& definitions,
                                                               const Limits& limits, Diagnostics& diagnostics,

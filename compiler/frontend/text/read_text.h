@@ -23,6 +23,8 @@ namespace fathom::compiler {
 
 // Whether a text is in this notation: its first word is `fathom`.
 bool is_text_scene(std::string_view text);
+// Or its author forgot that: it is in a file *.fathom, or begins with a word that begins a statement.
+bool is_meant_as_text(const Source& source);
 
 // The files that a text imports, which are added to its source.
 struct ImportedFiles {
