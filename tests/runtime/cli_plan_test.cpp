@@ -212,7 +212,7 @@ TEST_CASE("cli plan: what does not go together is refused by what differs") {
 
 TEST_CASE("cli plan: a signal leaves a checkpoint of the unit, which goes on from there") {
   const Folder folder;
-  const std::string spp = is_sanitized() ? "200" : "6000";
+  const std::string spp = is_sanitized() ? "2000" : "20000";
   REQUIRE(folder.run("plan ball.json -s " + spp + " --tiles 1x1 --no-pilot -q -o p.json").code == 0);
   REQUIRE(folder.run("render ball.json -s " + spp + " -q -o w.exr").code == 0);
   const std::string film = "p.units/000/000000.film";
