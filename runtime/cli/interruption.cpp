@@ -10,7 +10,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 void on_signal(int signal) {
   if (signal == SIGUSR1) {
     picture_asked = true;
-  } else if (stop_asked.exchange(true) && signal != SIGHUP) {
+  } else if (stop_asked.exchange(true) && signal == SIGINT) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
