@@ -140,10 +140,14 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
     cut(grid, request.tiles.has_value(), pilot.frame_seconds(grid), request.unit_time.value_or(kUnitSeconds));
   }
   if (request.block) grid.block = std::min(static_cast<std::uint32_t>(*request.block), grid.spp);
-  if (grid.columns <= grid.width && grid.rows <= grid.height) return std::nullopt;
-  return fail(streams, kUsage,
-              fmt::format("--tiles: {}x{} are more than the {}x{} pixels of a frame", grid.columns, grid.rows,
-                          grid.width, grid.height));
+  if (grid.columns > grid.width || grid.rows > grid.height) {
+    return fail(streams, kUsage,
+                fmt::format("--tiles: {}x{} are more than the {}x{} pixels of a frame", grid.columns, grid.rows,
+                            grid.width, grid.height));
+  }
+  if (!too_many_units(grid)) return std::nullopt;
+  return fail(streams, kUsage, fmt::format("a plan has {:.0f} units at most", kMostUnits),
+              {"cut fewer tiles or larger blocks of samples, or let --unit-time say how many"});
 }
 
 std::string in_time(double seconds) {

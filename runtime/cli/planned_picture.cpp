@@ -33,10 +33,11 @@ std::optional<ExitCode> PlannedPictures::open(const std::vector<std::string>& ru
   return std::nullopt;
 }
 
-std::variant<Picture*, ExitCode> PlannedPictures::at(int index) {
+std::variant<Picture*, ExitCode> PlannedPictures::at(int index, const std::optional<runtime::PixelRect>& area) {
   if (index == index_) return picture_.get();
   picture_ = nullptr;  // scenes are large: one at a time
   RenderRequest request = request_;
+  request.options.crop = area;
   if (sequence_) {
     const int frame = sequence_->frames.at(index);
     request.scene = sequence_->at(request.scene, frame);

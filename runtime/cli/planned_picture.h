@@ -22,8 +22,9 @@ class PlannedPictures {
   // `running` are arguments beside the plan's. The background's picture is in the file `background`, where there is
   // one. An ExitCode after a message.
   std::optional<ExitCode> open(const std::vector<std::string>& running, const std::string& background);
-  // The frame with that index, until another is asked for.
-  std::variant<Picture*, ExitCode> at(int index);
+  // The frame with that index, until another is asked for. `area` is what is going to be rendered of it and has to
+  // fit into memory: where nothing is said, the frame.
+  std::variant<Picture*, ExitCode> at(int index, const std::optional<runtime::PixelRect>& area = {});
 
  private:
   ExitCode fail_at(int index, ExitCode code) const;

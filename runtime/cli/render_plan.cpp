@@ -21,7 +21,6 @@ using Json = nlohmann::ordered_json;
 constexpr int kPlanFormat = 1;
 constexpr std::string_view kPlanEnding = ".json";
 constexpr std::uint64_t kUnitsPerFolder = 1000;
-constexpr double kMostUnits = 1e9;
 constexpr const char* kClaimName = "plan";  // the file in the folder of units that has the plan's digest
 
 Json to_json(const compiler::Source& source) {
@@ -87,8 +86,7 @@ bool is_possible(const PlanGrid& grid) {
   if (grid.frames && !(grid.frames->step >= 1 && grid.frames->first >= 0 && grid.frames->first < grid.frames->last)) {
     return false;
   }
-  const double blocks = std::ceil(static_cast<double>(grid.spp) / std::max(grid.block, 1u));
-  if (static_cast<double>(grid.frame_count()) * grid.columns * grid.rows * blocks > kMostUnits) return false;
+  if (too_many_units(grid)) return false;
   return within(grid.width, compiler::kMaxSide) && within(grid.height, compiler::kMaxSide) &&
          within(grid.columns, grid.width) && within(grid.rows, grid.height) && grid.block >= 1 &&
          grid.spp >= grid.block && grid.spp <= static_cast<std::uint32_t>(compiler::kMaxSpp);
@@ -105,6 +103,11 @@ ExitCode refuse_folder(const std::string& folder, const std::string& held, const
 }
 
 }  // namespace
+
+bool too_many_units(const PlanGrid& grid) {
+  const double blocks = std::ceil(static_cast<double>(grid.spp) / std::max(grid.block, 1u));
+  return static_cast<double>(grid.frame_count()) * grid.columns * grid.rows * blocks > kMostUnits;
+}
 
 PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number) {
   const std::uint64_t frame = number / grid.units_of_frame(), within = number % grid.units_of_frame();

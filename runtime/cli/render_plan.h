@@ -37,6 +37,9 @@ struct PlanGrid {
   std::uint64_t units() const { return frame_count() * units_of_frame(); }
 };
 
+constexpr double kMostUnits = 1e9;
+bool too_many_units(const PlanGrid& grid);  // their number may not be one of 64 bits
+
 struct PlanUnit {
   int frame_index;  // in the grid's frames; 0 of a still
   runtime::PixelRect area;

@@ -45,7 +45,7 @@ class UnitRun {
       return kDone;
     }
     if (const auto code = open()) return *code;
-    const auto frame = pictures_.at(unit.frame_index);
+    const auto frame = pictures_.at(unit.frame_index, unit.area);
     if (const auto* code = std::get_if<ExitCode>(&frame)) return *code;
     Picture& picture = *std::get<Picture*>(frame);
     if (const auto code = make_folder(file)) return *code;

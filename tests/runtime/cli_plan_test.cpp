@@ -117,6 +117,14 @@ TEST_CASE("cli plan: without --tiles and --sample-block units are cut by the tim
   CHECK_THAT(folder.run(plan + "--unit-time 1e-9 --tiles 1x2").err, Contains("in 1x2 tiles and 8 blocks of 1"));
 }
 
+TEST_CASE("cli plan: a worker needs memory for its unit, not for the frame") {
+  const Folder folder;
+  const std::string picture = " ball.json --size 640x640 -s 1 --region-memory 8";
+  REQUIRE(folder.run("plan" + picture + " --tiles 16x16 --no-pilot -q -o p.json").code == 0);
+  CHECK(folder.run("render" + picture + " --limit memory=20000000 -q -o w.png").code == 2);
+  CHECK(folder.run("render --plan p.json --unit 100 --limit memory=20000000 -q").code == 0);
+}
+
 TEST_CASE("cli plan: what was cut short or is of another unit is found and rendered again") {
   const Folder folder;
   REQUIRE(folder.run("plan ball.json --tiles 2x1 --sample-block 1 --no-pilot -q -o p.json").code == 0);
@@ -177,22 +185,25 @@ TEST_CASE("cli plan: what does not go together is refused by what differs") {
     int code;
     const char* message;
   };
-  for (const Case& bad : {Case{"render --unit 3", 2, "--plan FILE"},
-                          {"render --plan p.json", 2, "which units?"},
-                          {"render --plan p.json --unit 1 -s 8", 2, "--spp does not go with --plan"},
-                          {"render --plan p.json --unit 1 -o a.png", 2, "--output does not go with --plan"},
-                          {"render --plan p.json --units 3:3", 2, "are no units"},
-                          {"render --plan p.json --unit 4", 2, "has no unit 4"},
-                          {"render --plan ball.json --unit 0", 65, "no plan"},
-                          {"render --plan none.json --unit 0", 74, "cannot read"},
-                          {"render", 2, "the scene is missing"},
-                          {"merge -o a.png", 2, "the films are missing"},
-                          {"merge a.film --plan p.json -o a.png", 2, "goes with no other"},
-                          {"plan ball.json", 2, "no file to write"},
-                          {"plan ball.json --tiles 64x1 --no-pilot -o q.json", 2, "more than the 32x16 pixels"},
-                          {"plan ball.json --adaptive -s 16 -o q.json", 2, "adaptive sampling"},
-                          {"plan ball.json -o ball.json", 2, "ball.json"},
-                          {"plan ball.json --json -o q.json", 2, "go with --status"}}) {
+  for (const Case& bad :
+       {Case{"render --unit 3", 2, "--plan FILE"},
+        {"render --plan p.json", 2, "which units?"},
+        {"render --plan p.json --unit 1 -s 8", 2, "--spp does not go with --plan"},
+        {"render --plan p.json --unit 1 -o a.png", 2, "--output does not go with --plan"},
+        {"render --plan p.json --units 3:3", 2, "are no units"},
+        {"render --plan p.json --unit 4", 2, "has no unit 4"},
+        {"render --plan ball.json --unit 0", 65, "no plan"},
+        {"render --plan none.json --unit 0", 74, "cannot read"},
+        {"render", 2, "the scene is missing"},
+        {"merge -o a.png", 2, "the films are missing"},
+        {"merge a.film --plan p.json -o a.png", 2, "goes with no other"},
+        {"plan ball.json", 2, "no file to write"},
+        {"plan ball.json --tiles 64x1 --no-pilot -o q.json", 2, "more than the 32x16 pixels"},
+        {"plan ball.json --size 2000x2000 --tiles 2000x2000 -s 999 --sample-block 1 --no-pilot -o q.json", 2,
+         "1000000000 units at most"},
+        {"plan ball.json --adaptive -s 16 -o q.json", 2, "adaptive sampling"},
+        {"plan ball.json -o ball.json", 2, "ball.json"},
+        {"plan ball.json --json -o q.json", 2, "go with --status"}}) {
     INFO(bad.arguments);
     const Result result = folder.run(bad.arguments);
     INFO(result.err);
