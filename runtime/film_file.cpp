@@ -1,6 +1,7 @@
 #include "runtime/film_file.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -198,6 +199,11 @@ std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const Read
 
 std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits) {
   return read(path, limits, false);
+}
+
+void keep_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
 }
 
 }  // namespace fathom::runtime

@@ -172,6 +172,7 @@ ExitCode merge_plan(const MergeRequest& request, const Streams& streams) {
   const auto& plan = std::get<RenderPlan>(read);
   const bool stream = std::ranges::any_of(request.pictures.outputs, [](const Output& o) { return o.standard(); });
   if (stream && plan.grid.frames) return fail(streams, kUsage, "`-o -` takes one picture, and the plan has frames");
+  runtime::keep_freed_memory();
   return PlanMerge(request, plan, streams).run();
 }
 
