@@ -62,7 +62,8 @@ std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::C
 }  // namespace
 
 void add_interval_option(Arguments& arguments, LongRender& request) {
-  arguments.option("--checkpoint-interval", "TIME", "Time between checkpoints, as 30s, 5m or 1h (60s)",
+  arguments.option("--checkpoint-interval", "TIME",
+                   "Time between checkpoints, as 30s, 5m or 1h (60s; of units of a plan 10m)",
                    into(read_duration, request.interval));
 }
 

@@ -22,7 +22,6 @@ constexpr const char* kPlanExamples =
     "fathom render --plan hop.json --unit 7        # any machine, any order\n"
     "fathom plan --status hop.json                 # what is missing\n"
     "fathom merge --plan hop.json -o hop.####.png";
-constexpr double kUnitSeconds = 120;  // that a unit takes where nothing is said
 
 struct PlanRequest {
   RenderRequest render;
@@ -49,9 +48,10 @@ void add_options(Arguments& arguments, PlanRequest& request) {
                    into(read_size, request.tiles));
   arguments.option("--sample-block", "N", "Samples per pixel in a unit (by --unit-time)",
                    whole(request.block, 1, compiler::kMaxSpp));
-  arguments.option("--unit-time", "TIME", "Time that a unit is to take on this machine, as 90s or 5m (2m)",
+  arguments.option("--unit-time", "TIME",
+                   "Time that a unit is to take on this machine, as 90s or 5m (2m; with --workers 1m to 5m)",
                    into(read_duration, request.unit_time));
-  arguments.option("--workers", "N", "Say how long so many machines like this one take",
+  arguments.option("--workers", "N", "Cut for so many machines like this one, and say how long they take",
                    whole(request.workers, 1, 1'000'000));
   arguments.flag("--no-pilot", "Render no small picture to learn what a unit costs", request.no_pilot);
   arguments.option("--threads", "N", "Number of threads of the pilot (one per processor)",
@@ -137,7 +137,8 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
                                  const Streams& streams) {
   if (request.tiles) grid.columns = request.tiles->width, grid.rows = request.tiles->height;
   if (!request.no_pilot) {
-    cut(grid, request.tiles.has_value(), pilot.frame_seconds(grid), request.unit_time.value_or(kUnitSeconds));
+    const double frame = pilot.frame_seconds(grid), all = frame * static_cast<double>(grid.frame_count());
+    cut(grid, request.tiles.has_value(), frame, request.unit_time.value_or(usual_unit_seconds(all, request.workers)));
   }
   if (request.block) grid.block = std::min(static_cast<std::uint32_t>(*request.block), grid.spp);
   if (grid.columns > grid.width || grid.rows > grid.height) {

@@ -92,8 +92,6 @@ bool is_possible(const PlanGrid& grid) {
          grid.spp >= grid.block && grid.spp <= static_cast<std::uint32_t>(compiler::kMaxSpp);
 }
 
-int edge(int length, int parts, int at) { return static_cast<int>(static_cast<std::int64_t>(length) * at / parts); }
-
 ExitCode refuse_folder(const std::string& folder, const std::string& held, const RenderPlan& plan,
                        const Streams& streams) {
   return fail(
@@ -103,22 +101,6 @@ ExitCode refuse_folder(const std::string& folder, const std::string& held, const
 }
 
 }  // namespace
-
-bool too_many_units(const PlanGrid& grid) {
-  const double blocks = std::ceil(static_cast<double>(grid.spp) / std::max(grid.block, 1u));
-  return static_cast<double>(grid.frame_count()) * grid.columns * grid.rows * blocks > kMostUnits;
-}
-
-PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number) {
-  const std::uint64_t frame = number / grid.units_of_frame(), within = number % grid.units_of_frame();
-  const auto tile = static_cast<int>(within / grid.blocks()), block = static_cast<int>(within % grid.blocks());
-  const int column = tile % grid.columns, row = tile / grid.columns;
-  const std::uint32_t first = static_cast<std::uint32_t>(block) * grid.block;
-  return {static_cast<int>(frame),
-          {edge(grid.width, grid.columns, column), edge(grid.height, grid.rows, row),
-           edge(grid.width, grid.columns, column + 1), edge(grid.height, grid.rows, row + 1)},
-          {first, std::min(first + grid.block, grid.spp)}};
-}
 
 std::variant<std::string, Unreadable> write_plan(RenderPlan& plan) {
   try {

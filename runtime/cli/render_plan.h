@@ -16,38 +16,11 @@
 #include <vector>
 
 #include "compiler/source.h"
-#include "runtime/cli/frame_options.h"
+#include "runtime/cli/plan_grid.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/film_file.h"
 
 namespace fathom::cli {
-
-// What the plan is cut by.
-struct PlanGrid {
-  std::optional<FrameRange> frames;  // nothing: a still
-  int width = 0, height = 0;         // pixels
-  int columns = 1, rows = 1;         // tiles of a frame
-  std::uint32_t spp = 1, block = 1;  // samples of a pixel; of them in a unit
-
-  std::uint64_t frame_count() const { return frames ? static_cast<std::uint64_t>(frames->count()) : 1; }
-  std::uint64_t blocks() const { return (spp + block - 1) / block; }
-  std::uint64_t units_of_frame() const {
-    return static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows) * blocks();
-  }
-  std::uint64_t units() const { return frame_count() * units_of_frame(); }
-};
-
-constexpr double kMostUnits = 1e9;
-bool too_many_units(const PlanGrid& grid);  // their number may not be one of 64 bits
-
-struct PlanUnit {
-  int frame_index;  // in the grid's frames; 0 of a still
-  runtime::PixelRect area;
-  runtime::SampleRange samples;
-};
-
-// Units count frame by frame, tile by tile, block by block: neighbours have the scene in common.
-PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number);
 
 struct RenderPlan {
   compiler::Source source;             // with its imports

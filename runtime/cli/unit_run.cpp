@@ -13,6 +13,9 @@
 namespace fathom::cli {
 namespace {
 
+// Units are short, and thousands of machines may write to one disk; a signal makes a checkpoint at any time.
+constexpr double kUnitCheckpointInterval = 600;  // seconds
+
 class UnitRun {
  public:
   UnitRun(const RenderRequest& request, const RenderPlan& plan, const Streams& streams,
@@ -53,6 +56,7 @@ class UnitRun {
     request.unit = number;
     request.outputs = {Output{file, nullptr}};
     request.long_render.resume = true;
+    request.long_render.interval = request.long_render.interval.value_or(kUnitCheckpointInterval);
     request.options.crop = unit.area;
     request.options.sample_range = unit.samples;
     request.options.resume_from = nullptr;
