@@ -38,9 +38,10 @@ void add(std::vector<UnitRange>& ranges, std::uint64_t number) {
   }
 }
 
-void print_json(const PlanStatus& status, const Streams& streams) {
+void print_json(const PlanStatus& status, const PlanGrid& grid, const Streams& streams) {
   nlohmann::ordered_json json = {{"units", status.units}, {"done", status.done},     {"missing", status.missing()},
                                  {"begun", status.begun}, {"broken", status.broken}, {"left", text_of(status.left)}};
+  if (grid.frames) json["frames"] = fmt::format("{}:{}:{}", grid.frames->first, grid.frames->last, grid.frames->step);
   json["faults"] = nlohmann::ordered_json::array();
   for (const auto& [unit, reason] : status.faults) json["faults"].push_back({{"unit", unit}, {"reason", reason}});
   print(streams, json.dump(1) + "\n");
@@ -92,7 +93,7 @@ int print_status(const StatusRequest& request, const compiler::Limits& limits, c
   const auto& status = std::get<PlanStatus>(looked);
   const bool complete = status.done == status.units;
   if (request.json) {
-    print_json(status, streams);
+    print_json(status, plan.grid, streams);
     return complete ? kDone : kFoundProblems;
   }
   print(streams, fmt::format("{} of {}: {} done, {} missing, {} begun, {} broken\n", count_of(status.units, "unit"),

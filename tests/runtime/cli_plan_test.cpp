@@ -53,6 +53,7 @@ TEST_CASE("cli plan: the units of frames, in any order, are the frames of one ru
              Contains("wrote p.json: 3 frames of 32x20 pixels and 6 samples, in 2x2 tiles and 2 blocks of 4: "
                       "24 units") &&
                  Contains("a unit takes"));
+  CHECK(nlohmann::json::parse(folder.run("plan --status p.json --json").out)["frames"] == "0:3:1");
   REQUIRE(folder.run("render hop.fathom --frames all -D wide=1.5 --denoise -q -o w.##.png -o w.##.exr").code == 0);
   // The plan alone is enough.
   fs::create_directories(folder.path() / "far");
