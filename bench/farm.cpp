@@ -7,7 +7,8 @@
 // one queue, which starts so many a second. They differ in speed, one in a hundred is four times slower, and they are
 // lost at random: that is noticed after a while, and the unit goes on from its checkpoint elsewhere. All write to one
 // disk, which serves one after the other. The time to the last film is given over that of the same machines without
-// any of this, so 1 is all that can be had; the shares say where the machines' time went.
+// any of this, so 1 is all that can be had; the shares say where the machines' time went. What `fathom plan` chooses
+// with --workers is the last row of each table. The films are merged by one process on one thread.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,14 +17,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <queue>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "bench/scene_file.h"
 #include "runtime/cli/pixel_costs.h"
 #include "runtime/cli/plan_grid.h"
 #include "runtime/film_file.h"
@@ -71,7 +70,7 @@ class Simulation {
     std::bernoulli_distribution slow(kSlow);
     for (int machine = 0; machine < machines; ++machine) {
       speeds_.push_back(std::exp(logarithm(random_)) / (slow(random_) ? kSlowness : 1));
-      events_.push({0, Event::Free, machine, {}});
+      events_.push({0, Event::Free, machine, 0});
     }
   }
 
@@ -98,7 +97,7 @@ class Simulation {
           give(event.machine);
           break;
         case Event::Noticed:
-          take_back(event.work);
+          take_back(event.left);
           break;
       }
     }
@@ -107,15 +106,11 @@ class Simulation {
   }
 
  private:
-  struct Work {
-    std::uint64_t unit = 0;
-    double left = 0;  // seconds at speed 1
-  };
   struct Event {
     double time;
     enum Kind { Free, Computed, Written, Noticed } kind;
     int machine;
-    Work work;
+    double left;  // seconds at speed 1 that the unit still takes
     bool operator>(const Event& other) const { return time > other.time; }
   };
 
@@ -124,40 +119,38 @@ class Simulation {
       start(machine, returned_.back());
       returned_.pop_back();
     } else if (next_ < units_) {
-      start(machine, {next_, costs_[next_ % costs_.size()]});
-      ++next_;
+      start(machine, costs_[next_++ % costs_.size()]);
     } else {
       idle_.push_back(machine);
     }
   }
 
-  void take_back(const Work& work) {
-    returned_.push_back(work);
+  void take_back(double left) {
+    returned_.push_back(left);
     if (idle_.empty()) return;
     const int machine = idle_.back();
     idle_.pop_back();
     give(machine);
   }
 
-  void start(int machine, Work work) {
+  void start(int machine, double left) {
     const double begin = std::max(now_, queue_free_);
     queue_free_ = begin + 1 / farm_.starts_per_second;
-    const double speed = speeds_[static_cast<std::size_t>(machine)], computing = work.left / speed;
+    const double speed = speeds_[static_cast<std::size_t>(machine)], computing = left / speed;
     const double lost = std::exponential_distribution<double>(1 / (3600 * farm_.lost_after))(random_);
     tally_.waited += begin - now_;
     if (lost >= farm_.start + computing) {
       checkpoint(computing);
       tally_.started += farm_.start;
-      events_.push({begin + farm_.start + computing, Event::Computed, machine, work});
+      events_.push({begin + farm_.start + computing, Event::Computed, machine, 0});
       return;
     }
     const double computed = std::max(0.0, lost - farm_.start),
                  kept = std::floor(computed / kCheckpoint) * kCheckpoint;
     checkpoint(computed);
-    work.left -= kept * speed;
     tally_.lost += lost - kept + kReplaced;
-    events_.push({begin + lost + farm_.noticed, Event::Noticed, 0, work});
-    events_.push({begin + lost + kReplaced, Event::Free, machine, {}});
+    events_.push({begin + lost + farm_.noticed, Event::Noticed, 0, left - kept * speed});
+    events_.push({begin + lost + kReplaced, Event::Free, machine, 0});
   }
 
   // Checkpoints are written beside the work; the disk has them to do.
@@ -169,7 +162,7 @@ class Simulation {
   void write(const Event& event) {
     disk_free_ = std::max(disk_free_, now_) + busy();
     tally_.waited += disk_free_ - now_;
-    events_.push({disk_free_, Event::Written, event.machine, {}});
+    events_.push({disk_free_, Event::Written, event.machine, 0});
   }
 
   double busy() {
@@ -184,24 +177,12 @@ class Simulation {
   std::mt19937_64 random_{1};
   std::vector<double> speeds_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
-  std::vector<Work> returned_;
+  std::vector<double> returned_;
   std::vector<int> idle_;
   std::uint64_t next_ = 0, done_ = 0;
   double now_ = 0, queue_free_ = 0, disk_free_ = 0;
   Tally tally_;
 };
-
-compiler::CompiledScene read(const std::string& path) {
-  std::ifstream file(path);
-  const compiler::Source source(path, std::string(std::istreambuf_iterator<char>(file), {}));
-  compiler::Diagnostics diagnostics;
-  auto scene = compiler::compile(source, diagnostics);
-  if (!scene) {
-    fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
-    std::exit(65);
-  }
-  return *std::move(scene);
-}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -291,7 +272,7 @@ void simulate(const Farm& farm, const Job& job) {
 }
 
 void run(const std::string& path) {
-  const compiler::CompiledScene scene = read(path);
+  const compiler::CompiledScene scene = read_scene("bench_farm", path);
   const MergeCost merging = measure_merging(scene);
   fmt::print("{}; a film: {:.0f} bytes a pixel; merging one: {:.0f} us and {:.0f} ns a pixel\n", path, merging.bytes,
              merging.unit * 1e6, merging.pixel * 1e9);

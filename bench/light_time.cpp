@@ -13,12 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include "compiler/compile.h"
+#include "bench/scene_file.h"
 #include "runtime/chart/fit.h"
 #include "runtime/measure/measure_images.h"
 #include "runtime/measure/stopwatch.h"
@@ -42,22 +41,6 @@ constexpr int kReference = 48;  // times the samples of the longest picture
 constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits};
 constexpr ImageWay kDefault{};
 
-compiler::CompiledScene read(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
-    fmt::print(stderr, "bench_light_time: cannot read `{}`\n", path);
-    std::exit(74);
-  }
-  const compiler::Source source(path, std::string(std::istreambuf_iterator<char>(file), {}));
-  compiler::Diagnostics diagnostics;
-  auto scene = compiler::compile(source, diagnostics);
-  if (!scene) {
-    fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
-    std::exit(65);
-  }
-  return *std::move(scene);
-}
-
 // Seconds of a picture for each sample per pixel.
 double seconds_per_sample(const compiler::CompiledScene& scene, const ImageWay& way, const ImagePlan& plan) {
   const Channels nothing(static_cast<std::size_t>(3 * plan.width * plan.height));
@@ -77,7 +60,7 @@ void print(const char* name, const ImageMeasurement& row, double goal) {
 
 // The ratio of relMSE at equal time.
 double compare(const std::string& path, int default_spp) {
-  const compiler::CompiledScene scene = read(path);
+  const compiler::CompiledScene scene = read_scene("bench_light_time", path);
   ImagePlan plan{.width = 192, .height = 108, .seeds = 8};
   const double seconds = default_spp * seconds_per_sample(scene, kDefault, plan);
   std::vector<ImagePoint> points;

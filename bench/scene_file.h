@@ -1,0 +1,32 @@
+// A scene that a bench is named on its command line.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "compiler/compile.h"
+
+namespace fathom::bench {
+
+// Ends the program, after a message, with 74 when the file cannot be read and 65 when it is no scene.
+inline compiler::CompiledScene read_scene(const char* program, const std::string& path) {
+  std::ifstream file(path);
+  if (!file) {
+    fmt::print(stderr, "{}: cannot read `{}`\n", program, path);
+    std::exit(74);
+  }
+  const compiler::Source source(path, std::string(std::istreambuf_iterator<char>(file), {}));
+  compiler::Diagnostics diagnostics;
+  auto scene = compiler::compile(source, diagnostics);
+  if (!scene) {
+    fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
+    std::exit(65);
+  }
+  return *std::move(scene);
+}
+
+}  // namespace fathom::bench
