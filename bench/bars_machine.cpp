@@ -8,7 +8,7 @@
 #include "bench/bars.h"
 #include "bench/closed_forms.h"
 #include "bench/clouds.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 
 namespace fathom::bench {
 namespace {

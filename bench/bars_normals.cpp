@@ -5,7 +5,7 @@
 #include "bench/bars.h"
 #include "bench/closed_forms.h"
 #include "bench/measured_hits.h"
-#include "runtime/surface.h"
+#include "runtime/path/surface.h"
 
 namespace fathom::bench {
 namespace {

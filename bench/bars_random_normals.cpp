@@ -6,7 +6,7 @@
 
 #include "bench/bars.h"
 #include "compiler/make_node.h"
-#include "runtime/surface.h"
+#include "runtime/path/surface.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <random>
 
-#include "runtime/ray.h"
+#include "runtime/march/ray.h"
 
 namespace fathom::bench {
 

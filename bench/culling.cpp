@@ -1,5 +1,6 @@
-// What do regions save? The marcher with regions (runtime/regions.h) against the same marcher that evaluates the
-// whole program for every sample, with all lanes full: scattered objects, and objects that are all blended into one.
+// What do regions save? The marcher with regions (runtime/field/regions.h) against the same marcher that evaluates
+// the whole program for every sample, with all lanes full: scattered objects, and objects that are all blended into
+// one.
 //
 //     build/release/bench_culling
 #include <cmath>
@@ -9,7 +10,7 @@
 #include "bench/clouds.h"
 #include "bench/comparison.h"
 #include "bench/many_objects.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 #include "runtime/measure/ray_sets.h"
 
 namespace {

@@ -25,7 +25,7 @@
 #include "bench/scene_file.h"
 #include "runtime/cli/pixel_costs.h"
 #include "runtime/cli/plan_grid.h"
-#include "runtime/film_file.h"
+#include "runtime/film/film_file.h"
 #include "runtime/render.h"
 
 namespace fathom::bench {

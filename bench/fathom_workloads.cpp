@@ -5,10 +5,10 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "runtime/camera.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
+#include "runtime/path/surface.h"
 #include "runtime/render.h"
-#include "runtime/surface.h"
+#include "runtime/sampling/camera.h"
 
 namespace fathom::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "bench/light_bars.h"
-#include "runtime/camera.h"
-#include "runtime/environment.h"
-#include "runtime/filter.h"
+#include "runtime/light/environment.h"
+#include "runtime/sampling/camera.h"
+#include "runtime/sampling/filter.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/environments.h"
 #include "tests/support/lamp_patches.h"

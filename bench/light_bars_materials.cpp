@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "bench/light_bars.h"
-#include "runtime/energy.h"
+#include "runtime/material/energy.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/materials.h"
 

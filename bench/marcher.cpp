@@ -11,11 +11,11 @@
 #include "bench/clouds.h"
 #include "bench/comparison.h"
 #include "bench/compiled_scenes.h"
-#include "runtime/camera.h"
-#include "runtime/march.h"
-#include "runtime/sampler.h"
-#include "runtime/surface.h"
-#include "runtime/warp.h"
+#include "runtime/march/march.h"
+#include "runtime/path/surface.h"
+#include "runtime/sampling/camera.h"
+#include "runtime/sampling/sampler.h"
+#include "runtime/sampling/warp.h"
 
 namespace {
 

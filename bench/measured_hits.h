@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compiler/compile.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 
 namespace fathom::bench {
 

@@ -1,12 +1,12 @@
 // How long does a slice of a text model of thousands of lines take? 1024x1024 pixels over [-1, 1]^2 on one processor:
-// compiling the model, its signs or its values at the pixels' centres (runtime/quadtree.h), and the first two
+// compiling the model, its signs or its values at the pixels' centres (runtime/slice/quadtree.h), and the first two
 // together.
 //
 //     build/release/bench_slices
 #include "bench/clouds.h"
 #include "bench/comparison.h"
 #include "runtime/measure/stopwatch.h"
-#include "runtime/slice.h"
+#include "runtime/slice/slice.h"
 
 namespace {
 

@@ -233,7 +233,7 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
                           Diagnostics& diagnostics) {
   const double error = vm::kFloatError * known[scene.root].magnitude;
   const double most = 1e-4 * glm::length(camera.target - camera.position);
-  // Numbers up to 1 are reckoned with wherever a ray is (runtime/field.h).
+  // Numbers up to 1 are reckoned with wherever a ray is (runtime/field/field.h).
   if (error <= most || known[scene.root].magnitude <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {

@@ -39,7 +39,8 @@ struct Surface {
 struct Camera {
   // A panorama shows all directions: 360 degrees from left to right, 180 from top to bottom.
   enum class Projection { Perspective, Orthographic, Panorama };
-  bool automatic = false;  // the scene has no `camera`: its extent is framed (compiler/framing.h), as far as it has one
+  bool automatic =
+      false;  // the scene has no `camera`: its extent is framed (compiler/framing.h), as far as it has one
   Projection projection = Projection::Perspective;
   glm::dvec3 position{0, 0, 5};
   glm::dvec3 target{0, 0, 0};
@@ -61,11 +62,12 @@ struct Camera {
   double blade_rotation = 0;             // radians, counter-clockwise in the picture; at 0 a corner is up
 };
 
-// How a pixel weighs the light around its centre (runtime/filter.h).
+// How a pixel weighs the light around its centre (runtime/sampling/filter.h).
 enum class FilterKind { Box, Tent, Gaussian, BlackmanHarris, Mitchell };
 inline constexpr std::array<std::string_view, 5> kFilterNames = {"box", "tent", "gaussian", "blackman-harris",
                                                                  "mitchell"};  // [FilterKind]
-// How light becomes a display's (runtime/tone.h), and its names in scene files and on the command line, in order.
+// How light becomes a display's (runtime/image/tone.h), and its names in scene files and on the command line, in
+// order.
 enum class ToneCurve { None, Filmic, Aces, Agx, Neutral };
 inline constexpr std::array<std::string_view, 5> kToneCurves = {"none", "filmic", "aces", "agx", "neutral"};
 
@@ -80,7 +82,7 @@ struct Film {
   double fps = kUsualFps;  // frames a second
 };
 
-// Where a render's random numbers come from (runtime/sampler.h).
+// Where a render's random numbers come from (runtime/sampling/sampler.h).
 enum class SamplerKind : std::uint8_t { Blue, Sobol, Independent };
 inline constexpr std::array<std::string_view, 3> kSamplerNames = {"blue", "sobol", "independent"};  // [SamplerKind]
 
@@ -97,7 +99,7 @@ struct RenderSettings {
 // Radiance of rays that leave the scene.
 struct Background {
   enum class Type { Gradient, Sky, Image };
-  struct Sky {                // clear daylight over a ground (runtime/sky.h)
+  struct Sky {                // clear daylight over a ground (runtime/light/sky.h)
     glm::dvec3 sun{0, 1, 0};  // unit, towards it; not below the horizon
     double turbidity = 3;     // of the air: 2 very clear to 10 hazy
     glm::dvec3 ground_albedo{0.3};
@@ -187,8 +189,8 @@ struct Medium : CompiledField {
 };
 
 // All places in it but those of textures, the camera's among them, are in the programs' coordinates: the scene's
-// minus `origin`. What takes or prints places of the scene (runtime/cli, runtime/material.h) adds it; the renderer
-// has no need to know.
+// minus `origin`. What takes or prints places of the scene (runtime/cli, runtime/material/material.h) adds it; the
+// renderer has no need to know.
 struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};       // where the programs' zero is in the scene, scene units (compiler/origin.h)

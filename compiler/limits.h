@@ -1,7 +1,7 @@
 // Limits: what a scene may ask for before it is refused. The one table: `--limit NAME=VALUE`, `fathom help limits`,
 // docs/LIMITS.md and the tests read it. Whoever enforces a limit gets the Limits and says in its message where the
 // scene goes beyond, by how much, and how to allow it (`raise()`). Tested by: tests/compiler/limits_test.cpp,
-// tests/runtime/cli_limits_test.cpp, tests/hostile
+// tests/runtime/cli/cli_limits_test.cpp, tests/hostile
 #pragma once
 
 #include <array>

@@ -97,7 +97,7 @@ struct TextureFormula {
   TextureSpace space = TextureSpace::World;
 };
 
-// Two textures mixed by a number t of each place: a (1 - t) + b t. What t is, runtime/pattern.h says.
+// Two textures mixed by a number t of each place: a (1 - t) + b t. What t is, runtime/material/pattern.h says.
 struct Pattern {
   struct Checker {};
   struct Stripes {

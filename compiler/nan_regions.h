@@ -1,6 +1,6 @@
 // Where a field is not a number: places that rays come to and see nothing at, not even what stands behind them.
 // Boxes are looked for by what the machine can compute in them (vm/enclose.h), and reported once a point is found.
-// Tested by: tests/runtime/cli_invalid_test.cpp, tests/golden/diagnostics (W0513)
+// Tested by: tests/runtime/cli/cli_invalid_test.cpp, tests/golden/diagnostics (W0513)
 #pragma once
 
 #include <optional>

@@ -7,7 +7,7 @@
 //     ...
 //
 // The graphs are printed with names by place (compiler/graph.h), so that a node keeps its name when others go.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <optional>

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/adaptive.h"
-#include "runtime/noise.h"
-#include "runtime/tiles.h"
+#include "runtime/base/tiles.h"
+#include "runtime/film/adaptive.h"
+#include "runtime/film/noise.h"
 
 namespace fathom::runtime {
 namespace {

@@ -2,8 +2,8 @@
 // Tested by: tests/runtime/render_test.cpp, adaptive_test.cpp, noise_test.cpp
 #pragma once
 
-#include "runtime/options.h"
-#include "runtime/partial_render.h"
+#include "runtime/film/partial_render.h"
+#include "runtime/path/options.h"
 #include "runtime/shared_picture.h"
 #include "runtime/unit_worker.h"
 

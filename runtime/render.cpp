@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/adaptive.h"
-#include "runtime/noise.h"
+#include "runtime/base/tiles.h"
+#include "runtime/field/region_store.h"
+#include "runtime/film/adaptive.h"
+#include "runtime/film/noise.h"
 #include "runtime/passes.h"
-#include "runtime/region_store.h"
-#include "runtime/tiles.h"
 #include "vm/check.h"
 
 namespace fathom::runtime {

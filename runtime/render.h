@@ -3,10 +3,10 @@
 #pragma once
 
 #include "compiler/compiled_scene.h"
-#include "runtime/film.h"
-#include "runtime/options.h"
-#include "runtime/regions.h"
-#include "runtime/stats.h"
+#include "runtime/base/stats.h"
+#include "runtime/field/regions.h"
+#include "runtime/film/film.h"
+#include "runtime/path/options.h"
 
 namespace fathom::runtime {
 
@@ -17,7 +17,7 @@ struct RenderResult : PartialRender {
 };
 
 // Whether a render with these settings can go on from `render`: films of others are refused before by their identity
-// (runtime/film_file.h), so a file that says no was made up.
+// (runtime/film/film_file.h), so a file that says no was made up.
 bool can_resume(const PartialRender& render, const Settings& settings);
 
 // How a render with these settings builds regions: the same for every part of a picture and for any number of

@@ -1,6 +1,6 @@
 #include "runtime/shared_picture.h"
 
-#include "runtime/film.h"
+#include "runtime/film/film.h"
 
 namespace fathom::runtime {
 SharedPicture::SharedPicture(PartialRender& render, std::uint64_t samples, const RenderOptions& options,

@@ -8,9 +8,9 @@
 #include <functional>
 #include <mutex>
 
-#include "runtime/options.h"
-#include "runtime/partial_render.h"
-#include "runtime/stats.h"
+#include "runtime/base/stats.h"
+#include "runtime/film/partial_render.h"
+#include "runtime/path/options.h"
 
 namespace fathom::runtime {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/integrator.h"
+#include "runtime/path/integrator.h"
 #include "runtime/shared_picture.h"
 #include "runtime/units.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/tiles.h"
+#include "runtime/base/tiles.h"
 
 namespace fathom::runtime {
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/coverage.h"
+#include "runtime/base/coverage.h"
 
 namespace fathom::runtime {
 

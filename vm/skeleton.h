@@ -1,7 +1,7 @@
 // Skeletons: programs without their constants.
 //
 // The machine runs one instruction for many points. Where every cell of a scene has a program of its own
-// (runtime/regions.h) few points share one; but programs cut from one scene differ in little else than their
+// (runtime/field/regions.h) few points share one; but programs cut from one scene differ in little else than their
 // constants. Without those many are the same, and so a lane takes a point, with the constants of the point's own
 // program, and the lanes are full again.
 //

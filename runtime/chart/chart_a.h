@@ -3,7 +3,7 @@
 // A polyline is a method in one precision, its points the tolerances eps; variants by relaxation or by a limit of
 // steps are polylines of their own. f32 has solid markers, f64 hollow ones. The staircase is reliable_front() and
 // rings mark on_pareto_front() (runtime/chart/pareto.h): where the default is on the front, it is on the staircase.
-// Tested by: tests/runtime/chart_charts_test.cpp
+// Tested by: tests/runtime/chart/chart_charts_test.cpp
 #pragma once
 
 #include <span>

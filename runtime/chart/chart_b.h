@@ -4,7 +4,7 @@
 // is without the worst 0.1 % of the pixels. Where a curve's slope is given, it is fitted to all its points. A dashed
 // line is a curve's floor, its bias: more samples lead no further down. Of k seeds a floor below 1/k of the curve's
 // last point cannot be seen; what is drawn is the floor at the most samples. Tested by:
-// tests/runtime/chart_charts_test.cpp
+// tests/runtime/chart/chart_charts_test.cpp
 #pragma once
 
 #include <span>

@@ -3,7 +3,7 @@
 // Colours run from dark violet to yellow, evenly to the eye and in grey as well: viridis (S. van der Walt, N. Smith,
 // "mpl colormaps", 2015), which its authors gave to the public domain, by eleven of its colours and straight lines
 // between them. NaN is grey. On a logarithmic scale 0 and what is negative is black; beyond the scale's ends the
-// end's colour. Tested by: tests/runtime/chart_colormap_test.cpp
+// end's colour. Tested by: tests/runtime/chart/chart_colormap_test.cpp
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/image.h"
+#include "runtime/image/image.h"
 
 namespace fathom::runtime {
 

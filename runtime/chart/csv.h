@@ -3,7 +3,7 @@
 // Texts with a comma, a quote or a line's end are quoted (Y. Shafranovich, "Common Format and MIME Type for
 // Comma-Separated Values (CSV) Files", RFC 4180, 2005). Numbers are the shortest that read back as the same double,
 // with a point in every locale; what was not measured is `nan`, what the method has not (eps, steps_max) is 0.
-// Tested by: tests/runtime/chart_csv_test.cpp
+// Tested by: tests/runtime/chart/chart_csv_test.cpp
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // Power laws through measured points: least squares of log y on log x.
-// Tested by: tests/runtime/chart_pareto_test.cpp
+// Tested by: tests/runtime/chart/chart_pareto_test.cpp
 #pragma once
 
 #include <span>

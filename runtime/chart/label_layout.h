@@ -2,7 +2,7 @@
 //
 // Greedy, in the order asked: the first of eight places round the point that is free. Finding the most labels that
 // fit is NP-hard (M. Formann, F. Wagner, "A Packing Problem with Applications to Lettering of Maps", 1991); charts
-// have few points, and whoever asks first matters most. Tested by: tests/runtime/chart_plot_test.cpp
+// have few points, and whoever asks first matters most. Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>

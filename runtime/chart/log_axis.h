@@ -2,7 +2,7 @@
 //
 // Zero has no place on a logarithmic scale, yet errors are 0 now and then. An axis that is asked for one has a slot
 // before its lowest value, behind a break, where all zeros are drawn.
-// Tested by: tests/runtime/chart_plot_test.cpp
+// Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <span>

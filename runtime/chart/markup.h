@@ -1,5 +1,5 @@
 // What SVG and HTML texts are made of. All of it is the same in every locale.
-// Tested by: tests/runtime/chart_plot_test.cpp
+// Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <cstdint>

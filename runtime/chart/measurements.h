@@ -2,7 +2,7 @@
 //
 // Shares of rays are in ppm, lengths in scene units, angles in radians. A quantity that could not be measured is NaN,
 // and is drawn and written as missing, never as 0.
-// Tested by: tests/runtime/chart_csv_test.cpp
+// Tested by: tests/runtime/chart/chart_csv_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 //
 // Charts stand in the page as SVG, maps are linked by the names of their files beside it. It follows the reader's
 // light or dark scheme and scrolls wide charts and tables on narrow screens.
-// Tested by: tests/runtime/chart_page_test.cpp
+// Tested by: tests/runtime/chart/chart_page_test.cpp
 #pragma once
 
 #include <string>

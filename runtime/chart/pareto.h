@@ -3,7 +3,7 @@
 // Only rows of the same scene and class of rays are compared. One row dominates another when its cost, its 99th
 // percentile of |t - t_ref| and its failures are no greater and one of the three is less. The reference takes no
 // part: its error is 0 by definition, not by measurement. A row with a number that was not measured takes no part
-// either. Tested by: tests/runtime/chart_pareto_test.cpp
+// either. Tested by: tests/runtime/chart/chart_pareto_test.cpp
 #pragma once
 
 #include <span>

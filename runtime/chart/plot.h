@@ -6,7 +6,7 @@
 //
 // Colours to choose from are those of M. Okabe, K. Ito, "Color Universal Design", 2008, which the colour-blind tell
 // apart. The text is the same for the same plot on every machine, has no ids, styles or scripts, and may stand within
-// HTML. Tested by: tests/runtime/chart_plot_test.cpp
+// HTML. Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <array>

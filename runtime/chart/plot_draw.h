@@ -1,5 +1,5 @@
 // What plot.cpp, plot_panel.cpp and plot_legend.cpp draw with: sizes, and marks as SVG elements. Pixels, y downwards.
-// Tested by: tests/runtime/chart_plot_test.cpp
+// Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>

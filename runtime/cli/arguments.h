@@ -6,7 +6,7 @@
 //     if (auto code = arguments.parse(args, streams)) return *code;
 //
 // An option that is given twice calls its setter twice: a plain one keeps the last value, a list grows.
-// Tested by: tests/runtime/cli_usage_test.cpp, tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_usage_test.cpp, tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <deque>

@@ -1,5 +1,5 @@
 // Bytes as text. Source: S. Josefsson, The Base16, Base32, and Base64 Data Encodings, RFC 4648, 2006, section 4.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // --position, --look-at and --frame: where a picture is taken from, said on the command line.
-// Tested by: tests/runtime/cli_camera_test.cpp
+// Tested by: tests/runtime/cli/cli_camera_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>

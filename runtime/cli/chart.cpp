@@ -4,7 +4,7 @@
 //     scene: the default is on the Pareto front of time: camera yes, bounce yes, grazing yes
 //     wrote charts/index.html
 //
-// Tested by: tests/runtime/cli_chart_test.cpp
+// Tested by: tests/runtime/cli/cli_chart_test.cpp
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
-#include "runtime/image_io.h"
+#include "runtime/image/image_io.h"
 #include "runtime/measure/maps.h"
 #include "runtime/measure/measure_rays.h"
 #include "vm/evaluate.h"

@@ -1,5 +1,5 @@
 // The command line of `fathom chart` as data.
-// Tested by: tests/runtime/cli_chart_test.cpp
+// Tested by: tests/runtime/cli/cli_chart_test.cpp
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // The scenes that `fathom chart` draws when it is given none: CMake puts the files' texts into the program.
-// Tested by: tests/runtime/cli_chart_test.cpp
+// Tested by: tests/runtime/cli/cli_chart_test.cpp
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // fathom check: every error and warning of a scene, and the exactness report: how far each object's distance can be
 // trusted, how much of it a ray may step, and which node that is due to. --probe tries to refute it. No pixels.
-// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_check_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_check_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 #include "runtime/cli/picture_warning.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/shutter.h"
+#include "runtime/sampling/shutter.h"
 
 namespace fathom::cli {
 namespace {

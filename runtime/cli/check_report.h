@@ -1,5 +1,5 @@
 // What `fathom check` prints of a scene without errors: for people, and as JSON lines.
-// Tested by: tests/runtime/cli_check_test.cpp
+// Tested by: tests/runtime/cli/cli_check_test.cpp
 #pragma once
 
 #include <string>

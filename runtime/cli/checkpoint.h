@@ -8,7 +8,7 @@
 // What would be lost with a file is never replaced: neither this very render's earlier state, nor what another run
 // writes there meanwhile, nor what is no film.
 //
-// Tested by: tests/runtime/cli_checkpoint_test.cpp
+// Tested by: tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
 #include <functional>
@@ -16,8 +16,8 @@
 #include <string>
 
 #include "runtime/cli/streams.h"
-#include "runtime/film_file.h"
-#include "runtime/options.h"
+#include "runtime/film/film_file.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

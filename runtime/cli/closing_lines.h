@@ -5,7 +5,7 @@
 //     time: 0.12 s on 2 threads, 4.51 million rays per second, peak memory 25.5 MB
 //     wrote ball.png (32x16)
 //
-// Tested by: tests/runtime/cli_closing_test.cpp
+// Tested by: tests/runtime/cli/cli_closing_test.cpp
 #pragma once
 
 #include <string>

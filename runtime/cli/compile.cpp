@@ -1,5 +1,5 @@
 // fathom compile: a scene as a file of programs; fathom asm: such a file made of its listing.
-// Tested by: tests/runtime/cli_compile_test.cpp
+// Tested by: tests/runtime/cli/cli_compile_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
@@ -8,11 +8,11 @@
 
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/programs.h"
-#include "runtime/atomic_file.h"
+#include "runtime/base/atomic_file.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/image_io.h"
+#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,5 @@
 // fathom completion: scripts by which a shell completes verbs, options and values, made of the option tables.
-// Tested by: tests/runtime/cli_completion_test.cpp
+// Tested by: tests/runtime/cli/cli_completion_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

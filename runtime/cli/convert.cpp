@@ -1,5 +1,5 @@
 // fathom convert: scenes from JSON to text and back.
-// Tested by: tests/runtime/cli_convert_test.cpp
+// Tested by: tests/runtime/cli/cli_convert_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,8 @@ constexpr const char* kConvertExamples =
     "fathom convert scene.json -o scene.fathom\n"
     "fathom convert scene.fathom -o scene.json\n"
     "\n"
-    "A JSON scene comes back from text as it was. Of a text's functions, loops and names JSON keeps what they came to, "
+    "A JSON scene comes back from text as it was. Of a text's functions, loops and names JSON keeps what they came "
+    "to, "
     "and its parameters where they decide no loop or condition.";
 
 // Where parameters were needed as numbers.

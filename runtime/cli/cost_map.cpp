@@ -6,7 +6,7 @@
 
 #include "runtime/chart/colormap.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/image_io.h"
+#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 namespace {

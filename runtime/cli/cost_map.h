@@ -4,7 +4,7 @@
 //
 // Values are means over the pixel's samples: evaluations of the field by all rays of a path, and the instructions the
 // machine ran in them. Both are the same for any number of threads and tile size. Tested by:
-// tests/runtime/cli_profile_test.cpp
+// tests/runtime/cli/cli_profile_test.cpp
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "runtime/cli/values.h"
-#include "runtime/film.h"
+#include "runtime/film/film.h"
 
 namespace fathom::cli {
 

@@ -7,7 +7,7 @@
 //     mean    -0.0002
 //     flip     0.041
 //
-// Tested by: tests/runtime/cli_diff_test.cpp
+// Tested by: tests/runtime/cli/cli_diff_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,9 +22,9 @@
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/flip.h"
-#include "runtime/image_io.h"
-#include "runtime/image_read.h"
+#include "runtime/image/flip.h"
+#include "runtime/image/image_io.h"
+#include "runtime/image/image_read.h"
 
 namespace fathom::cli {
 namespace {

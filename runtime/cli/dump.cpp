@@ -1,5 +1,5 @@
 // fathom dump: what the compiler made of a scene, after its front end, after a pass, or as bytecode.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
@@ -209,9 +209,10 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
   if (request.region) {
     const std::optional<std::string> listing = region_listing(scene, *request.region);
     if (!listing) {
-      return fail(streams, kBadScene,
-                  "the scene has no regions: it has no bounded part, its program cannot be cut, or cutting it takes too "
-                  "long");
+      return fail(
+          streams, kBadScene,
+          "the scene has no regions: it has no bounded part, its program cannot be cut, or cutting it takes too "
+          "long");
     }
     streams.out << *listing;
   } else if (request.stage >= kBytecode) {

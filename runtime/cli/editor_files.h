@@ -1,5 +1,5 @@
 // What editors read to colour texts in Fathom's own notation, made from the language's tables of words.
-// Tested by: tests/runtime/cli_editor_test.cpp
+// Tested by: tests/runtime/cli/cli_editor_test.cpp
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // fathom emit: the scene's distance function as C++ or GLSL.
-// Tested by: tests/runtime/cli_emit_test.cpp
+// Tested by: tests/runtime/cli/cli_emit_test.cpp
 #include "compiler/emit.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 //     $ fathom eval ball.json --at 0,2,0
 //     1.5 0 1 0 ball
 //
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 
 #include <glm/common.hpp>

@@ -1,6 +1,6 @@
 // What the program's exit status means: the one list, printed by `fathom --help`. The codes above 2 are those of
 // sysexits.h, so that a script can tell what to do next.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <array>

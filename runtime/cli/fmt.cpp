@@ -1,5 +1,5 @@
 // fathom fmt: the layout of scenes in Fathom's own notation.
-// Tested by: tests/runtime/cli_convert_test.cpp
+// Tested by: tests/runtime/cli/cli_convert_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>

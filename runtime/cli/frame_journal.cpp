@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "runtime/atomic_file.h"
+#include "runtime/base/atomic_file.h"
 #include "runtime/cli/render_files.h"
 #include "vm/bytes.h"
 #include "vm/digest.h"

@@ -8,7 +8,7 @@
 // that are there by then: runs of other frames may write to it, too. Where two do so at once a line may be lost,
 // which costs a frame that is rendered again.
 //
-// Tested by: tests/runtime/cli_frames_test.cpp
+// Tested by: tests/runtime/cli/cli_frames_test.cpp
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@
 
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/streams.h"
-#include "runtime/film_file.h"
+#include "runtime/film/film_file.h"
 
 namespace fathom::cli {
 

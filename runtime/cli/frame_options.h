@@ -1,5 +1,5 @@
 // Which moments of a scene that moves are rendered: --frames, --fps and what goes with them.
-// Tested by: tests/runtime/cli_frames_test.cpp
+// Tested by: tests/runtime/cli/cli_frames_test.cpp
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // Messages that wait until it is known whether they are news: of frame after frame the same warnings are said once.
-// Tested by: tests/runtime/cli_frames_test.cpp
+// Tested by: tests/runtime/cli/cli_frames_test.cpp
 #pragma once
 
 #include <ostream>

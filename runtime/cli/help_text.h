@@ -1,5 +1,5 @@
 // Help for people, wrapped to a terminal's width.
-// Tested by: tests/runtime/cli_help_test.cpp
+// Tested by: tests/runtime/cli/cli_help_test.cpp
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // fathom import: models in formats from elsewhere as ordinary scene files.
-// Tested by: tests/runtime/cli_import_test.cpp
+// Tested by: tests/runtime/cli/cli_import_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The files that a scene imports, as they are read from its folder.
-// Tested by: tests/runtime/cli_imports_test.cpp
+// Tested by: tests/runtime/cli/cli_imports_test.cpp
 #pragma once
 
 #include "compiler/frontend/text/imports.h"

@@ -1,7 +1,7 @@
-// Signals while a render is under way: SIGINT, SIGTERM and SIGHUP ask it to stop, and a second SIGINT ends the program
-// at once; SIGHUP and SIGTERM may come twice, from a shell or a queue's task and to its whole group. SIGUSR1 asks for the
-// picture so far. Under nohup SIGHUP stays ignored. Outside the object's life signals do what they did before.
-// Tested by: tests/runtime/cli_checkpoint_test.cpp
+// Signals while a render is under way: SIGINT, SIGTERM and SIGHUP ask it to stop, and a second SIGINT ends the
+// program at once; SIGHUP and SIGTERM may come twice, from a shell or a queue's task and to its whole group. SIGUSR1
+// asks for the picture so far. Under nohup SIGHUP stays ignored. Outside the object's life signals do what they did
+// before. Tested by: tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
 #include <array>

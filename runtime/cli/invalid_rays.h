@@ -1,6 +1,6 @@
 // What `fathom render` says of rays that met a place where the field is not a number: how many, where, and which
 // operation of the scene that is due to.
-// Tested by: tests/runtime/cli_invalid_test.cpp
+// Tested by: tests/runtime/cli/cli_invalid_test.cpp
 #pragma once
 
 #include <cstdint>

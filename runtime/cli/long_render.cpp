@@ -4,7 +4,7 @@
 
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/values.h"
-#include "runtime/noise.h"
+#include "runtime/film/noise.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,5 @@
 // The options of `fathom render` for renders that take long or are done in parts.
-// Tested by: tests/runtime/cli_checkpoint_test.cpp, tests/runtime/cli_merge_test.cpp
+// Tested by: tests/runtime/cli/cli_checkpoint_test.cpp, tests/runtime/cli/cli_merge_test.cpp
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "runtime/cli/arguments.h"
-#include "runtime/options.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

@@ -1,5 +1,5 @@
 // fathom: finds the verb and runs it; `help`, `--help` and `--version` are its own.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // fathom man: the manual page, made of the option tables.
-// Tested by: tests/runtime/cli_completion_test.cpp
+// Tested by: tests/runtime/cli/cli_completion_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "runtime/cli/scene_file.h"
-#include "runtime/film.h"
-#include "runtime/options.h"
+#include "runtime/film/film.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 namespace {

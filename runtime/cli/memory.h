@@ -1,5 +1,5 @@
 // The limit of memory: what a verb is about to take, and whether it may.
-// Tested by: tests/runtime/cli_limits_test.cpp
+// Tested by: tests/runtime/cli/cli_limits_test.cpp
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 #include "compiler/limits.h"
 #include "runtime/cli/render_request.h"
 #include "runtime/cli/streams.h"
-#include "runtime/image_read.h"
-#include "runtime/options.h"
+#include "runtime/image/image_read.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

@@ -1,6 +1,6 @@
 // fathom merge: the films of parts of a render become the film, or the pictures, of the whole. Sums of whole numbers:
 // neither the order of the parts nor how the work was split leaves a trace.
-// Tested by: tests/runtime/cli_merge_test.cpp
+// Tested by: tests/runtime/cli/cli_merge_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "runtime/cli/plan_merge.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/denoise.h"
+#include "runtime/denoise/denoise.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,5 @@
 // What a program spends its time on, by operation and by place in the scene, as tables for people.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <string>

@@ -12,8 +12,8 @@
 #include <system_error>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/atomic_file.h"
-#include "runtime/image_io.h"
+#include "runtime/base/atomic_file.h"
+#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 namespace {

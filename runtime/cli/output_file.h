@@ -1,5 +1,5 @@
 // Pictures as a verb writes them: their names on the command line, and that none takes the place of another file.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <functional>
@@ -13,14 +13,14 @@
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/streams.h"
 #include "runtime/cli/values.h"
-#include "runtime/image_io.h"
+#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 
 // Where a picture goes and in which format.
 struct Output {
   std::string path;                                  // "-": standard output
-  const runtime::ImageFormatInfo* format = nullptr;  // nullptr: a film (runtime/film_file.h)
+  const runtime::ImageFormatInfo* format = nullptr;  // nullptr: a film (runtime/film/film_file.h)
 
   bool standard() const { return path == "-"; }
   bool folder() const { return path.ends_with('/'); }  // of pictures named by their frames

@@ -9,7 +9,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/verbosity.h"
 #include "runtime/render.h"
-#include "runtime/shutter.h"
+#include "runtime/sampling/shutter.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,6 @@
 // One picture of a scene: compiled, with all that it takes beside the scene, and ready to be rendered.
-// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_frames_test.cpp, tests/runtime/cli_shutter_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_frames_test.cpp,
+// tests/runtime/cli/cli_shutter_test.cpp
 #pragma once
 
 #include <memory>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "runtime/cli/render_request.h"
-#include "runtime/region_store.h"
+#include "runtime/field/region_store.h"
 
 namespace fathom::cli {
 

@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/camera.h"
 #include "runtime/cli/render_identity.h"
 #include "runtime/cli/version.h"
+#include "runtime/sampling/camera.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,13 +1,13 @@
 // What an OpenEXR file says of its render: names of pbrt-v4 where it has one, `fathom.` before ours. docs/LAYERS.md
 // lists them.
-// Tested by: tests/runtime/cli_layers_test.cpp
+// Tested by: tests/runtime/cli/cli_layers_test.cpp
 #pragma once
 
 #include "compiler/compiled_scene.h"
-#include "runtime/float_image.h"
-#include "runtime/options.h"
-#include "runtime/partial_render.h"
-#include "runtime/tone.h"
+#include "runtime/film/partial_render.h"
+#include "runtime/image/float_image.h"
+#include "runtime/image/tone.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

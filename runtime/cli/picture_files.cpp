@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include "runtime/cli/picture_attributes.h"
-#include "runtime/film_channels.h"
-#include "runtime/image_exr.h"
+#include "runtime/film/film_channels.h"
+#include "runtime/film/film_layers.h"
+#include "runtime/image/image_exr.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,5 @@
 // The files that pictures are written to: one, or one for each layer, for each -o.
-// Tested by: tests/runtime/cli_layers_test.cpp
+// Tested by: tests/runtime/cli/cli_layers_test.cpp
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/streams.h"
-#include "runtime/film_file.h"
+#include "runtime/film/film_file.h"
 
 namespace fathom::cli {
 

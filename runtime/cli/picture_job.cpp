@@ -13,7 +13,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/picture_warning.h"
 #include "runtime/cli/render_identity.h"
-#include "runtime/denoise.h"
+#include "runtime/denoise/denoise.h"
 
 namespace fathom::cli {
 namespace {

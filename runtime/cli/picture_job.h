@@ -1,6 +1,6 @@
 // A render from its compiled scene to its files: what it goes on from, what is shown and kept meanwhile, and what is
 // written at its end.
-// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_checkpoint_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
 #include <atomic>
@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/file_watch.h"
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/interruption.h"
 #include "runtime/cli/picture.h"
 #include "runtime/cli/picture_files.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/render_request.h"
-#include "runtime/file_watch.h"
 #include "runtime/render.h"
 
 namespace fathom::cli {

@@ -9,8 +9,9 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "runtime/camera.h"
-#include "runtime/image.h"
+#include "runtime/film/film_layers.h"
+#include "runtime/image/image.h"
+#include "runtime/sampling/camera.h"
 #include "vm/evaluate.h"
 
 namespace fathom::cli {

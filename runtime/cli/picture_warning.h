@@ -1,5 +1,5 @@
 // What is said of a picture that shows nothing: no solid in view, black throughout, one color throughout.
-// Tested by: tests/runtime/cli_picture_warning_test.cpp
+// Tested by: tests/runtime/cli/cli_picture_warning_test.cpp
 #pragma once
 
 #include <optional>

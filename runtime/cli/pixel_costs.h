@@ -1,11 +1,11 @@
 // What the pixels of a frame cost, by a small picture of it.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <vector>
 
-#include "runtime/film.h"
-#include "runtime/options.h"
+#include "runtime/film/film.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

@@ -1,5 +1,5 @@
 // fathom plan: a render cut into units for many machines; and how far they are.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

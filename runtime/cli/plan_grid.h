@@ -1,12 +1,12 @@
 // How a plan cuts a render into units, by numbers alone.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
+#include "runtime/base/coverage.h"
 #include "runtime/cli/frame_options.h"
-#include "runtime/coverage.h"
 
 namespace fathom::cli {
 

@@ -7,7 +7,7 @@
 
 #include "runtime/cli/memory.h"
 #include "runtime/cli/plan_status.h"
-#include "runtime/denoise.h"
+#include "runtime/denoise/denoise.h"
 
 namespace fathom::cli {
 

@@ -1,5 +1,5 @@
 // `fathom merge --plan`: the units of a plan become its frames, one after the other.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <optional>

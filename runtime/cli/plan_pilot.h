@@ -1,6 +1,6 @@
 // What the units of a plan will cost: a few frames are rendered small, with few samples, and what each pixel cost is
 // added up over the tiles.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <variant>

@@ -1,5 +1,5 @@
 // How far the units of a plan are, by their files.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <cstdint>

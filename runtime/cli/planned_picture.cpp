@@ -7,7 +7,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/render_identity.h"
 #include "runtime/cli/render_options.h"
-#include "runtime/environment_file.h"
+#include "runtime/light/environment_file.h"
 
 namespace fathom::cli {
 

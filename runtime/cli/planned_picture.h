@@ -1,5 +1,5 @@
 // The frames of a plan, compiled: what its units are rendered of.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // What two programs differ in, for `fathom dump --diff a b`.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // A program as JSON, for other tools: what the listing of vm/disassemble.h says, an instruction a line.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <string>

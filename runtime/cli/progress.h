@@ -2,14 +2,14 @@
 //
 //     42 %   3.1 Mray/s   about 12 s left
 //
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <string>
 #include <utility>
 
 #include "runtime/cli/streams.h"
-#include "runtime/options.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

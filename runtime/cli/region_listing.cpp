@@ -8,7 +8,7 @@
 
 #include "compiler/knowledge.h"
 #include "compiler/limits.h"
-#include "runtime/field.h"
+#include "runtime/field/field.h"
 #include "runtime/render.h"
 #include "vm/check.h"
 #include "vm/disassemble.h"

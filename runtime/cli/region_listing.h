@@ -1,4 +1,4 @@
-// What fathom dump --region prints. Tested by: tests/runtime/cli_dump_test.cpp
+// What fathom dump --region prints. Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>

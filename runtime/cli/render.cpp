@@ -1,5 +1,5 @@
 // fathom render: scene file to pictures. Everything that can be found wrong is found before the first ray.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

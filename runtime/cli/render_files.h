@@ -1,5 +1,5 @@
 // The files that a render writes beside each other: pictures, maps of costs, counts and the checkpoint.
-// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_checkpoint_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
 #include <optional>

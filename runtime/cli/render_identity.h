@@ -1,13 +1,13 @@
 // What makes two renders the same, sample by sample: the scene, its programs and every setting that changes bits, by
 // name. Film files carry it, and a mismatch names what differs.
-// Tested by: tests/runtime/cli_checkpoint_test.cpp
+// Tested by: tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
 #include <string>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/film_file.h"
-#include "runtime/options.h"
+#include "runtime/film/film_file.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

@@ -1,5 +1,5 @@
 // The options of `fathom render`, and which of them `fathom plan` has, too.
-// Tested by: tests/runtime/cli_test.cpp, tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <span>

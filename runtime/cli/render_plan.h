@@ -5,7 +5,7 @@
 //
 // Units are films in a folder beside the plan, frame.json -> frame.units/000/000007.film, by thousands.
 //
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 #include "compiler/source.h"
 #include "runtime/cli/plan_grid.h"
 #include "runtime/cli/scene_file.h"
-#include "runtime/film_file.h"
+#include "runtime/film/film_file.h"
 
 namespace fathom::cli {
 

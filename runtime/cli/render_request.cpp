@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/adaptive.h"
 #include "runtime/cli/checkpoint.h"
 #include "runtime/cli/cost_map.h"
 #include "runtime/cli/sequence.h"
 #include "runtime/cli/standard_output.h"
-#include "runtime/image_io.h"
+#include "runtime/film/adaptive.h"
+#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 namespace {

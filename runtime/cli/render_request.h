@@ -1,5 +1,5 @@
 // The command line of `fathom render` as data, and how it changes a scene.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/unit_options.h"
-#include "runtime/options.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 
@@ -26,7 +26,7 @@ struct RenderRequest {
   bool albedo = false, depth = false, normal = false;
   std::optional<double> aspect, fov;  // width over height; radians
   CameraOptions camera;
-  std::optional<int> resolution;      // width, pixels
+  std::optional<int> resolution;  // width, pixels
   std::optional<PixelSize> size;
   std::optional<CropSides> crop;
   std::optional<double> exposure;  // stops

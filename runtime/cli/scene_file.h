@@ -1,5 +1,5 @@
 // The scene every verb starts from: reading its file, compiling it, printing what is wrong with it.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ struct SceneArguments {
   compiler::Definitions definitions;  // values for the scene's parameters
   compiler::Limits limits;
   std::optional<std::string> root = std::nullopt;  // of the files that the scene may import; its folder
-  bool count_warnings = false;  // say how many there are, even where there is no error
+  bool count_warnings = false;                     // say how many there are, even where there is no error
   // Called with the path of each file that the scene imports, before it is read.
   std::function<void(const std::string& path)> on_import = nullptr;
   // Adds warnings that only the renderer's own tables tell.

@@ -1,5 +1,5 @@
 // fathom schema: what editors want to know of scene files: the JSON Schema, and the words of the notation.
-// Tested by: tests/runtime/cli_dump_test.cpp, tests/runtime/cli_editor_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp, tests/runtime/cli/cli_editor_test.cpp
 #include "compiler/frontend/schema.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // `fathom render --frames`: a picture for each frame, one after the other, in files that have its number in their
 // names; and a journal of them, by which a run that was ended goes on.
-// Tested by: tests/runtime/cli_frames_test.cpp, scripts/frames-test
+// Tested by: tests/runtime/cli/cli_frames_test.cpp, scripts/frames-test
 #pragma once
 
 #include <optional>

@@ -3,8 +3,8 @@
 //     $ fathom slice ball.json --show sign -o ball.png
 //     inside 107968 of 262144 pixels
 //
-// Tested by: tests/runtime/cli_slice_test.cpp
-#include "runtime/slice.h"
+// Tested by: tests/runtime/cli/cli_slice_test.cpp
+#include "runtime/slice/slice.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/image_io.h"
+#include "runtime/image/image_io.h"
 #include "vm/printable.h"
 
 namespace fathom::cli {

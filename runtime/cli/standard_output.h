@@ -1,5 +1,5 @@
 // A render whose picture goes to standard output, by `-o -`.
-// Tested by: tests/runtime/cli_output_test.cpp
+// Tested by: tests/runtime/cli/cli_output_test.cpp
 #pragma once
 
 #include <optional>

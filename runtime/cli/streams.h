@@ -4,7 +4,7 @@
 //     error: unknown option `--sppp`
 //       = help: did you mean `--spp`?
 //
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // fathom tonemap: numbers to a picture. Of the OpenEXR file of a render it makes, bit for bit, the picture that the
 // render would have written itself.
-// Tested by: tests/runtime/cli_layers_test.cpp
+// Tested by: tests/runtime/cli/cli_layers_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
@@ -11,8 +11,8 @@
 #include "runtime/cli/picture_attributes.h"
 #include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/image_io.h"
-#include "runtime/image_read.h"
+#include "runtime/image/image_io.h"
+#include "runtime/image/image_read.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,5 +1,5 @@
 // A program's listing with its stacks at one point after every instruction, for `fathom dump --run`.
-// Tested by: tests/runtime/cli_dump_test.cpp
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>

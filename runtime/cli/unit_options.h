@@ -1,5 +1,5 @@
 // The options of `fathom render` that name units of a plan (runtime/cli/render_plan.h).
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // `fathom render --plan`: units of a plan, one after the other, each to a film of its own that appears whole or not
 // at all. A unit that is there and whole is left as it is.
-// Tested by: tests/runtime/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
 #include <optional>

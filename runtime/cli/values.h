@@ -2,7 +2,7 @@
 //
 // Every reader stores into its last argument and returns nullopt, or leaves it alone and returns what is wrong. A
 // Setter is a reader with its target bound, ready for Arguments::option.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <cstdint>

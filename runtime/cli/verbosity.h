@@ -4,14 +4,14 @@
 //     2  the compiler's passes and the size after each        5  how often each operation occurs
 //     3  instruction set, threads, settings, bounds           6  the listings
 //
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <chrono>
 
 #include "compiler/compile.h"
 #include "runtime/cli/streams.h"
-#include "runtime/options.h"
+#include "runtime/path/options.h"
 
 namespace fathom::cli {
 

@@ -1,5 +1,5 @@
 // The verbs of the program: the one table that `fathom --help`, the dispatch, did-you-mean, completion and man read.
-// Tested by: tests/runtime/cli_test.cpp
+// Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The program's version: that of project() in CMakeLists.txt, which tests/runtime/cli_test.cpp compares it with.
+// The program's version: that of project() in CMakeLists.txt, which tests/runtime/cli/cli_test.cpp compares it with.
 #pragma once
 
 #include <string_view>

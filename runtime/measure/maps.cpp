@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/camera.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
+#include "runtime/sampling/camera.h"
 
 namespace fathom::runtime {
 namespace {

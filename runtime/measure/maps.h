@@ -1,11 +1,11 @@
 // Chart C: what a picture's camera rays cost and how far off they are, pixel by pixel.
-// Tested by: tests/runtime/chart_measure_test.cpp
+// Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
 #include <vector>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/field.h"
+#include "runtime/field/field.h"
 
 namespace fathom::runtime {
 

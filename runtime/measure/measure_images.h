@@ -1,6 +1,6 @@
 // The measuring half of chart B: small pictures of a scene drawn in several ways, at several numbers of samples and
 // with several seeds, against a reference whose rays were all searched in double. Tested by:
-// tests/runtime/chart_measure_test.cpp
+// tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "runtime/chart/measurements.h"
-#include "runtime/options.h"
+#include "runtime/path/options.h"
 
 namespace fathom::runtime {
 

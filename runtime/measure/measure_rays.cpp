@@ -5,9 +5,9 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 #include "runtime/measure/stopwatch.h"
-#include "runtime/surface.h"
+#include "runtime/path/surface.h"
 
 namespace fathom::runtime {
 namespace {

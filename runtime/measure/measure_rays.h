@@ -1,13 +1,13 @@
 // The measuring half of chart A: every method on every class of rays, timed side by side on one pinned thread and
-// compared with the certified search in double. Tested by: tests/runtime/chart_measure_test.cpp
+// compared with the certified search in double. Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "runtime/chart/measurements.h"
+#include "runtime/march/method.h"
 #include "runtime/measure/ray_sets.h"
-#include "runtime/method.h"
 
 namespace fathom::runtime {
 

@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "runtime/camera.h"
-#include "runtime/march.h"
+#include "runtime/march/march.h"
+#include "runtime/sampling/camera.h"
 
 namespace fathom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // The rays that `fathom chart` follows: what a camera sends, what bounces off surfaces, and what barely touches them.
-// Tested by: tests/runtime/chart_measure_test.cpp
+// Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/field.h"
-#include "runtime/ray.h"
+#include "runtime/field/field.h"
+#include "runtime/march/ray.h"
 
 namespace fathom::runtime {
 

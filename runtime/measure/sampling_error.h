@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/sampler.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::runtime {
 

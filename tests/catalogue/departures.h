@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/surface.h"
+#include "runtime/path/surface.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
 

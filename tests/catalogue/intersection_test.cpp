@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "runtime/certify.h"
+#include "runtime/march/certify.h"
 #include "tests/catalogue/naive.h"
 #include "tests/support/effort.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random_scene.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "compiler/affine.h"
-#include "runtime/field.h"
+#include "runtime/field/field.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "runtime/camera.h"
+#include "runtime/sampling/camera.h"
 #include "tests/support/random_scene.h"
 
 namespace fathom::framing_test {

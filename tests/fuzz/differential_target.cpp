@@ -12,7 +12,7 @@
 #include "compiler/fuse.h"
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
-#include "runtime/regions.h"
+#include "runtime/field/regions.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/judge.h"

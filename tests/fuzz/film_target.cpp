@@ -3,9 +3,9 @@
 // or written again as the bytes it was read from.
 #include <algorithm>
 
-#include "runtime/film_file.h"
-#include "runtime/film_header_bytes.h"
-#include "runtime/tiles.h"
+#include "runtime/base/tiles.h"
+#include "runtime/film/film_file.h"
+#include "runtime/film/film_header_bytes.h"
 #include "tests/fuzz/target.h"
 #include "vm/bytes.h"
 #include "vm/digest.h"

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
-#include "runtime/environment_file.h"
-#include "runtime/film_channels.h"
-#include "runtime/image_exr.h"
-#include "runtime/image_io.h"
+#include "runtime/film/film_channels.h"
+#include "runtime/film/film_layers.h"
+#include "runtime/image/image_exr.h"
+#include "runtime/image/image_io.h"
+#include "runtime/light/environment_file.h"
 #include "tests/fuzz/target.h"
 
 namespace fathom::fuzz {

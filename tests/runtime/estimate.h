@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/film.h"
+#include "runtime/film/film.h"
 
 namespace fathom::runtime {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runtime/render.h"
-#include "runtime/shutter.h"
+#include "runtime/sampling/shutter.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::motion_blur_test {

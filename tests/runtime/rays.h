@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "runtime/march.h"
+#include "runtime/march/march.h"
 
 namespace fathom::runtime {
 

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "runtime/film_channels.h"
-#include "runtime/tiles.h"
+#include "runtime/base/tiles.h"
+#include "runtime/film/film_channels.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "runtime/film_file.h"
+#include "runtime/film/film_file.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "runtime/warp.h"
+#include "runtime/sampling/warp.h"
 
 namespace fathom::test {
 namespace {

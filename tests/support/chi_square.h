@@ -15,7 +15,7 @@
 #include <span>
 #include <string>
 
-#include "runtime/sampler.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::test {
 

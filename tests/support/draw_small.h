@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compiler/compiled_scene.h"
-#include "runtime/field.h"
+#include "runtime/field/field.h"
 #include "runtime/render.h"
 
 namespace fathom::test {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "runtime/environment_file.h"
-#include "runtime/sampler.h"
+#include "runtime/light/environment_file.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::test {
 

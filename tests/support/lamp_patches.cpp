@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "runtime/sampler.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::test {
 

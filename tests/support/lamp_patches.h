@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "compiler/compiled_scene.h"
-#include "runtime/light_shapes.h"
+#include "runtime/light/light_shapes.h"
 #include "tests/support/chi_square.h"
 
 namespace fathom::test {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/bsdf.h"
-#include "runtime/sampler.h"
+#include "runtime/material/bsdf.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "runtime/render.h"
-#include "runtime/sampler.h"
+#include "runtime/sampling/sampler.h"
 
 namespace fathom::tests {
 

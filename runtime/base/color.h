@@ -1,0 +1,11 @@
+// What of a colour the eye sees as light.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace fathom::runtime {
+
+// The Y of CIE XYZ. Source: IEC 61966-2-1:1999.
+inline float luminance(glm::vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+}  // namespace fathom::runtime

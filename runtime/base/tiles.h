@@ -1,0 +1,52 @@
+// A rectangle of pixels cut into squares, which threads take one after another.
+// Tested by: tests/runtime/render_test.cpp
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "runtime/base/pixel_rect.h"
+
+namespace fathom::runtime {
+
+// The side that cuts so many pixels into enough tiles for `threads`: `most`, or less when the picture is small. The
+// last tiles keep some threads waiting for one tile's time.
+inline constexpr int kTilesPerThread = 64;
+inline int tile_side(int width, int height, int most, int threads) {
+  const auto pieces = [](int length, int side) { return (length + side - 1) / side; };
+  int side = most;
+  while (side > 1 &&
+         std::int64_t{pieces(width, side)} * pieces(height, side) < std::int64_t{kTilesPerThread} * threads) {
+    side = (side + 1) / 2;
+  }
+  return side;
+}
+
+// Tiles in rows from the top; the last of a row or column may be cut short. take() is safe from any thread.
+class Tiles {
+ public:
+  Tiles(PixelRect area, int side) : area_(area), side_(side) {}
+
+  std::int64_t count() const { return std::int64_t{columns()} * ((area_.height() + side_ - 1) / side_); }
+  PixelRect at(std::int64_t index) const {
+    const int x = area_.x0 + static_cast<int>(index % columns()) * side_;
+    const int y = area_.y0 + static_cast<int>(index / columns()) * side_;
+    return PixelRect{x, y, std::min(area_.x1, x + side_), std::min(area_.y1, y + side_)};
+  }
+
+  std::optional<PixelRect> take() {
+    const std::int64_t index = next_.fetch_add(1, std::memory_order_relaxed);
+    return index < count() ? std::optional(at(index)) : std::nullopt;
+  }
+
+ private:
+  int columns() const { return (area_.width() + side_ - 1) / side_; }
+
+  PixelRect area_;
+  int side_;
+  std::atomic<std::int64_t> next_{0};
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,178 @@
+#include "runtime/field/field.h"
+
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "runtime/field/region_plan.h"
+#include "runtime/field/region_store.h"
+#include "vm/check.h"
+#include "vm/convexity.h"
+
+namespace fathom::runtime {
+namespace {
+
+struct Line {
+  glm::dvec3 origin, direction;
+};
+
+// The i-th of some lines through the scene, followed to where it is near a surface; nothing when it comes to none.
+// Places and directions anywhere: multiples of irrational numbers, modulo 1.
+std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i, double near,
+                                    vm::Workspace& workspace) {
+  constexpr int kSteps = 64;
+  const auto part = [i](double number) { return number * i - std::floor(number * i); };
+  const glm::dvec3 share(part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703));
+  const glm::dvec3 aim(part(0.4503258693318263), part(0.3688964747453183), part(0.3021964744936211));
+  Line line{scene.contents.lo + share * (scene.contents.hi - scene.contents.lo), glm::normalize(aim - 0.5)};
+  for (int step = 0; step < kSteps; ++step) {
+    const double distance = std::abs(vm::evaluate_distance(scene.distance, line.origin, workspace));
+    if (distance < near) return line;
+    line.origin += distance / scene.lipschitz * line.direction;
+  }
+  return std::nullopt;
+}
+
+// Field::longest_told, of lengths eight times shorter one after another.
+double longest_told(const compiler::CompiledField& scene, double extent) {
+  constexpr int kLengths = 14, kLines = 32;
+  constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
+  if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
+  vm::Workspace workspace;
+  std::vector<Line> lines;
+  for (int i = 1; i <= kLines; ++i) {
+    if (const auto line = line_at_surface(scene, i, kNear * extent, workspace)) lines.push_back(*line);
+  }
+  double length = extent;
+  for (int i = 0; i < kLengths; ++i, length /= 8) {
+    const bool told = std::all_of(lines.begin(), lines.end(), [&](const Line& line) {
+      const vm::Range slope =
+          vm::evaluate_along(scene.distance, line.origin, line.direction, 0, length, workspace).derivative;
+      return slope.hi - slope.lo < kTold * 2 * scene.lipschitz;
+    });
+    if (told) return length;
+  }
+  return 0;
+}
+
+// What regions are to cover.
+const compiler::Box& contents_of(const Field& field, const compiler::CompiledField& compiled) {
+  return field.bound.finite() ? field.bound : compiled.contents;
+}
+
+// A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a float
+// tells apart would be of no use (kCellMargin in region_splitter.h).
+int room_of(const Field& field, const compiler::CompiledField& compiled) {
+  constexpr int kLeastRoom = 3, kMostRoom = 6;
+  if (field.bound.finite() || compiled.contents.empty()) return 0;
+  const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
+  const double edge = std::max({extents.x, extents.y, extents.z});
+  int room = kLeastRoom;
+  while (room < kMostRoom && edge * (1 << room) < 2 * field.far) ++room;
+  return room;
+}
+
+// A large scene takes the same steps with regions as without. They know neither how far the solid is convex, but
+// within a cell, nor what the field does along a line, which asked of the whole program costs more than it tells.
+void become_large(Field& field, const FarLevels& levels) {
+  field.far_levels = levels;
+  field.convex = false;
+  field.longest_told = 0;
+}
+
+}  // namespace
+
+double extent_of(const compiler::CompiledScene& scene) {
+  double extent = glm::length(scene.camera.target - scene.camera.position);
+  if (!(extent > 0)) extent = 1;
+  if (scene.bound.empty() || !scene.bound.finite()) return extent;
+  return std::min(extent, glm::length(scene.bound.hi - scene.bound.lo) / 2);
+}
+
+Field make_field(const compiler::CompiledScene& scene, std::optional<double> far) {
+  return make_field(scene, extent_of(scene), far);
+}
+
+Field make_field(const compiler::CompiledField& compiled, double extent, std::optional<double> far) {
+  CHECK(compiled.lipschitz > 0, "a field that never changes has no surface to march to");
+  // A crossing is tried within this part of the extent. Smaller: more evaluations near the surface; larger: a chord
+  // shorter than it may be missed beside a surface that is met head-on.
+  constexpr double kBand = 1e-4;
+  // The bound's surface may be the solid's, and a ray must see both sides of it.
+  constexpr double kBoundMargin = 1e-3;
+
+  Field field{};
+  field.distance = &compiled.distance;
+  field.surface = &compiled.surface;
+  field.bound = compiled.bound.grown(kBoundMargin * extent);
+  field.lipschitz = compiled.lipschitz;
+  field.longest_told = longest_told(compiled, extent);
+  field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
+  field.magnitude = static_cast<float>(compiled.magnitude);
+  field.band = static_cast<float>(kBand * extent);
+  // What it costs to know how far the solid is convex pays where that is seldom no further than the distance.
+  constexpr double kConvexShare = 0.25;
+  field.convex = vm::convex_share(compiled.distance) >= kConvexShare;
+  // Where the bound does not end a ray, `far` has to: certify() needs an end. No number of a scene is larger.
+  constexpr double kFarthest = 1e18;
+  const bool bounded = compiled.bound.empty() || compiled.bound.finite();
+  field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
+  if (!bounded) field.far = std::min(field.far, kFarthest);
+  const auto regions = plan_regions(compiled.surface, contents_of(field, compiled), room_of(field, compiled));
+  if (regions) become_large(field, regions->far);
+  return field;
+}
+
+void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options) {
+  RegionOptions chosen = options;
+  chosen.room = room_of(field, compiled);
+  chosen.magnitude = field.magnitude;
+  const compiler::Box& contents = contents_of(field, compiled);
+  field.regions = options.store ? options.store->build(compiled.surface, contents, chosen)
+                                : Regions::build(compiled.surface, contents, chosen);
+  if (field.regions) become_large(field, field.regions->far_levels());
+}
+
+double Field::rounded(double value, glm::dvec3 point) const {
+  if (!far_levels.used()) return value;
+  const glm::vec3 p(point);
+  return far_levels(value, p.x, p.y, p.z);
+}
+
+void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
+                     vm::Workspace& workspace) const {
+  if (evaluator) return evaluator(points, count, out);
+  if (regions) return regions->evaluate(points, count, out, scratch, workspace);
+  vm::evaluate_distance(*distance, points, count, out, workspace);
+  far_levels.apply(points, count, out);
+}
+
+double Field::evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const {
+  if (regions) return regions->evaluate(point, scratch, instructions);
+  instructions += distance->instructions();
+  return rounded(vm::evaluate_distance(*distance, point, scratch.workspace), point);
+}
+
+void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
+                     RealScratch& scratch) const {
+  if (!regions) {
+    std::fill_n(instructions, count, distance->instructions());
+    vm::evaluate_distance(*distance, points, count, out, scratch.workspace);
+    for (std::size_t i = 0; i < count; ++i) out[i] = rounded(out[i], {points.x[i], points.y[i], points.z[i]});
+    return;
+  }
+  // Points of different rays share no part.
+  for (std::size_t i = 0; i < count; ++i) {
+    instructions[i] = 0;
+    out[i] = regions->evaluate(glm::dvec3(points.x[i], points.y[i], points.z[i]), scratch, instructions[i]);
+  }
+}
+
+std::optional<vm::AlongLine> Field::along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                                          RealScratch& scratch, std::uint64_t& instructions) const {
+  instructions += distance->instructions();
+  return vm::evaluate_along(*distance, origin, direction, begin, end, scratch.workspace);
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,236 @@
+#include "runtime/field/region_builder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "runtime/field/region_splitter.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Node = Regions::Node;
+using Kind = Regions::Kind;
+
+// The top levels that are a grid, at most; it takes at most this share of the memory, and no more than all else.
+constexpr int kMostGridLevel = 6;
+constexpr std::size_t kGridShare = 8;
+// What the whole program takes as a part and as rows of constants.
+constexpr std::size_t kBytesPerWord = 24;
+// What cutting a program takes for each choice and each instruction in it (vm/specialise.h), measured.
+constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
+// How many times what regions may take is there to build them: for cutting programs, and for cells to be split.
+constexpr std::size_t kBuildShare = 2;
+// Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
+// one.
+constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
+// Choices of the whole program for each time that leaves are longer than they should be.
+constexpr std::uint32_t kWorthShorter = 64;
+// How far outside the root rays are followed, in its edges.
+constexpr float kOutsideSize = 64;
+
+// What it takes to cut a program, and its parts for the eight children of a cell.
+std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::size_t part) {
+  return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
+}
+
+}  // namespace
+
+RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options)
+    : options_(options), plan_(plan), program_(program), regions_(std::make_shared<Regions>()) {
+  regions_->whole_ = program;
+  regions_->far_ = plan.far;
+  std::copy(plan.lo.begin(), plan.lo.end(), regions_->tree_.lo);
+  regions_->tree_.size = plan.size;
+  regions_->tree_.levels = plan.levels;
+  most_work_ = static_cast<std::size_t>(
+      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
+}
+
+std::shared_ptr<const Regions> RegionBuilder::build() {
+  const auto start = std::chrono::steady_clock::now();
+  if (program_.size * kBytesPerWord > options_.memory) return nullptr;
+  if (cutting_bytes(plan_.choices, plan_.instructions, 0) > kBuildShare * options_.memory) return nullptr;
+  regions_->whole_part_ = vm::whole(program_);
+  regions_->constants_.emplace(program_);
+  if (!split_root()) return nullptr;
+  close_outside();
+  choose_grid();
+  make_grid();
+  count_bytes();
+  regions_->facts_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return regions_;
+}
+
+// What takes too much is cut into fewer, longer leaves, for half the work; leaves that are not much shorter than the
+// whole are not worth it, for an instruction of one costs as much as many of the whole.
+bool RegionBuilder::split_root() {
+  const float all = std::numeric_limits<float>::infinity();
+  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, most_work_ /= 2) {
+    if (plan_.instructions > most_work_) return false;  // of the root alone
+    regions_->nodes_.assign(1, {});
+    regions_->pool_ = {}, regions_->skeletons_ = {};
+    regions_->facts_ = {};
+    bytes_ = regions_->constants_->bytes();
+    work_ = 0, pending_bytes_ = 0;
+    split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
+    if (interrupted_) return false;
+    if (!is_in_vain()) return true;
+  }
+  return false;
+}
+
+bool RegionBuilder::is_in_vain() const {
+  return bytes_ > options_.memory || pending_bytes_ > kBuildShare * options_.memory || work_ > most_work_ ||
+         interrupted_;
+}
+
+// As many threads as there is memory to cut the largest of the cells' parts in each.
+std::size_t RegionBuilder::threads_for(const std::vector<Cell>& cells) const {
+  std::size_t largest = 0;
+  for (const Cell& cell : cells) {
+    largest = std::max(largest, cutting_bytes(cell.part.choices, cell.part.sources.size(), cell.part.bytes()));
+  }
+  const std::size_t affordable =
+      std::max<std::size_t>(1, kBuildShare * options_.memory / std::max<std::size_t>(1, largest));
+  return std::min({static_cast<std::size_t>(std::max(1, options_.threads)), cells.size(), affordable});
+}
+
+void RegionBuilder::split_all(std::vector<Cell> cells) {
+  while (!cells.empty() && !is_in_vain()) {
+    std::vector<Piece> pieces(cells.size());
+    pending_bytes_ = 0;
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      Splitter splitter(*this);
+      for (std::size_t i = next++; i < cells.size(); i = next++) {
+        splitter.run(cells[i], pieces[i]);
+        cells[i].part = {};
+      }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t i = threads_for(cells); i > 1; --i) threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads) thread.join();
+    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, pending_bytes_);
+    if (is_in_vain()) return;
+    append_all(cells, pieces);
+  }
+}
+
+// In the order of the cells, which the cells that are still to be split take the place of.
+void RegionBuilder::append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces) {
+  std::size_t nodes = regions_->nodes_.size(), words = regions_->pool_.size();
+  for (const Piece& piece : pieces) nodes += piece.nodes.size(), words += piece.pool.size();
+  regions_->nodes_.reserve(nodes), regions_->pool_.reserve(words);
+  std::vector<Cell> pending;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t first = append(pieces[i]);
+    regions_->nodes_[cells[i].node] = make_node(Kind::Inner, first, 0);
+    for (Cell& cell : pieces[i].pending) {
+      cell.node += first;
+      pending.push_back(std::move(cell));
+    }
+    pieces[i] = {};
+  }
+  cells = std::move(pending);
+}
+
+// The number its first node gets.
+std::uint32_t RegionBuilder::append(Piece& piece) {
+  Regions& r = *regions_;
+  const auto first = static_cast<std::uint32_t>(r.nodes_.size());
+  const auto pool = static_cast<std::uint32_t>(r.pool_.size());
+  for (const std::uint32_t at : piece.programs) r.skeletons_.adopt(piece.skeletons, piece.pool.data(), at);
+  for (Node node : piece.nodes) {
+    if (node.kind() == Kind::Inner) node.ref += first;
+    if (node.kind() == Kind::Program) node.ref += pool;
+    r.nodes_.push_back(node);
+  }
+  r.pool_.insert(r.pool_.end(), piece.pool.begin(), piece.pool.end());
+  r.facts_.far += piece.facts.far, r.facts_.programs += piece.facts.programs;
+  return first;
+}
+
+// What matters outside the root, beyond each of its faces, where the cap is at its highest.
+void RegionBuilder::close_outside() {
+  Regions& r = *regions_;
+  const float infinity = std::numeric_limits<float>::infinity();
+  r.outside_.fill(make_node(Kind::Program, Regions::kWhole, infinity));
+  if (plan_.room == 0) return;  // no ray goes there
+  BoxArrays boxes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill_n(boxes.lo[axis], vm::kEnclosedBoxes, -infinity);
+    std::fill_n(boxes.hi[axis], vm::kEnclosedBoxes, infinity);
+    const float margin = r.tree_.size * static_cast<float>(kCellMargin), near = r.tree_.lo[axis];
+    boxes.hi[axis][2 * axis] = near + margin;
+    boxes.lo[axis][2 * axis + 1] = near + r.tree_.size - margin;
+  }
+  vm::Specialiser specialiser;
+  vm::Workspace workspace;
+  specialiser.look(r.whole_part_, boxes.view(), workspace);
+  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.magnitude));
+  for (std::size_t i = 0; i < r.outside_.size(); ++i) {
+    vm::Part part;
+    specialiser.part(i, part);
+    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), r.far_.most);
+  }
+}
+
+void RegionBuilder::choose_grid() {
+  const std::size_t rest = bytes_, most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
+  const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
+  int level = std::min(kMostGridLevel, regions_->tree_.levels);
+  while (level > 0 && bytes(level) > most) --level;
+  regions_->tree_.grid_level = level;
+}
+
+// Puts the cells of the grid's level, or the leaves they are in, before the tree's nodes.
+void RegionBuilder::make_grid() {
+  Regions& r = *regions_;
+  r.tree_.scale = static_cast<float>(1u << r.tree_.levels) / r.tree_.size;
+  const std::uint32_t edge = 1u << r.tree_.grid_level;
+  std::vector<Node> all(std::size_t{edge} * edge * edge);
+  all.reserve(all.size() + r.nodes_.size());
+  const auto first = static_cast<std::uint32_t>(all.size());
+  for (std::uint32_t i = 0; i < first; ++i) {
+    const std::uint32_t cell[3] = {i % edge, i / edge % edge, i / edge / edge};
+    std::uint32_t index = 0;
+    for (int shift = r.tree_.grid_level; shift > 0 && r.nodes_[index].kind() == Kind::Inner;) {
+      --shift;
+      index = r.nodes_[index].payload() +
+              ((cell[0] >> shift & 1) | (cell[1] >> shift & 1) << 1 | (cell[2] >> shift & 1) << 2);
+    }
+    all[i] = r.nodes_[index];
+  }
+  all.insert(all.end(), r.nodes_.begin(), r.nodes_.end());
+  for (Node& node : all) {
+    if (node.kind() == Kind::Inner) node.ref += first;
+  }
+  r.nodes_ = std::move(all);
+  r.pool_.shrink_to_fit();
+  static_assert(sizeof(Node) == 2 * sizeof(std::uint32_t));
+  r.tree_.nodes = reinterpret_cast<const std::uint32_t*>(r.nodes_.data());
+}
+
+void RegionBuilder::count_bytes() {
+  Regions& r = *regions_;
+  r.facts_.levels = r.tree_.levels;
+  r.facts_.skeletons = r.skeletons_.size();
+  r.constants_->forget_rows();
+  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
+                   r.constants_->bytes();
+  constexpr std::size_t kCache = 1u << 20;
+  r.tree_.beyond_cache = r.facts_.bytes > kCache;
+}
+
+std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,
+                                              const RegionOptions& options) {
+  const std::optional<RegionPlan> plan = plan_regions(program, contents, options.room, options.always);
+  return plan ? RegionBuilder(program, *plan, options).build() : nullptr;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,87 @@
+#include "runtime/field/region_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vm/expression.h"
+#include "vm/part.h"
+
+namespace fathom::runtime {
+namespace {
+
+// Programs cheaper than this, in multiply-adds, are as fast whole (bench/culling.cpp).
+constexpr std::uint64_t kLeastCost = 2500;
+// The smallest cells: so many levels below that with as many cells as there are choices.
+constexpr int kExtraLevels = 3, kMostLevels = 10;
+// The first level of distances, in edges of a cell: the largest power of two of which there are as many in the
+// contents as there are choices. By products alone, for it decides bits of pictures.
+constexpr double kFirstLevel = 0.5;
+// No contents are flatter than this, relative to their longest side, when their volume is shared out.
+constexpr double kFlattest = 1.0 / 1024;
+// The highest distance outside the contents, in edges of the root.
+constexpr float kHighest = 0.1f;
+
+// Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
+// granted.
+bool is_unfolded(const vm::Code& code) {
+  for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
+    if (vm::find_opcode(code.words[at] & 0xff)->form != vm::Form::Binary) continue;
+    const vm::Sources sources = vm::sources_of(code.words[at]);
+    if (sources.a == vm::Source::Constant && sources.b == vm::Source::Constant) return true;
+  }
+  return false;
+}
+
+std::uint64_t cost_of(const vm::Code& code) {
+  std::uint64_t cost = 0;
+  for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
+    cost += vm::instruction_cost(code.words[at]);
+  }
+  return cost;
+}
+
+FarLevels far_levels(const compiler::Box& contents, const RegionPlan& plan) {
+  const glm::dvec3 extents = contents.hi - contents.lo;
+  const double edge = std::max({extents.x, extents.y, extents.z});
+  double volume = 1;
+  for (int axis = 0; axis < 3; ++axis) volume *= std::max(extents[axis], kFlattest * edge);
+  double cell = std::ldexp(1.0, std::ilogb(edge));
+  while (cell * cell * cell * static_cast<double>(plan.choices) > volume) cell /= 2;
+  FarLevels far;
+  far.first = static_cast<float>(kFirstLevel * cell);
+  far.most = std::max(far.first, kHighest * plan.size);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    far.lo[axis] = static_cast<float>(contents.lo[static_cast<int>(axis)]);
+    far.hi[axis] = static_cast<float>(contents.hi[static_cast<int>(axis)]);
+  }
+  return far;
+}
+
+}  // namespace
+
+// The root is a cube round the contents, with room about them; cells are as small as the contents alone warrant.
+std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::Box& contents, int room,
+                                       bool always) {
+  if (contents.empty() || !contents.finite()) return std::nullopt;
+  const glm::dvec3 middle = (contents.lo + contents.hi) / 2.0, extents = contents.hi - contents.lo;
+  const double edge = std::max({extents.x, extents.y, extents.z});
+  if (!(edge > 0) || (!always && cost_of(program) < kLeastCost)) return std::nullopt;
+  vm::Expression expression;
+  if (!expression.read(program) || is_unfolded(program)) return std::nullopt;
+  RegionPlan plan{};
+  plan.choices = std::max<std::size_t>(1, expression.choices().size());
+  plan.instructions = expression.nodes().size();
+  plan.room = room;
+  plan.size = static_cast<float>(edge * 1.001 * (1 << room));
+  for (int axis = 0; axis < 3; ++axis) {
+    plan.lo[static_cast<std::size_t>(axis)] = static_cast<float>(middle[axis] - static_cast<double>(plan.size) / 2);
+  }
+  const int levels =
+      kExtraLevels + static_cast<int>(std::ceil(std::log2(std::cbrt(static_cast<double>(plan.choices)))));
+  plan.levels = std::min(levels, kMostLevels) + room;
+  plan.far = far_levels(contents, plan);
+  if (!(plan.far.first > 0)) return std::nullopt;
+  return plan;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,175 @@
+#include "runtime/field/region_splitter.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fathom::runtime {
+namespace {
+
+// Choices in a program short enough for a leaf.
+constexpr std::uint32_t kLeafChoices = 4;
+// Cells are split no further after so many levels at which their parts did not get this much shorter.
+constexpr double kShorterPart = 0.9;
+constexpr int kMostIdle = 2;
+// Cells down to this level are shared out among the threads.
+constexpr int kShared = 2;
+
+}  // namespace
+
+RegionBuilder::Splitter::Splitter(RegionBuilder& builder)
+    : builder_(builder),
+      regions_(*builder.regions_),
+      levels_(regions_.tree_.levels),
+      leaf_choices_(builder.longer_ * kLeafChoices),
+      parts_(static_cast<std::size_t>(levels_) + 1) {}
+
+void RegionBuilder::Splitter::run(const Cell& cell, Piece& piece) {
+  piece_ = &piece;
+  piece.nodes.resize(8);
+  split(cell.part, cell.at, cell.level, cell.limit, cell.idle, 0);
+}
+
+void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far,
+                                    std::uint32_t first) {
+  builder_.work_ += part.sources.size();
+  if (builder_.is_in_vain()) return;
+  if (builder_.options_.interrupted && builder_.options_.interrupted()) {
+    builder_.interrupted_ = true;
+    return;
+  }
+  const int below = level + 1;
+  const std::size_t bytes_before = bytes_of(*piece_);
+  const BoxArrays boxes = children_of(at, below);
+  specialiser_.look(part, boxes.view(), workspace_);
+  const Limits limits = limits_of(boxes, limit);
+  Children done = make_far(limits, first);
+  Parts& parts = parts_[static_cast<std::size_t>(below)];
+  make_parts(limits, below, first, done, parts);
+  builder_.bytes_ += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    if (done[i]) continue;
+    const double shorter = static_cast<double>(parts[i].words.size()) / static_cast<double>(part.words.size());
+    const Place cell = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2)};
+    go_on(parts[i], shorter, cell, below, limits[i], idle_so_far, first + i);
+  }
+}
+
+void RegionBuilder::Splitter::go_on(vm::Part& child, double shorter, const Place& at, int level, float limit,
+                                    int idle_so_far, std::uint32_t node) {
+  const int idle = shorter < kShorterPart || level <= builder_.options_.room ? 0 : idle_so_far + 1;
+  if (idle > kMostIdle) return make_leaf(child, limit, node);
+  if (level <= kShared) {
+    builder_.pending_bytes_ += child.bytes();
+    piece_->pending.push_back({at, level, limit, idle, std::move(child), node});
+    return;
+  }
+  const auto grandchildren = static_cast<std::uint32_t>(piece_->nodes.size());
+  piece_->nodes.resize(grandchildren + 8);
+  piece_->nodes[node] = make_node(Kind::Inner, grandchildren, 0);
+  split(child, at, level, limit, idle, grandchildren);
+}
+
+RegionBuilder::Splitter::Limits RegionBuilder::Splitter::limits_of(const BoxArrays& boxes, float limit) const {
+  Limits limits;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const float most = std::min(limit, regions_.far_.cap({boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]},
+                                                         {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]}));
+    const float hi = specialiser_.hi(i), highest = std::min(hi + error_ + kCellError * std::abs(hi), most);
+    limits[i] = std::max(regions_.far_.first, regions_.far_.level(highest));
+  }
+  return limits;
+}
+
+RegionBuilder::Splitter::Children RegionBuilder::Splitter::make_far(const Limits& limits, std::uint32_t first) {
+  Children far;
+  for (std::uint32_t i = 0; i < far.size(); ++i) {
+    far[i] = specialiser_.lo(i) * (1 - kCellError) - error_ >= limits[i];
+    if (!far[i]) continue;
+    piece_->nodes[first + i] = make_node(Kind::Far, 0, limits[i]);
+    ++piece_->facts.far;
+  }
+  return far;
+}
+
+void RegionBuilder::Splitter::make_parts(const Limits& limits, int level, std::uint32_t first, Children& done,
+                                         Parts& parts) {
+  Children seen = done;
+  for (std::size_t begin = 0; begin < seen.size(); ++begin) {
+    if (seen[begin]) continue;
+    specialiser_.decide(-std::numeric_limits<float>::infinity(), limits[begin], error_);
+    for (std::size_t i = begin; i < seen.size(); ++i) {
+      if (seen[i] || limits[i] != limits[begin]) continue;
+      seen[i] = true;
+      specialiser_.part(i, parts[i]);
+      done[i] = specialiser_.choices_left(i) <= leaf_choices_ || level >= levels_;
+      if (done[i]) make_leaf(parts[i], limits[i], first + static_cast<std::uint32_t>(i));
+    }
+  }
+}
+
+BoxArrays RegionBuilder::Splitter::children_of(const Place& at, int level) {
+  BoxArrays boxes;
+  const double size = static_cast<double>(regions_.tree_.size), edge = size / (1u << level),
+               margin = size * kCellMargin;
+  float largest = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const double lo = static_cast<double>(regions_.tree_.lo[axis]) + edge * (2.0 * at[axis] + (i >> axis & 1));
+      boxes.lo[axis][i] = static_cast<float>(lo - margin), boxes.hi[axis][i] = static_cast<float>(lo + edge + margin);
+      largest = std::max({largest, -boxes.lo[axis][i], boxes.hi[axis][i]});
+    }
+  }
+  error_ = kCellError * (largest + builder_.options_.magnitude);
+  return boxes;
+}
+
+std::size_t RegionBuilder::Splitter::bytes_of(const Piece& piece) {
+  return (piece.pool.size() + piece.programs.size() + piece.slots.size()) * sizeof(std::uint32_t) +
+         piece.skeletons.bytes();
+}
+
+void RegionBuilder::Splitter::make_leaf(const vm::Part& part, float limit, std::uint32_t node) {
+  const std::uint32_t at = piece_->skeletons.pack(part, *regions_.constants_, piece_->pool);
+  piece_->nodes[node] = make_node(Kind::Program, intern(at), limit);
+  ++piece_->facts.programs;
+}
+
+std::uint32_t RegionBuilder::Splitter::intern(std::uint32_t start) {
+  Piece& piece = *piece_;
+  piece.programs.push_back(start);
+  if (2 * piece.programs.size() > piece.slots.size()) grow_slots();
+  std::uint32_t& slot = piece.slots[slot_of(program(piece.programs.size() - 1))];
+  if (slot == 0) {
+    slot = static_cast<std::uint32_t>(piece.programs.size());
+    return start;
+  }
+  piece.programs.pop_back();
+  piece.pool.resize(start);
+  return piece.programs[slot - 1];
+}
+
+std::span<const std::uint32_t> RegionBuilder::Splitter::program(std::size_t number) const {
+  const Piece& piece = *piece_;
+  const std::size_t begin = piece.programs[number];
+  const bool last = number + 1 == piece.programs.size();
+  return std::span(piece.pool).subspan(begin, (last ? piece.pool.size() : piece.programs[number + 1]) - begin);
+}
+
+// The slot of an equal program, or the free one where it belongs.
+std::size_t RegionBuilder::Splitter::slot_of(std::span<const std::uint32_t> wanted) const {
+  const std::vector<std::uint32_t>& slots = piece_->slots;
+  for (std::size_t at = vm::hash_of(wanted);; ++at) {
+    const std::uint32_t held = slots[at & (slots.size() - 1)];
+    if (held == 0 || std::ranges::equal(program(held - 1), wanted)) return at & (slots.size() - 1);
+  }
+}
+
+// Of all programs but the last, which is not entered yet.
+void RegionBuilder::Splitter::grow_slots() {
+  Piece& piece = *piece_;
+  piece.slots.assign(std::max<std::size_t>(64, 2 * piece.slots.size()), 0);
+  for (std::uint32_t i = 0; i + 1 < piece.programs.size(); ++i) piece.slots[slot_of(program(i))] = i + 1;
+}
+
+}  // namespace fathom::runtime

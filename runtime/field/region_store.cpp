@@ -1,0 +1,53 @@
+#include "runtime/field/region_store.h"
+
+#include <algorithm>
+
+namespace fathom::runtime {
+namespace {
+
+bool same_program(const vm::Program& a, const vm::Program& b) {
+  return a.words == b.words && a.wide == b.wide && a.locals == b.locals;
+}
+
+bool same_box(const compiler::Box& a, const compiler::Box& b) { return a.lo == b.lo && a.hi == b.hi; }
+
+// Of all that decides what is built; the number of threads does not.
+bool same_options(const RegionOptions& a, const RegionOptions& b) {
+  return a.memory == b.memory && a.evaluations == b.evaluations && a.always == b.always && a.room == b.room &&
+         a.magnitude == b.magnitude;
+}
+
+}  // namespace
+
+std::shared_ptr<const Regions> RegionStore::build(const vm::VerifiedProgram& program, const compiler::Box& contents,
+                                                  const RegionOptions& options) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
+    return same_options(entry->options, options) && same_box(entry->contents, contents) &&
+           same_program(entry->program.program(), program.program());
+  });
+  const bool kept = found != entries_.end();
+  std::shared_ptr<Entry> entry = kept ? *found : std::make_shared<Entry>(Entry{program, contents, options, nullptr});
+  entry->options.interrupted = {};  // it may look at what is gone by then
+  entry->used = true;
+  entry->kept = kept;
+  if (!kept) {
+    entry->regions = Regions::build(entry->program, contents, options);
+    // Those that were interrupted are none for this render alone.
+    if (!entry->regions && options.interrupted && options.interrupted()) return nullptr;
+    entries_.push_back(entry);
+  }
+  if (!entry->regions) return nullptr;
+  return {entry, entry->regions.get()};
+}
+
+bool RegionStore::kept(const Regions& regions) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const auto& entry) { return entry->regions.get() == &regions && entry->kept; });
+}
+
+void RegionStore::forget_unused() {
+  std::erase_if(entries_, [](const auto& entry) { return !entry->used; });
+  for (const auto& entry : entries_) entry->used = false;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,121 @@
+#include "runtime/image/image.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "runtime/base/elementary.h"
+
+namespace fathom::runtime {
+namespace {
+
+// [0,1] to 0..Most, nearest; outside values to the ends, NaN to 0.
+template <typename Word>
+Word to_whole(double value) {
+  if (!(value > 0)) return 0;
+  return static_cast<Word>(std::min(value, 1.0) * std::numeric_limits<Word>::max() + 0.5);
+}
+
+// Linear light to the nearest byte of its sRGB signal, by the least light that each byte stands for: comparing is
+// several times faster than the root that srgb_encode() takes.
+class SrgbBytes {
+ public:
+  SrgbBytes() {
+    for (std::size_t i = 0; i < least_.size(); ++i) least_[i] = least_of(static_cast<int>(i) + 1);
+  }
+  std::uint8_t operator()(double linear) const {
+    if (!(linear > 0)) return 0;
+    return static_cast<std::uint8_t>(std::upper_bound(least_.begin(), least_.end(), linear) - least_.begin());
+  }
+
+ private:
+  static double least_of(int byte) {
+    double below = 0, enough = 1;
+    while (true) {
+      const double middle = (below + enough) / 2;
+      if (middle <= below || middle >= enough) return enough;
+      (to_whole<std::uint8_t>(srgb_encode(middle)) >= byte ? enough : below) = middle;
+    }
+  }
+
+  std::array<double, 255> least_;  // [byte - 1]
+};
+
+// Of the hits; 0 where nothing was hit. Infinite when nothing was anywhere.
+double nearest_of(const LayerValues& depth) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int y = depth.area.y0; y < depth.area.y1; ++y) {
+    for (int x = depth.area.x0; x < depth.area.x1; ++x) {
+      const double here = static_cast<double>(depth.at(x, y).x);
+      if (here > 0) nearest = std::min(nearest, here);
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer) {
+  std::array<const std::vector<float>*, 3> channels;
+  for (std::size_t i = 0; i < 3; ++i) {
+    channels[i] = image.channel(info(layer).channels[i]);
+    if (channels[i] == nullptr) return std::nullopt;
+  }
+  return LayerValues{layer, image.area, [channels, area = image.area](int x, int y) {
+                       const std::size_t at = area.index(x, y);
+                       return glm::vec3((*channels[0])[at], (*channels[1])[at], (*channels[2])[at]);
+                     }};
+}
+
+Shown::Shown(LayerValues values, ToneMapping tone)
+    : values_(std::move(values)),
+      encoded_(is_light(values_.layer) || values_.layer == Layer::Albedo),
+      curve_(tone.curve),
+      factor_(exposure_factor(tone.exposure)) {
+  if (values_.layer == Layer::Depth) nearest_ = nearest_of(values_);
+}
+
+glm::dvec3 Shown::color(int x, int y) const {
+  const glm::dvec3 value(values_.at(x, y));
+  switch (values_.layer) {
+    case Layer::Beauty:
+    case Layer::Noisy:
+      return apply_curve(curve_, value * factor_);
+    case Layer::Albedo:
+      break;
+    case Layer::Depth:
+      return glm::dvec3(value.x > 0 ? nearest_ / value.x : 0);
+    case Layer::Normal:
+      return value == glm::dvec3(0) ? value : value * 0.5 + 0.5;
+  }
+  return value;
+}
+
+void Shown::row(int y, std::span<std::uint8_t> rgb) const {
+  static const SrgbBytes to_srgb;
+  auto out = rgb.begin();
+  for (int x = values_.area.x0; x < values_.area.x1; ++x) {
+    const glm::dvec3 shown = color(x, y + values_.area.y0);
+    for (int i = 0; i < 3; ++i) *out++ = encoded_ ? to_srgb(shown[i]) : to_whole<std::uint8_t>(shown[i]);
+  }
+}
+
+void Shown::row(int y, std::span<std::uint16_t> rgb) const {
+  auto out = rgb.begin();
+  for (int x = values_.area.x0; x < values_.area.x1; ++x) {
+    const glm::dvec3 shown = color(x, y + values_.area.y0);
+    for (int i = 0; i < 3; ++i) *out++ = to_whole<std::uint16_t>(encoded_ ? srgb_encode(shown[i]) : shown[i]);
+  }
+}
+
+Picture to_picture(const Shown& shown) {
+  const std::size_t row = static_cast<std::size_t>(shown.width()) * 3;
+  Picture picture{shown.width(), shown.height(), {}};
+  picture.rgb.resize(row * static_cast<std::size_t>(shown.height()));
+  for (int y = 0; y < shown.height(); ++y) {
+    shown.row(y, std::span(picture.rgb).subspan(static_cast<std::size_t>(y) * row, row));
+  }
+  return picture;
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,268 @@
+// OpenEXR files read by the library's own core, chunk by chunk. Its C++ classes, which image_exr.cpp writes by, would
+// set aside what a header says before they look at the file, gigabytes for one of some hundred bytes, and where a
+// chunk's data ends early they would take what lay in memory for numbers. Tested by:
+// tests/runtime/image/image_exr_read_test.cpp, image_exr_test.cpp, image_read_test.cpp
+#include <openexr.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+
+#include "runtime/image/image_exr.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr int kPart = 0;  // the one that is read
+// What decoding takes beside the numbers, in chunks: copies of one, packed and unpacked.
+constexpr double kChunks = 8;
+constexpr const char* kBadExr = "its header makes no sense";
+
+std::int64_t length_of(std::int64_t first, std::int64_t last) { return last - first + 1; }
+std::int64_t width_of(const exr_attr_box2i_t& window) { return length_of(window.min.x, window.max.x); }
+std::int64_t height_of(const exr_attr_box2i_t& window) { return length_of(window.min.y, window.max.y); }
+
+double pixels_of(const exr_attr_box2i_t& window) {
+  return static_cast<double>(width_of(window)) * static_cast<double>(height_of(window));
+}
+
+// How many bytes the best of each compression makes of one; a limit, not what is usual.
+double most_unpacked(exr_compression_t compression) {
+  switch (compression) {
+    case EXR_COMPRESSION_NONE:
+      return 1;
+    case EXR_COMPRESSION_RLE:
+      return 64;  // a run of 128 in two
+    case EXR_COMPRESSION_B44:
+    case EXR_COMPRESSION_B44A:
+      return 11;  // 16 halves in 14, flat ones in three
+    case EXR_COMPRESSION_PXR24:
+      return kMostDeflated * 4 / 3;  // floats have lost a fourth byte before
+    default:
+      return kMostDeflated;  // ZIP; PIZ has at most 410, runs of 256 halves in ten bits
+  }
+}
+
+std::string text_of(const exr_attr_string_t& text) { return {text.str, static_cast<std::size_t>(text.length)}; }
+
+// Nothing for kinds that Attribute does not have.
+std::optional<Attribute> value_of(const exr_attribute_t& attribute) {
+  switch (attribute.type) {
+    case EXR_ATTR_INT:
+      return attribute.i;
+    case EXR_ATTR_FLOAT:
+      return attribute.f;
+    case EXR_ATTR_STRING:
+      return text_of(*attribute.string);
+    case EXR_ATTR_STRING_VECTOR: {
+      const std::span texts(attribute.stringvector->strings,
+                            static_cast<std::size_t>(attribute.stringvector->n_strings));
+      std::vector<std::string> list(texts.size());
+      std::transform(texts.begin(), texts.end(), list.begin(), text_of);
+      return list;
+    }
+    case EXR_ATTR_M44F: {
+      Matrix4 rows;
+      std::copy_n(attribute.m44f->m, rows.size(), rows.begin());
+      return rows;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+class ExrReader {
+ public:
+  ExrReader(const std::vector<std::uint8_t>& bytes, double memory) : bytes_(bytes), memory_(memory) {}
+  ~ExrReader() {
+    if (context_ != nullptr) exr_finish(&context_);
+  }
+  ExrReader(const ExrReader&) = delete;
+  ExrReader& operator=(const ExrReader&) = delete;
+
+  std::variant<FloatImage, std::string> read() {
+    if (open() && is_allowed() && has_chunks() && take_header() && read_chunks()) {
+      whole_to_float();
+      return std::move(image_);
+    }
+    return problem_.empty() ? kBadExr : problem_;
+  }
+
+ private:
+  bool fail(std::string_view why) {
+    if (problem_.empty()) problem_ = why;
+    return false;
+  }
+
+  // The library has told what is wrong when it says that something is.
+  bool good(exr_result_t result) { return result == EXR_ERR_SUCCESS || fail(exr_get_default_error_message(result)); }
+
+  bool open() {
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    how.user_data = this;
+    how.read_fn = read_bytes;
+    how.size_fn = [](exr_const_context_t, void* self) {
+      return static_cast<std::int64_t>(static_cast<ExrReader*>(self)->bytes_.size());
+    };
+    how.error_handler_fn = keep_message;
+    how.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
+    if (!good(exr_start_read(&context_, "picture", &how))) return false;
+    exr_storage_t storage{};
+    if (!good(exr_get_storage(context_, kPart, &storage))) return false;
+    exr_compression_t compression{};
+    if (!good(exr_get_compression(context_, kPart, &compression))) return false;
+    if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
+      return fail("it is compressed by DWA, which is not read; ZIP and PIZ lose nothing");
+    }
+    most_unpacked_ = most_unpacked(compression);
+    tiled_ = storage == EXR_STORAGE_TILED;
+    return tiled_ || storage == EXR_STORAGE_SCANLINE || fail("its pixels are deep: each has many samples");
+  }
+
+  bool is_allowed() {
+    std::uint64_t chunk = 0;
+    if (!good(exr_get_data_window(context_, kPart, &data_)) ||
+        !good(exr_get_display_window(context_, kPart, &display_)) ||
+        !good(exr_get_channels(context_, kPart, &channels_)) ||
+        !good(exr_get_chunk_unpacked_size(context_, kPart, &chunk))) {
+      return false;
+    }
+    for (const exr_attr_box2i_t& window : {data_, display_}) {
+      if (width_of(window) < 1 || height_of(window) < 1) return fail(kBadExr);
+      if (pixels_of(window) > static_cast<double>(kMostPixels)) return fail("it is too large");
+    }
+    const std::int64_t right = std::int64_t{data_.min.x} - display_.min.x,
+                       down = std::int64_t{data_.min.y} - display_.min.y;
+    if (std::max(std::abs(right), std::abs(down)) > kMostPixels) return fail("it is too large");
+    const double values = pixels_of(data_) * channels_->num_channels;
+    if (values > static_cast<double>(kMostValues)) return fail("it is too large");
+    const double needed = sizeof(float) * values + kChunks * static_cast<double>(chunk);
+    if (needed > memory_) return fail(too_much_memory(needed, memory_));
+    const double least = pixels_of(data_) * bytes_per_pixel() / most_unpacked_,
+                 has = static_cast<double>(bytes_.size());
+    return least <= has ||
+           fail(too_few_bytes(static_cast<int>(width_of(data_)), static_cast<int>(height_of(data_)), least, has));
+  }
+
+  // As the file has them, unpacked.
+  double bytes_per_pixel() const {
+    double bytes = 0;
+    for (const exr_attr_chlist_entry_t& channel :
+         std::span(channels_->entries, static_cast<std::size_t>(channels_->num_channels))) {
+      bytes += channel.pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    }
+    return bytes;
+  }
+
+  // As far as their table tells, which must fit the file, before memory is set aside for what they hold.
+  bool has_chunks() {
+    chunk_width_ = static_cast<std::int32_t>(width_of(data_));
+    exr_chunk_info_t first{};
+    return good(tiled_ ? exr_get_tile_sizes(context_, kPart, 0, 0, &chunk_width_, &chunk_height_)
+                       : exr_get_scanlines_per_chunk(context_, kPart, &chunk_height_)) &&
+           find_chunk(0, 0, first);
+  }
+
+  bool take_header() {
+    image_.width = static_cast<int>(width_of(display_));
+    image_.height = static_cast<int>(height_of(display_));
+    const int x = data_.min.x - display_.min.x, y = data_.min.y - display_.min.y;
+    image_.area = {x, y, x + static_cast<int>(width_of(data_)), y + static_cast<int>(height_of(data_))};
+    for (const exr_attr_chlist_entry_t& channel :
+         std::span(channels_->entries, static_cast<std::size_t>(channels_->num_channels))) {
+      if (channel.x_sampling != 1 || channel.y_sampling != 1) return fail("a channel is subsampled");
+      image_.channels.push_back({text_of(channel.name), channel.pixel_type == EXR_PIXEL_UINT});
+      image_.values.emplace_back(image_.area.pixels());
+    }
+    std::int32_t count = 0;
+    if (!good(exr_get_attribute_count(context_, kPart, &count))) return false;
+    for (std::int32_t i = 0; i < count; ++i) {
+      const exr_attribute_t* attribute = nullptr;
+      if (!good(exr_get_attribute_by_index(context_, kPart, EXR_ATTR_LIST_FILE_ORDER, i, &attribute))) return false;
+      if (auto value = value_of(*attribute)) image_.attributes[attribute->name] = *std::move(value);
+    }
+    return true;
+  }
+
+  // The chunk whose first number is that at (x, y) of the data window; of a pyramid of levels those of the whole
+  // picture.
+  bool find_chunk(std::int64_t x, std::int64_t y, exr_chunk_info_t& chunk) {
+    return good(tiled_ ? exr_read_tile_chunk_info(context_, kPart, static_cast<int>(x / chunk_width_),
+                                                  static_cast<int>(y / chunk_height_), 0, 0, &chunk)
+                       : exr_read_scanline_chunk_info(context_, kPart, static_cast<int>(data_.min.y + y), &chunk));
+  }
+
+  bool read_chunks() {
+    for (std::int64_t y = 0; y < height_of(data_); y += chunk_height_) {
+      for (std::int64_t x = 0; x < width_of(data_); x += chunk_width_) {
+        exr_chunk_info_t chunk{};
+        if (!find_chunk(x, y, chunk) || !decode(chunk, x, y)) return false;
+      }
+    }
+    return true;
+  }
+
+  // A chunk's numbers to where they belong, its first at (x, y) of the data window.
+  bool decode(const exr_chunk_info_t& chunk, std::int64_t x, std::int64_t y) {
+    if (x + chunk.width > width_of(data_) || y + chunk.height > height_of(data_)) return fail(kBadExr);
+    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    bool decoded = good(exr_decoding_initialize(context_, kPart, &chunk, &pipeline));
+    const std::size_t at = static_cast<std::size_t>(y * width_of(data_) + x);
+    for (std::size_t c = 0; decoded && c < image_.channels.size(); ++c) {
+      exr_coding_channel_info_t& channel = pipeline.channels[c];
+      channel.decode_to_ptr = reinterpret_cast<std::uint8_t*>(&image_.values[c][at]);
+      channel.user_data_type = image_.channels[c].whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+      channel.user_bytes_per_element = channel.user_pixel_stride = sizeof(float);
+      channel.user_line_stride =
+          static_cast<std::int32_t>(sizeof(float)) * static_cast<std::int32_t>(width_of(data_));
+    }
+    decoded = decoded && good(exr_decoding_choose_default_routines(context_, kPart, &pipeline)) &&
+              good(exr_decoding_run(context_, kPart, &pipeline));
+    exr_decoding_destroy(context_, &pipeline);
+    return decoded;
+  }
+
+  // Whole numbers came as they are, in the place of floats.
+  void whole_to_float() {
+    for (std::size_t c = 0; c < image_.channels.size(); ++c) {
+      if (!image_.channels[c].whole) continue;
+      for (float& value : image_.values[c]) value = static_cast<float>(std::bit_cast<std::uint32_t>(value));
+    }
+  }
+
+  static std::int64_t read_bytes(exr_const_context_t, void* self, void* out, std::uint64_t size, std::uint64_t offset,
+                                 exr_stream_error_func_ptr_t) {
+    const std::vector<std::uint8_t>& bytes = static_cast<ExrReader*>(self)->bytes_;
+    const std::uint64_t count = offset < bytes.size() ? std::min<std::uint64_t>(size, bytes.size() - offset) : 0;
+    if (count > 0) std::memcpy(out, bytes.data() + offset, count);
+    return static_cast<std::int64_t>(count);
+  }
+
+  static void keep_message(exr_const_context_t context, exr_result_t, const char* text) {
+    void* self = nullptr;
+    if (exr_get_user_data(context, &self) == EXR_ERR_SUCCESS && self != nullptr) {
+      static_cast<ExrReader*>(self)->fail(text);
+    }
+  }
+
+  const std::vector<std::uint8_t>& bytes_;
+  const double memory_;
+  exr_context_t context_ = nullptr;
+  bool tiled_ = false;
+  double most_unpacked_ = 1;
+  std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; those at the edges may be smaller
+  exr_attr_box2i_t data_{}, display_{};
+  const exr_attr_chlist_t* channels_ = nullptr;
+  FloatImage image_;
+  std::string problem_;
+};
+
+}  // namespace
+
+std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory) {
+  return ExrReader(bytes, memory - static_cast<double>(bytes.size())).read();
+}
+
+}  // namespace fathom::runtime

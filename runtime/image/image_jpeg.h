@@ -1,0 +1,23 @@
+// JPEG by libjpeg-turbo: baseline and progressive, grey and coloured. Source: ITU-T T.81, 1992.
+// Tested by: tests/runtime/image/image_jpeg_test.cpp, image_read_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fathom::runtime {
+
+// Samples [y][x][component] of 1 (grey) or 3 components.
+struct JpegPicture {
+  int width = 0, height = 0, components = 0;
+  std::vector<std::uint8_t> samples;
+};
+
+// The file's picture, or why it cannot be read: it needs more than `memory` bytes, it has fewer bytes than its size
+// takes, or its data end or make no sense before its last pixel. A profile of colours is not looked at.
+std::variant<JpegPicture, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory);
+
+}  // namespace fathom::runtime

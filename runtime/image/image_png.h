@@ -1,0 +1,30 @@
+// PNG by libpng, row by row. Source: W3C, "Portable Network Graphics (PNG) Specification", second edition, 2003.
+// Tested by: tests/runtime/image/image_io_test.cpp, image_read_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fathom::runtime {
+
+// Puts row `y`, from the top, as the file has it: three samples a pixel of 8 bits, or of 16, the high byte first.
+using PngRow = std::function<void(int y, std::span<std::uint8_t> bytes)>;
+
+// The file's bytes, with a chunk that says sRGB when `srgb`; empty when libpng fails. `bits` is 8 or 16.
+std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row);
+
+// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components, all of 16 bits, whatever the file has.
+struct PngPicture {
+  int width = 0, height = 0, components = 0;
+  std::vector<std::uint16_t> samples;
+};
+
+// What the file shows, or why it cannot be read; a picture that needs more than `memory` bytes is refused before they
+// are taken. A profile of colours is not looked at.
+std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
+
+}  // namespace fathom::runtime

@@ -1,0 +1,332 @@
+#include "runtime/image/image_read.h"
+
+#include <fmt/format.h>
+#include <stb_image.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "runtime/base/elementary.h"
+#include "runtime/image/image_exr.h"
+#include "runtime/image/image_io.h"
+#include "runtime/image/image_jpeg.h"
+#include "runtime/image/image_png.h"
+
+namespace fathom::runtime {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+using Decoded = std::variant<FloatImage, std::string>;
+
+// An image of that size with the channels R, G, B and perhaps A.
+FloatImage empty_image(int width, int height, bool alpha) {
+  FloatImage image;
+  image.width = width;
+  image.height = height;
+  image.area = {0, 0, width, height};
+  for (const char* name : {"R", "G", "B", "A"}) {
+    if (*name == 'A' && !alpha) continue;
+    image.channels.push_back({name, false});
+    image.values.emplace_back(image.area.pixels());
+  }
+  return image;
+}
+
+// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components; `light` and `share` make numbers of them.
+template <typename Sample, typename Light, typename Share>
+FloatImage widened(const Sample* samples, int width, int height, int components, const Light& light,
+                   const Share& share) {
+  const bool alpha = components % 2 == 0, grey = components <= 2;
+  FloatImage image = empty_image(width, height, alpha);
+  const std::size_t step = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < image.area.pixels(); ++i) {
+    const Sample* pixel = samples + i * step;
+    for (std::size_t c = 0; c < 3; ++c) image.values[c][i] = light(pixel[grey ? 0 : c]);
+    if (alpha) image.values[3][i] = share(pixel[step - 1]);
+  }
+  return image;
+}
+
+struct FreeStb {
+  void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+template <typename Sample>
+using StbPixels = std::unique_ptr<Sample, FreeStb>;
+
+// A file's bytes as stb takes them: at their end zeros, with which the run lengths of an hdr picture never end and
+// rows of others are invented. So `filler` follows instead, and it is told.
+struct StbSource {
+  const Bytes& bytes;
+  char filler = 0;
+  std::size_t at = 0;
+  bool ran_out = false;
+
+  static int read(void* user, char* data, int size) {
+    auto& source = *static_cast<StbSource*>(user);
+    const std::size_t count = std::min(static_cast<std::size_t>(size), source.bytes.size() - source.at);
+    std::memcpy(data, source.bytes.data() + source.at, count);
+    source.at += count;
+    if (count > 0) return static_cast<int>(count);
+    source.ran_out = true;
+    std::memset(data, source.filler, static_cast<std::size_t>(size));
+    return size;
+  }
+  static void skip(void* user, int count) {
+    auto& source = *static_cast<StbSource*>(user);
+    const auto to = static_cast<std::int64_t>(source.at) + count,
+               end = static_cast<std::int64_t>(source.bytes.size());
+    source.ran_out |= to > end;
+    source.at = static_cast<std::size_t>(std::clamp<std::int64_t>(to, 0, end));
+  }
+  static int has_ended(void* user) { return static_cast<StbSource*>(user)->ran_out; }
+
+  // nullptr where the picture could be decoded.
+  const char* problem(const void* pixels) const {
+    if (ran_out) return "it ends too early";
+    if (pixels != nullptr) return nullptr;
+    const char* reason = stbi_failure_reason();
+    return reason != nullptr ? reason : "its content makes no sense";
+  }
+};
+constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
+
+// The least bytes of a file with so many pixels.
+using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
+
+// BMP, uncompressed: the bits of a pixel stand in the header, whose length is its first number.
+double least_of_bmp(const Bytes& bytes, double width, double height) {
+  const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
+  const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
+  return width * height * std::max(1.0, bits) / 8;
+}
+
+// Radiance: a row begins with four bytes, and each of its four components has a run of up to 127 in two; rows that
+// are very short or very long have no runs, nor has an older file.
+double least_of_hdr(const Bytes&, double width, double height) {
+  const bool runs = width >= 8 && width < 32768;
+  return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
+}
+
+// The reason why stb may not be asked for a picture, which is its header's size: of `sample` bytes for each number in
+// what it decodes, a float for each in what is made of that.
+std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes least_of) {
+  int width = 0, height = 0, components = 0;
+  // From memory, whose end stb sees.
+  if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
+    const char* reason = stbi_failure_reason();
+    return reason != nullptr ? reason : "its content makes no sense";
+  }
+  if (width < 1 || height < 1) return "it has no pixels";
+  if (std::int64_t{width} * height > kMostPixels) return "it is too large";
+  const double numbers = static_cast<double>(width) * height * std::max(3, components);
+  const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
+  if (needed > memory) return too_much_memory(needed, memory);
+  const double least = least_of(bytes, width, height), has = static_cast<double>(bytes.size());
+  if (least > has) return too_few_bytes(width, height, least, has);
+  return std::nullopt;
+}
+
+// Whether a file's first bytes are those of a format.
+bool begins_as(ImageFormat format, const Bytes& bytes) {
+  constexpr struct {
+    ImageFormat format;
+    std::string_view bytes;
+  } kSignatures[] = {
+      {ImageFormat::Png, "\x89PNG\r\n\x1a\n"},
+      {ImageFormat::Jpeg, "\xff\xd8\xff"},
+      {ImageFormat::Bmp, "BM"},
+      {ImageFormat::Exr, "\x76\x2f\x31\x01"},
+      {ImageFormat::Pfm, "PF"},
+      {ImageFormat::Pfm, "Pf"},
+      {ImageFormat::Hdr, "#?"},
+  };
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return std::any_of(std::begin(kSignatures), std::end(kSignatures),
+                     [&](const auto& row) { return row.format == format && text.starts_with(row.bytes); });
+}
+
+// The same, or for a format that is shown of any of these.
+bool has_signature(ImageFormat format, const Bytes& bytes) {
+  constexpr std::array kShown = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
+  const auto begins = [&](ImageFormat other) { return begins_as(other, bytes); };
+  const bool shown = std::find(kShown.begin(), kShown.end(), format) != kShown.end();
+  return shown ? std::any_of(kShown.begin(), kShown.end(), begins) : begins(format);
+}
+
+// Whole samples [y][x][component] as sRGB signals.
+template <typename Sample>
+FloatImage from_signals(const Sample* samples, int width, int height, int components) {
+  constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
+  std::vector<float> light(kMost + 1);
+  for (std::size_t i = 0; i <= kMost; ++i) {
+    light[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
+  }
+  return widened(
+      samples, width, height, components, [&](Sample sample) { return light[sample]; },
+      [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
+}
+
+Decoded decode_deep(const Bytes& bytes, double memory) {
+  const auto read = decode_png(bytes, memory);
+  if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
+  const auto& picture = std::get<PngPicture>(read);
+  return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
+}
+
+Decoded decode_lossy(const Bytes& bytes, double memory) {
+  const auto read = decode_jpeg(bytes, memory);
+  if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
+  const auto& picture = std::get<JpegPicture>(read);
+  return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
+}
+
+Decoded decode_shown(const Bytes& bytes, double memory) {
+  // Whatever its name says. stb sets aside what a chunk of a PNG says that it has before it reads any of it, and
+  // makes up what a JPEG ends without.
+  if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
+  if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
+  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, least_of_bmp)) return std::move(*problem);
+  int width = 0, height = 0, components = 0;
+  StbSource source{bytes};
+  const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
+  if (const char* problem = source.problem(pixels.get())) return problem;
+  return from_signals(pixels.get(), width, height, components);
+}
+
+// Where stb reads the lines of a header it takes the filler for more of them, without end: an empty line must end the
+// header, and a line break the size after it.
+bool ends_hdr_header(const Bytes& bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t end = text.find("\n\n");
+  return end != text.npos && text.find('\n', end + 2) != text.npos;
+}
+
+Decoded decode_hdr(const Bytes& bytes, double memory) {
+  // Otherwise stb would make light of any other picture.
+  if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
+  if (!ends_hdr_header(bytes)) return "its header does not end";
+  if (auto problem = stb_problem(bytes, sizeof(float), memory, least_of_hdr)) return std::move(*problem);
+  int width = 0, height = 0, components = 0;
+  StbSource source{bytes, '\xff'};  // no run is so long
+  const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
+  if (const char* problem = source.problem(pixels.get())) return problem;
+  const auto same = [](float value) { return value; };
+  return widened(pixels.get(), width, height, 3, same, same);
+}
+
+// The next word of a header, which ends with one white character; empty at the end.
+std::string_view next_word(std::string_view text, std::size_t& at) {
+  const auto white = [&](std::size_t i) {
+    return text[i] == ' ' || text[i] == '\n' || text[i] == '\t' || text[i] == '\r';
+  };
+  while (at < text.size() && white(at)) ++at;
+  const std::size_t begin = at;
+  while (at < text.size() && !white(at)) ++at;
+  const std::string_view word = text.substr(begin, at - begin);
+  if (at < text.size()) ++at;
+  return word;
+}
+
+template <typename T>
+std::optional<T> to(std::string_view word) {
+  T value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+// Source: as write_float_map().
+Decoded decode_pfm(const Bytes& bytes, double memory) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::size_t at = 0;
+  const std::string_view kind = next_word(text, at);
+  const auto width = to<int>(next_word(text, at)), height = to<int>(next_word(text, at));
+  const auto scale = to<double>(next_word(text, at));
+  const bool grey = kind == "Pf";
+  if ((!grey && kind != "PF") || !width || !height || *width < 1 || *height < 1 || !scale || *scale == 0) {
+    return "it has no header of a portable float map";
+  }
+  const int components = grey ? 1 : 3;
+  if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
+  const std::size_t count =
+      static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
+  if (text.size() - at < count * 4) return "it ends too early";
+  // Beside the file its numbers, and R, G and B of every pixel.
+  const double pixels = static_cast<double>(*width) * *height;
+  const double needed = static_cast<double>(bytes.size()) + sizeof(float) * (static_cast<double>(count) + 3 * pixels);
+  if (needed > memory) return too_much_memory(needed, memory);
+  std::vector<float> values(count);
+  const std::size_t row = values.size() / static_cast<std::size_t>(*height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::uint32_t bits = 0;
+    for (std::size_t byte = 0; byte < 4; ++byte) {
+      bits |= std::uint32_t{bytes[at + 4 * i + byte]} << (8 * (*scale < 0 ? byte : 3 - byte));
+    }
+    const std::size_t y = static_cast<std::size_t>(*height) - 1 - i / row;
+    values[y * row + i % row] = std::bit_cast<float>(bits);
+  }
+  const auto same = [](float value) { return value; };
+  return widened(values.data(), *width, *height, components, same, same);
+}
+
+// False, and errno tells why. What does not begin as its format does is read no further than its first piece, and
+// what is longer than `most` bytes is cut off there: a device may have no end.
+bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes& bytes) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) return false;
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  for (std::size_t count = kPiece; count == kPiece && static_cast<double>(bytes.size()) <= most;) {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kPiece);
+    count = std::fread(bytes.data() + size, 1, kPiece, file.get());
+    bytes.resize(size + count);
+    if (size == 0 && !has_signature(format, bytes)) break;
+  }
+  return std::ferror(file.get()) == 0;
+}
+
+Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
+  if (!has_signature(format, bytes)) return "it does not begin as such a file does";
+  if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
+  switch (format) {
+    case ImageFormat::Exr:
+      return decode_exr(bytes, memory);
+    case ImageFormat::Pfm:
+      return decode_pfm(bytes, memory);
+    case ImageFormat::Hdr:
+      return decode_hdr(bytes, memory);
+    default:
+      return decode_shown(bytes, memory);
+  }
+}
+
+}  // namespace
+
+std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits) {
+  const ImageFormatInfo* format = image_format_of(path);
+  if (format == nullptr) {
+    return UnreadImage{
+        fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
+  }
+  Bytes bytes;
+  if (!read_bytes(path, format->format, limits.memory, bytes)) {
+    return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+  }
+  if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {
+    return UnreadImage{fmt::format("cannot read `{}`: it is too large", path)};
+  }
+  Decoded decoded = decode(format->format, bytes, limits.memory);
+  if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
+  return UnreadImage{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
+                                 std::get<std::string>(decoded))};
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,187 @@
+#include "runtime/light/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "runtime/base/angle.h"
+#include "runtime/base/color.h"
+#include "runtime/base/elementary.h"
+#include "runtime/sampling/warp.h"
+#include "vm/check.h"
+#include "vm/real.h"
+
+namespace fathom::runtime {
+namespace {
+
+constexpr float kPiFloat = std::numbers::pi_v<float>;
+// How far rounding to floats moves a unit vector, at most: half of 2^-24 along each axis.
+constexpr double kRounding = 0x1p-24;
+// Degrees. Directions in float would make the disc larger than it is by kRounding all round: here by 0.03 % of its
+// area.
+constexpr double kLeastDisc = 0.02;
+
+// Counter-clockwise about y, seen from above.
+glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
+  const glm::dvec3 d(w);
+  return {cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x};
+}
+
+// The mean over each pixel of the picture as bilinear filtering shows it: weights 1, 6, 1 of 8 along each axis.
+std::vector<float> filtered_luminance(const EnvironmentImage& image) {
+  const int width = image.width, height = image.height;
+  std::vector<float> across(image.pixels.size()), out(image.pixels.size());
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>((x + width) % width);
+  };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto l = [&](int i) { return luminance(image.pixels[at(i, y)]); };
+      across[at(x, y)] = 0.125f * l(x - 1) + 0.75f * l(x) + 0.125f * l(x + 1);
+    }
+  }
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      out[at(x, y)] = 0.125f * across[at(x, y - 1)] + 0.75f * across[at(x, y)] + 0.125f * across[at(x, y + 1)];
+    }
+  }
+  return out;
+}
+
+// Means over cells, by the middles of a quarter of each.
+template <class Radiance>
+std::vector<float> cell_luminance(int width, int height, const Radiance& radiance) {
+  std::vector<float> out;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      float sum = 0;
+      for (int i = 0; i < 4; ++i) {
+        const glm::dvec2 uv((x + 0.25 + 0.5 * (i & 1)) / width, (y + 0.25 + 0.5 * (i >> 1)) / height);
+        sum += luminance(radiance(glm::vec3(from_latlong(uv))));
+      }
+      out.push_back(sum / 4);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
+    : type_(scene.background.type), bottom_(scene.background.bottom), top_(scene.background.top) {
+  const compiler::Background& background = scene.background;
+  if (type_ == Type::Image) {
+    CHECK(image != nullptr && !image->pixels.empty(),
+          "the scene's background is a picture, which must be read first");
+    image_ = std::move(image);
+    turn_sine_ = vm::real::sin(background.image.rotate * kDegree);
+    turn_cosine_ = vm::real::cos(background.image.rotate * kDegree);
+    strength_ = static_cast<float>(background.image.strength);
+    table_ = SphereTable(image_->width, image_->height, filtered_luminance(*image_));
+  }
+  if (type_ == Type::Sky) {
+    constexpr int kRows = 64;
+    sky_.emplace(background.sky);
+    table_ = SphereTable(2 * kRows, kRows,
+                         cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
+    if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
+  }
+  for (const compiler::Light& light : scene.lights) {
+    if (light.type != compiler::Light::Type::Directional || light.angle == 0) continue;
+    add_disc(-light.direction, light.angle, glm::vec3(light.intensity));
+  }
+}
+
+// A disc of radiance L gives L pi sin^2 of its angle to what faces it.
+void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
+  const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * kDegree), sin2 = sine * sine;
+  if (!(luminance(irradiance) > 0)) return;
+  const double height = sin2 / (1 + std::sqrt(1 - sin2));
+  discs_.push_back({direction, height, std::sqrt(2 * height) + kRounding,
+                    irradiance / static_cast<float>(std::numbers::pi * sin2), luminance(irradiance)});
+}
+
+// By the chord: the cosine of a small angle has few digits.
+bool Environment::Disc::holds(glm::vec3 w) const {
+  const glm::dvec3 chord = glm::normalize(glm::dvec3(w)) - direction;
+  return glm::dot(chord, chord) <= rim * rim;
+}
+
+glm::vec3 Environment::pixel(glm::vec3 direction) const {
+  const glm::dvec2 uv = to_latlong(glm::dvec3(turned(direction, -turn_sine_, turn_cosine_)));
+  const int width = image_->width, height = image_->height;
+  const double x = uv.x * width - 0.5, y = uv.y * height - 0.5;
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const auto at = [&](int i, int j) {
+    const int row = std::clamp(j, 0, height - 1), column = (i % width + width) % width;
+    return image_
+        ->pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  };
+  const auto a = static_cast<float>(x - x0), b = static_cast<float>(y - y0);
+  return strength_ * ((1 - b) * ((1 - a) * at(x0, y0) + a * at(x0 + 1, y0)) +
+                      b * ((1 - a) * at(x0, y0 + 1) + a * at(x0 + 1, y0 + 1)));
+}
+
+glm::vec3 Environment::backdrop(glm::vec3 direction) const {
+  if (type_ == Type::Sky) return sky_->radiance(direction);
+  if (type_ == Type::Image) return pixel(direction);
+  const double share = std::clamp((static_cast<double>(direction.y) + 1) / 2, 0.0, 1.0);
+  return glm::vec3(bottom_ * (1 - share) + top_ * share);
+}
+
+glm::vec3 Environment::radiance(glm::vec3 direction) const {
+  glm::vec3 sum = backdrop(direction);
+  for (const Disc& disc : discs_) {
+    if (disc.holds(direction)) sum += disc.radiance;
+  }
+  return sum;
+}
+
+// A gradient is so even that directions chosen by the BSDF find its light with less noise (docs/LIGHT.md).
+float Environment::mean() const {
+  return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
+}
+
+float Environment::estimate(const Disc& disc, const LightQuery& query) const {
+  const float cosine = glm::dot(query.normal, glm::vec3(disc.direction));
+  // A disc that the horizon cuts counts as far as it may rise above.
+  const auto rise = static_cast<float>(std::sqrt(disc.height * (2 - disc.height)));
+  return disc.irradiance * std::max(0.0f, (query.both_sides ? std::abs(cosine) : cosine) + rise);
+}
+
+float Environment::estimate(const LightQuery& query) const {
+  float sum = kPiFloat * mean();
+  for (const Disc& disc : discs_) sum += estimate(disc, query);
+  return sum;
+}
+
+glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u) const {
+  float rest = choice * estimate(query) - kPiFloat * mean();
+  const Disc* chosen = nullptr;
+  for (const Disc& disc : discs_) {
+    const float own = estimate(disc, query);
+    if (rest < 0 && (chosen != nullptr || mean() > 0)) break;
+    if (own > 0) chosen = &disc;
+    rest -= own;
+  }
+  if (chosen == nullptr) return turned(table_.sample(u), turn_sine_, turn_cosine_);
+  const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
+  const SinCos turn = sincos_turn(u.y);
+  const FrameOf<double> frame(chosen->direction);
+  return frame.to_world({sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
+}
+
+float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {
+  const float all = estimate(query);
+  if (!(all > 0)) return 0;
+  float sum = mean() > 0 ? kPiFloat * mean() * table_.pdf(turned(direction, -turn_sine_, turn_cosine_)) : 0;
+  for (const Disc& disc : discs_) {
+    if (!disc.holds(direction)) continue;
+    sum += estimate(disc, query) / (2 * kPiFloat * static_cast<float>(disc.height));
+  }
+  return sum / all;
+}
+
+}  // namespace fathom::runtime

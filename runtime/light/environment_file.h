@@ -1,0 +1,23 @@
+// Pictures of what surrounds a scene: Radiance .hdr and OpenEXR .exr, in linear sRGB.
+// Tested by: tests/runtime/light/environment_file_test.cpp
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "runtime/image/image_read.h"
+
+namespace fathom::runtime {
+
+struct EnvironmentImage {
+  int width = 0, height = 0;
+  std::vector<glm::vec3> pixels;  // from the top row; finite and not negative
+};
+
+// The picture, or why it cannot be read. What is not a number or negative in it becomes 0, and infinity
+// the largest number of 16 bits.
+std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path, const ReadLimits& limits = {});
+
+}  // namespace fathom::runtime

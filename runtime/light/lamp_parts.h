@@ -1,0 +1,48 @@
+// What the shapes of lamps share: the choice of a part of the surface, and densities over area as densities over
+// directions. Tested by: tests/runtime/light/light_shapes_test.cpp
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+
+#include "runtime/light/light_shapes.h"
+
+namespace fathom::runtime {
+
+inline double sqr(double x) { return x * x; }
+
+// The parts of a shape with weights, of which one is chosen by a number that is then as good as new.
+template <std::size_t N>
+struct Parts {
+  std::array<double, N> weights{};
+
+  double sum() const {
+    double total = 0;
+    for (const double w : weights) total += w;
+    return total;
+  }
+  double share(std::size_t part) const { return weights[part] / sum(); }
+  // sum() > 0.
+  std::size_t choose(double& u) const {
+    double rest = u * sum();
+    std::size_t part = 0, last = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (weights[i] > 0) last = i;
+    }
+    while (part < last && !(rest < weights[part])) rest -= weights[part++];
+    u = std::clamp(rest / weights[part], 0.0, 1.0);
+    return part;
+  }
+};
+
+// Per solid angle, of a point chosen uniformly over an area.
+inline double area_to_solid_angle(const ShapeSample& at, glm::dvec3 from, double area) {
+  const glm::dvec3 way = from - at.position;
+  const double d2 = glm::dot(way, way), facing = glm::dot(at.normal, way);
+  return facing > 0 ? d2 * std::sqrt(d2) / (facing * area) : 0;
+}
+
+}  // namespace fathom::runtime

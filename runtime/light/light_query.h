@@ -1,0 +1,14 @@
+// A place that is to be lit.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace fathom::runtime {
+
+struct LightQuery {
+  glm::dvec3 position;      // programs' coordinates
+  glm::vec3 normal;         // of the surface there, unit
+  bool both_sides = false;  // light from behind the surface counts, too
+};
+
+}  // namespace fathom::runtime

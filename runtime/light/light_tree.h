@@ -1,0 +1,100 @@
+// Which of many lights to sample at a place: by an estimate of the irradiance each would give there, from a ball
+// around the light and a cone around the directions it faces.
+//
+// Up to kFewLights all estimates are made; more go into a binary tree whose nodes are estimated as lights themselves
+// and which is descended by chance.
+//
+// Source: Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; without
+// the splitting, and split at the middle light along the longest axis instead of by their cost.
+// Tested by: tests/runtime/light/light_tree_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/light/light_query.h"
+
+namespace fathom::runtime {
+
+// A light, or several, seen roughly.
+struct LightBounds {
+  glm::dvec3 centre{0};
+  double radius = 0;  // of a ball that holds it
+  // Directions it faces lie within the angle of cosine cos_spread around the axis, and light goes to where the angle
+  // from one of them has at least the cosine cos_emission. cos_spread -1: everywhere.
+  glm::vec3 axis{0, 1, 0};
+  float cos_spread = -1, cos_emission = 0;
+  bool two_sided = false;  // faces along -axis, too
+  float intensity = 0;     // luminance: irradiance of a surface that faces it, times the distance squared
+};
+
+// About the irradiance at the query; 0 only where no light can arrive.
+float estimate(const LightBounds& light, const LightQuery& query);
+
+class LightTree {
+ public:
+  static constexpr std::size_t kFewLights = 32, kLeafLights = 8;
+
+  explicit LightTree(std::vector<LightBounds> lights);
+
+  struct Choice {
+    std::uint32_t light;
+    float probability;
+  };
+  // By a number in [0,1); nothing when no light can arrive.
+  std::optional<Choice> choose(const LightQuery& query, float u) const;
+  // The probability with which choose() gives the light.
+  float probability(const LightQuery& query, std::uint32_t light) const;
+  // About the irradiance of all lights together.
+  float total(const LightQuery& query) const;
+  bool empty() const { return lights_.empty(); }
+  std::size_t size() const { return lights_.size(); }
+
+  // Calls `use` with every light whose ball is within `reach` of the place.
+  template <class Use>
+  void near(glm::dvec3 place, double reach, const Use& use) const;
+
+ private:
+  // Its lights are order_[first, first + count); an inner node's children are the next node and `second`.
+  struct Node {
+    LightBounds bounds;
+    std::uint32_t first, count;
+    std::uint32_t second = 0;  // 0: a leaf
+  };
+  void build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf);
+  float total_of(const Node& leaf, const LightQuery& query) const;
+
+  std::vector<LightBounds> lights_;
+  std::vector<std::uint32_t> order_, slot_;  // slot_[order_[i]] = i
+  std::vector<Node> nodes_;
+};
+
+template <class Use>
+void LightTree::near(glm::dvec3 place, double reach, const Use& use) const {
+  const auto touches = [&](const LightBounds& bounds) {
+    return glm::length(bounds.centre - place) <= bounds.radius + reach;
+  };
+  std::array<std::uint32_t, 64> pending;  // the tree is as deep as the logarithm of the number of lights
+  std::size_t count = 0;
+  if (!empty()) pending[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t at = pending[--count];
+    const Node& node = nodes_[at];
+    if (!touches(node.bounds)) continue;
+    if (node.second != 0) {
+      pending[count++] = node.second;
+      pending[count++] = at + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      if (touches(lights_[order_[i]])) use(order_[i]);
+    }
+  }
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,193 @@
+#include "runtime/light/round_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "runtime/base/angle.h"
+#include "runtime/base/elementary.h"
+#include "runtime/light/lamp_parts.h"
+#include "vm/real.h"
+
+namespace fathom::runtime {
+namespace {
+
+using compiler::Lamp;
+using glm::dvec2;
+using glm::dvec3;
+
+// --- spheres, about a centre
+
+// 1 - cos of half the angle that a ball subtends, without cancellation; from within or on it none, 0.
+double ball_height(dvec3 from, dvec3 centre, double radius) {
+  const double sin2 = sqr(radius) / glm::dot(centre - from, centre - from);
+  return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
+}
+}  // namespace
+
+double ball_pdf(dvec3 from, dvec3 centre, double radius) {
+  const double height = ball_height(from, centre, radius);
+  return height > 0 ? 1 / (2 * kPi * height) : 0;
+}
+
+namespace {
+
+// A unit vector across the unit vector `axis`.
+dvec3 across(dvec3 axis) {
+  dvec3 other(0);
+  other[std::abs(axis.x) < 0.6 ? 0 : 1] = 1;
+  return glm::normalize(glm::cross(axis, other));
+}
+
+}  // namespace
+
+ShapeSample sample_ball(dvec3 from, dvec3 centre, double radius, dvec2 u) {
+  const double height = ball_height(from, centre, radius);
+  if (!(height > 0)) return {};
+  const double below = u.x * height;  // 1 - cos
+  const double sine = std::sqrt(below * (2 - below)), cosine = 1 - below;
+  const double distance = glm::length(centre - from);
+  const dvec3 axis = (centre - from) / distance, side = across(axis);
+  const SinCos turn = sincos_turn(static_cast<float>(u.y));
+  const dvec3 out = static_cast<double>(turn.cos) * side + static_cast<double>(turn.sin) * glm::cross(axis, side);
+  const double t = distance * cosine - std::sqrt(std::max(0.0, sqr(radius) - sqr(distance * sine)));
+  const dvec3 normal = glm::normalize(from + t * (cosine * axis + sine * out) - centre);
+  return {centre + radius * normal, normal, 1 / (2 * kPi * height)};
+}
+
+namespace {
+
+// --- about the y axis
+
+// The part of the side of a cylinder that `from` sees: `half_turn` to either side of where it is.
+struct Side {
+  Side(dvec3 from, double radius, double half_height)
+      : radius_(radius), half_height_(half_height), axis_distance_(std::sqrt(sqr(from.x) + sqr(from.z))) {
+    if (axis_distance_ > radius) half_turn_ = vm::real::acos(radius / axis_distance_);
+  }
+  bool seen() const { return half_turn_ > 0; }
+  double area() const { return 4 * half_turn_ * radius_ * half_height_; }
+
+  // About its solid angle: the silhouette's area as the nearest point of the axis' height sees it.
+  double weight(dvec3 from) const {
+    if (!seen()) return 0;
+    const double beyond = std::max(0.0, std::abs(from.y) - half_height_), near = axis_distance_ - radius_;
+    const double d2 = sqr(beyond) + sqr(near) + sqr(std::min(radius_, half_height_)) / 4;
+    const double width = 2 * radius_ * std::sqrt(1 - sqr(radius_ / axis_distance_));
+    const double level = axis_distance_ / std::sqrt(sqr(axis_distance_) + sqr(beyond));
+    return std::min(2 * kPi, width * 2 * half_height_ * level / d2);
+  }
+
+  ShapeSample sample(dvec3 from, dvec2 u) const {
+    const double turn = (2 * u.x - 1) * half_turn_;
+    const double c = vm::real::cos(turn), s = vm::real::sin(turn);
+    const double x = from.x / axis_distance_, z = from.z / axis_distance_;
+    ShapeSample out;
+    out.normal = {c * x + s * z, 0, c * z - s * x};
+    out.position = radius_ * out.normal + dvec3(0, (2 * u.y - 1) * half_height_, 0);
+    out.pdf = area_to_solid_angle(out, from, area());
+    return out;
+  }
+  double pdf(dvec3 from, dvec3 hit) const {
+    return seen() ? area_to_solid_angle({hit, glm::normalize(dvec3(hit.x, 0, hit.z))}, from, area()) : 0;
+  }
+
+ private:
+  double radius_, half_height_, axis_distance_, half_turn_ = 0;
+};
+
+// Cap and side. A cap is seen from beyond its plane.
+Parts<2> cylinder_parts(const Lamp& lamp, dvec3 from, const Side& side) {
+  Parts<2> parts;
+  const double above = std::abs(from.y) - lamp.half_height, r2 = sqr(lamp.radius);
+  const double d2 = sqr(above) + sqr(from.x) + sqr(from.z) + r2 / 2;
+  if (above > 0) parts.weights[0] = kPi * r2 * above / (d2 * std::sqrt(d2));
+  parts.weights[1] = side.weight(from);
+  return parts;
+}
+
+}  // namespace
+
+ShapeSample sample_cylinder(const Lamp& lamp, dvec3 from, dvec2 u) {
+  const Side side(from, lamp.radius, lamp.half_height);
+  const Parts<2> parts = cylinder_parts(lamp, from, side);
+  if (!(parts.sum() > 0)) return {};
+  const std::size_t part = parts.choose(u.x);
+  ShapeSample out;
+  if (part == 0) {
+    const double r = lamp.radius * std::sqrt(u.x);
+    const SinCos turn = sincos_turn(static_cast<float>(u.y));
+    out.normal = dvec3(0, from.y > 0 ? 1 : -1, 0);
+    out.position = {r * static_cast<double>(turn.cos), out.normal.y * lamp.half_height,
+                    r * static_cast<double>(turn.sin)};
+    out.pdf = area_to_solid_angle(out, from, kPi * sqr(lamp.radius));
+  } else {
+    out = side.sample(from, u);
+  }
+  out.pdf *= parts.share(part);
+  return out;
+}
+
+double cylinder_pdf(const Lamp& lamp, dvec3 from, dvec3 hit) {
+  const Side side(from, lamp.radius, lamp.half_height);
+  const Parts<2> parts = cylinder_parts(lamp, from, side);
+  if (!(parts.sum() > 0)) return 0;
+  const bool on_side = std::abs(hit.y) - lamp.half_height < std::sqrt(sqr(hit.x) + sqr(hit.z)) - lamp.radius;
+  if (on_side) return parts.share(1) * side.pdf(from, hit);
+  const dvec3 up(0, hit.y > 0 ? 1 : -1, 0);
+  return parts.share(0) * area_to_solid_angle({hit, up}, from, kPi * sqr(lamp.radius));
+}
+
+double cylinder_distance(const Lamp& lamp, dvec3 p) {
+  const double out = std::sqrt(sqr(p.x) + sqr(p.z)) - lamp.radius, up = std::abs(p.y) - lamp.half_height;
+  return std::abs(std::min(std::max(out, up), 0.0) + std::sqrt(sqr(std::max(out, 0.0)) + sqr(std::max(up, 0.0))));
+}
+
+namespace {
+
+dvec3 ball_of(const Lamp& lamp, bool upper) { return {0, upper ? lamp.half_height : -lamp.half_height, 0}; }
+
+}  // namespace
+
+double capsule_distance(const Lamp& lamp, dvec3 p) {
+  return glm::length(p - dvec3(0, std::clamp(p.y, -lamp.half_height, lamp.half_height), 0)) - lamp.radius;
+}
+
+namespace {
+
+// The lower ball, the upper one, the side. Of a ball that is not the nearer end only half is outside the solid.
+Parts<3> capsule_parts(const Lamp& lamp, dvec3 from, const Side& side) {
+  Parts<3> parts;
+  if (!(capsule_distance(lamp, from) > 0)) return parts;
+  for (const bool upper : {false, true}) {
+    const bool whole = upper ? from.y > lamp.half_height : from.y < -lamp.half_height;
+    parts.weights[upper] = (whole ? 2 : 1) * kPi * ball_height(from, ball_of(lamp, upper), lamp.radius);
+  }
+  parts.weights[2] = side.weight(from);
+  return parts;
+}
+
+}  // namespace
+
+ShapeSample sample_capsule(const Lamp& lamp, dvec3 from, dvec2 u) {
+  const Side side(from, lamp.radius, lamp.half_height);
+  const Parts<3> parts = capsule_parts(lamp, from, side);
+  if (!(parts.sum() > 0)) return {};
+  const std::size_t part = parts.choose(u.x);
+  ShapeSample out = part == 2 ? side.sample(from, u) : sample_ball(from, ball_of(lamp, part == 1), lamp.radius, u);
+  out.pdf *= parts.share(part);
+  if (part < 2 && (part == 1 ? out.position.y : -out.position.y) <= lamp.half_height) out.pdf = 0;
+  return out;
+}
+
+double capsule_pdf(const Lamp& lamp, dvec3 from, dvec3 hit) {
+  const Side side(from, lamp.radius, lamp.half_height);
+  const Parts<3> parts = capsule_parts(lamp, from, side);
+  if (!(parts.sum() > 0)) return 0;
+  if (std::abs(hit.y) <= lamp.half_height) return parts.share(2) * side.pdf(from, hit);
+  const bool upper = hit.y > 0;
+  if (!(glm::dot(hit - ball_of(lamp, upper), from - hit) > 0)) return 0;
+  return parts.share(upper) * ball_pdf(from, ball_of(lamp, upper), lamp.radius);
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,20 @@
+// Balls, cylinders and capsules about the y axis as lamps, in their own space: light_shapes.h says how each is
+// sampled. Tested by: tests/runtime/light/light_shapes_test.cpp
+#pragma once
+
+#include "runtime/light/light_shapes.h"
+
+namespace fathom::runtime {
+
+ShapeSample sample_ball(glm::dvec3 from, glm::dvec3 centre, double radius, glm::dvec2 u);
+double ball_pdf(glm::dvec3 from, glm::dvec3 centre, double radius);
+
+ShapeSample sample_cylinder(const compiler::Lamp& lamp, glm::dvec3 from, glm::dvec2 u);
+double cylinder_pdf(const compiler::Lamp& lamp, glm::dvec3 from, glm::dvec3 hit);
+double cylinder_distance(const compiler::Lamp& lamp, glm::dvec3 p);  // to the surface
+
+ShapeSample sample_capsule(const compiler::Lamp& lamp, glm::dvec3 from, glm::dvec2 u);
+double capsule_pdf(const compiler::Lamp& lamp, glm::dvec3 from, glm::dvec3 hit);
+double capsule_distance(const compiler::Lamp& lamp, glm::dvec3 p);  // signed: negative within
+
+}  // namespace fathom::runtime

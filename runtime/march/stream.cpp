@@ -1,0 +1,181 @@
+#include "runtime/march/stream.h"
+
+#include <algorithm>
+
+namespace fathom::runtime {
+namespace {
+
+template <class S>
+LaneRules<S> make_rules(const Field& field, const Marching& marching) {
+  constexpr bool kSingle = sizeof(S) == sizeof(float);
+  LaneRules<S> rules{};
+  rules.lipschitz = static_cast<S>(field.lipschitz);
+  rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
+  rules.band = static_cast<S>(field.band);
+  rules.magnitude = static_cast<S>(field.magnitude);
+  // A double keeps 29 more bits, and constants rounded to float are not its concern.
+  rules.unit =
+      kSingle ? static_cast<S>(kDistanceError) : static_cast<S>(static_cast<double>(kDistanceError) * 0x1p-29);
+  rules.resolution = kSingle ? static_cast<S>(0x1p-22) : static_cast<S>(0x1p-48);
+  rules.method = marching.method;
+  rules.epsilon = static_cast<S>(marching.epsilon);
+  rules.steps = static_cast<S>(marching.steps);
+  rules.relaxation = static_cast<S>(marching.relaxation);
+  return rules;
+}
+
+// An S that is not above `value`, by at most a unit in its last place.
+template <class S>
+S round_down(double value) {
+  return static_cast<S>(sizeof(S) == sizeof(float) ? value * (1 - 0x1p-24) : value);
+}
+
+// Samples to accept after the first attempt to cross that met no surface.
+constexpr double kFirstPenalty = 2;
+// Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
+constexpr double kVagueness = 0x1p-14;
+
+// Lanes of a field without regions: a block of the machine.
+constexpr int kBlock = 256;
+static_assert(Lanes<float>::kCapacity <= kMostPoints);
+
+}  // namespace
+
+template <class S>
+Stream<S>::Stream(const Field& field, const Marching& marching)
+    : Marcher(field),
+      rules_(make_rules<S>(field, marching)),
+      lanes_(new Lanes<S>()),
+      seeded_(!info(rules_.method).uses_epsilon),
+      most_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
+      knows_convex_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.knows_convex()),
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
+
+template <class S>
+void Stream<S>::begin(RayBlock& rays) {
+  while (rays.count > 0 && live_ < most_lanes_) {
+    const std::size_t i = --rays.count;
+    if (enters(rays, i)) take_up(rays, i);
+  }
+}
+
+template <class S>
+void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
+  ++live_;
+  std::size_t lane = lanes_used_;
+  if (holes_.empty()) {
+    ++lanes_used_;
+  } else {
+    lane = holes_.back();
+    holes_.pop_back();
+  }
+  S* const first = &lanes_->row[0][lane];
+  const auto put = [&](int row, S value) { first[row * static_cast<int>(Lanes<S>::kStride)] = value; };
+  for (int axis = 0; axis < 3; ++axis) {
+    const S origin = static_cast<S>(rays.origin[axis][i]);
+    put(kX + axis, origin);
+    put(kOx + axis, origin);
+    put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
+  }
+  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kPatience}) put(zero, 0);
+  put(kTMax, round_down<S>(rays.length[i]));
+  put(kSide, rays.side[i]);
+  put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
+  put(kPenalty, seeded_ ? S(kFirstPenalty) : S(1));
+  set_course(courses_[lane], rays, i);
+  instructions_[lane] = 0;
+}
+
+template <>
+void Stream<float>::evaluate() {
+  const auto& row = lanes_->row;
+  const auto count = static_cast<std::size_t>(live_);
+  const vm::Points points{row[kX], row[kY], row[kZ]};
+  if (knows_convex_) {
+    return vm::evaluate_convex(*field_.distance, points, count, distance_.data(), convex_.data(), workspace_);
+  }
+  field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
+  if (field_.regions) {
+    for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
+  }
+}
+
+template <>
+void Stream<double>::evaluate() {
+  const auto& row = lanes_->row;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
+    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, real_scratch_, instructions_[i]);
+  }
+}
+
+template <class S>
+void Stream<S>::close_holes() {
+  for (const std::size_t hole : holes_) {
+    const std::size_t last = --lanes_used_;
+    if (hole == last) continue;
+    for (auto& row : lanes_->row) row[hole] = row[last];
+    courses_[hole] = courses_[last];
+    instructions_[hole] = instructions_[last];
+  }
+  holes_.clear();
+}
+
+template <class S>
+void Stream<S>::step() {
+  close_holes();
+  evaluate();
+  const std::size_t count = static_cast<std::size_t>(live_);
+  counters_.evaluations += count;
+  counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
+  counters_.region_far = scratch_.counters.far, counters_.region_programs = scratch_.counters.specialised;
+  const Samples<S> at{distance_.data(), knows_convex_ ? convex_.data() : nullptr};
+  LaneNumbers ended;
+  for (std::size_t i = runtime::advance(*lanes_, count, at, rules_, ended); i-- > 0;) finish(ended[i]);
+}
+
+template <class S>
+void Stream<S>::finish(std::size_t i) {
+  const auto number = [&](LaneRow row) { return lanes_->row[row][i]; };
+  const Course& course = courses_[i];
+  const int side = number(kSide) < 0 ? -1 : 1;
+  const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
+  const std::uint64_t instructions =
+      field_.regions ? instructions_[i] : std::uint64_t{evaluations} * field_.distance->instructions();
+  const auto arrive_as = [&](Arrival::Status status, float width, double t) {
+    arrive(course.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
+  };
+  --live_;
+  holes_.push_back(i);
+  switch (static_cast<LaneVerdict>(number(kVerdict))) {
+    case LaneVerdict::Certify:
+      return certify_from(course, side, what_is_left(i), evaluations, instructions);
+    case LaneVerdict::Hit:
+      return arrive_as(Arrival::Status::Hit,
+                       static_cast<float>(info(rules_.method).uses_epsilon ? rules_.epsilon : number(kWidth)),
+                       course.entry + static_cast<double>(number(kRoot)));
+    case LaneVerdict::OutOfSteps:
+      ++counters_.exhausted;
+      return arrive_as(Arrival::Status::Miss, 0, 0);
+    case LaneVerdict::Miss:
+      return arrive_as(Arrival::Status::Miss, 0, 0);
+    default:
+      counters_.note_invalid({number(kX), number(kY), number(kZ)});
+      return arrive_as(Arrival::Status::Invalid, 0, 0);
+  }
+}
+
+// What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first, grown by
+// what made it vague.
+template <class S>
+Stretch Stream<S>::what_is_left(std::size_t i) const {
+  const auto number = [&](LaneRow row) { return static_cast<double>(lanes_->row[row][i]); };
+  const double t = number(kT), length = courses_[i].length;
+  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {t, length, 0};
+  const double slack = std::max(kVagueness * number(kTHi), static_cast<double>(field_.band));
+  return {std::max(0.0, t - slack), length, number(kTHi) + slack};
+}
+
+template class Stream<float>;
+template class Stream<double>;
+
+}  // namespace fathom::runtime

@@ -1,0 +1,44 @@
+// A marcher that moves all its rays on together, in float or double, by the method of its rules.
+// Tested by: tests/runtime/march/march_test.cpp
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "runtime/march/lanes.h"
+#include "runtime/march/march.h"
+
+namespace fathom::runtime {
+
+template <class S>
+class Stream final : public Marcher {
+ public:
+  Stream(const Field& field, const Marching& marching);
+
+ private:
+  static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
+
+  void begin(RayBlock& rays) override;
+  void take_up(const RayBlock& rays, std::size_t i);
+  void step() override;
+  void close_holes();
+  void evaluate();
+  void finish(std::size_t lane);
+  Stretch what_is_left(std::size_t lane) const;
+
+  LaneRules<S> rules_;
+  std::unique_ptr<Lanes<S>> lanes_;
+  const bool seeded_;     // rays begin with the slope they are given; not what others do
+  const int most_lanes_;  // in use
+  const bool knows_convex_;
+  const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
+  std::array<Course, kLanes> courses_;          // [lane]
+  alignas(64) std::array<S, kLanes> distance_;  // [lane]
+  alignas(64) std::array<S, kLanes> convex_;    // [lane]; of a field that knows
+  std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
+  std::size_t lanes_used_ = 0;      // with the holes
+  RegionScratch scratch_;
+  std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,78 @@
+// How much light a boundary reflects, and where reflected and refracted light goes.
+//
+// Directions are unit vectors away from the surface; the normal is on wo's side. `eta` is the index of refraction of
+// the far side relative to wo's.
+// Tested by: tests/runtime/material/bsdf_test.cpp
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace fathom::runtime {
+
+inline glm::vec3 reflect_about(glm::vec3 wo, glm::vec3 normal) {
+  return glm::normalize(2 * glm::dot(wo, normal) * normal - wo);
+}
+
+// The refracted direction by Snell's law; only where fresnel() < 1.
+inline glm::vec3 refract_through(glm::vec3 wo, glm::vec3 normal, float eta) {
+  const float cos_i = glm::dot(wo, normal);
+  const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
+  const float cos_t = std::sqrt(sin2_t < 1 ? 1 - sin2_t : 0.0f);
+  return glm::normalize((cos_i / eta - cos_t) * normal - wo / eta);
+}
+
+// Reflectance of a dielectric for unpolarised light that comes at `cos_i` and is refracted to `cos_t`, both in [0,1].
+// Source: Fresnel's equations, as in Born and Wolf, "Principles of Optics", 7th ed. 1999, section 1.5.2.
+inline float fresnel_between(float cos_i, float cos_t, float eta) {
+  const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+// 1 - fresnel_between(), with all its digits where next to nothing passes.
+inline float passed_between(float cos_i, float cos_t, float eta) {
+  const float parallel = eta * cos_i + cos_t, perpendicular = cos_i + eta * cos_t;
+  return 2 * eta * cos_i * cos_t * (1 / (parallel * parallel) + 1 / (perpendicular * perpendicular));
+}
+
+// fresnel_between() where only the angle in [0,1] on the side that the light comes from is known. 1 when nothing
+// passes (total internal reflection).
+inline float fresnel(float cos_i, float eta) {
+  const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
+  if (sin2_t >= 1) return 1;
+  return fresnel_between(cos_i, std::sqrt(1 - sin2_t), eta);
+}
+
+// Of a pane, with all reflections between its two sides: R + T^2 R + T^2 R^3 + ... = 2 R / (1 + R).
+inline float slab_reflectance(float one_side) { return 2 * one_side / (1 + one_side); }
+
+// Reflectance of a metal by its colour at normal incidence and the tint of it at about 82 degrees, where the cosine
+// is 1/7: Schlick's curve less a term that is 0 at both ends. Source: Kutz, Hasan, Edmondson, "Novel aspects of the
+// Adobe Standard Material", 2021; OpenPBR 1.1, "Metal".
+class F82Tint {
+ public:
+  F82Tint() = default;
+  F82Tint(glm::vec3 normal, glm::vec3 tint_at_82) : normal_(normal) {
+    constexpr float kCos = 1.0f / 7;
+    dip_ = schlick(kCos) * (1.0f - tint_at_82) / (kCos * sixth(1 - kCos));
+  }
+  glm::vec3 operator()(float cos) const {
+    return glm::clamp(schlick(cos) - dip_ * (cos * sixth(1 - cos)), 0.0f, 1.0f);
+  }
+  // Over the hemisphere by cosine: 2 int F mu dmu = F0 + (1 - F0) / 21 - dip / 126.
+  glm::vec3 average() const { return glm::clamp(normal_ + (1.0f - normal_) / 21.0f - dip_ / 126.0f, 0.0f, 1.0f); }
+
+ private:
+  static float sixth(float x) { return x * x * x * x * x * x; }
+  glm::vec3 schlick(float cos) const {
+    const float x = 1 - cos;
+    return normal_ + (1.0f - normal_) * (x * x * x * x * x);
+  }
+  glm::vec3 normal_{0}, dip_{0};
+};
+
+}  // namespace fathom::runtime

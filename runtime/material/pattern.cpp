@@ -1,0 +1,124 @@
+#include "runtime/material/pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/sampling/sampler.h"
+
+namespace fathom::runtime {
+namespace {
+
+using compiler::Pattern;
+
+bool beyond(double cell) { return !(std::abs(cell) <= kLargestCell); }
+bool beyond(glm::dvec3 p) { return beyond(p.x) || beyond(p.y) || beyond(p.z); }
+
+double fraction(double x) { return x - std::floor(x); }
+std::int64_t cell(double x) { return static_cast<std::int64_t>(std::floor(x)); }
+
+// 0 below 0, 1 above 1, and 3 u^2 - 2 u^3 between.
+double cubic_step(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
+// Perlin's 6 u^5 - 15 u^4 + 10 u^3.
+double fade(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
+
+// Scattered bits of a lattice point, by SplitMix64's finalizer (sampler.h).
+std::uint64_t hash(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
+  std::uint64_t h = mix64(seed + kGoldenGamma);
+  for (const std::int64_t part : {x, y, z}) h = mix64(h ^ static_cast<std::uint64_t>(part)) + kGoldenGamma;
+  return mix64(h);
+}
+
+// The dot product of `v` with the middle of one of a cube's twelve edges, as seen from its centre; four of them count
+// twice, so that four bits choose.
+double edge_dot(std::uint64_t bits, glm::dvec3 v) {
+  const auto h = static_cast<unsigned>(bits >> 60);
+  const double first = h < 8 ? v.x : v.y;
+  const double second = h < 4 ? v.y : (h == 12 || h == 14 ? v.x : v.z);
+  return ((h & 1) != 0 ? -first : first) + ((h & 2) != 0 ? -second : second);
+}
+
+double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+}  // namespace
+
+double checker(glm::dvec3 p) {
+  p += kOffset;
+  if (beyond(p)) return 0.5;
+  return static_cast<double>((cell(p.x) + cell(p.y) + cell(p.z)) & 1);
+}
+
+double stripes(const Pattern::Stripes& s, glm::dvec3 p) {
+  const double along = glm::dot(p, s.axis) + kOffset;
+  if (beyond(along)) return 0.5;
+  const double place = fraction(along), half = s.softness * std::min(s.width, 1 - s.width) / 2;
+  if (!(half > 0)) return place < s.width ? 0 : 1;
+  // The edge at 0 falls, the one at `width` rises; each is met from both sides of the period's end.
+  const auto edge = [&](double at) { return cubic_step((place - at) / (2 * half) + 0.5); };
+  return edge(s.width) - edge(1) + (1 - edge(0));
+}
+
+double gradient(const Pattern::Gradient& g, glm::dvec3 p) {
+  const glm::dvec3 way = g.to - g.from;
+  return std::clamp(glm::dot(p - g.from, way) / glm::dot(way, way), 0.0, 1.0);
+}
+
+double gradient_noise(glm::dvec3 p, std::uint64_t seed) {
+  if (beyond(p)) return 0;
+  const std::int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
+  const glm::dvec3 f = p - glm::floor(p);
+  const auto corner = [&](int i, int j, int k) {
+    return edge_dot(hash(x + i, y + j, z + k, seed), f - glm::dvec3(i, j, k));
+  };
+  const double u = fade(f.x), v = fade(f.y), w = fade(f.z);
+  const auto side = [&](int j, int k) { return mix(corner(0, j, k), corner(1, j, k), u); };
+  return mix(mix(side(0, 0), side(1, 0), v), mix(side(0, 1), side(1, 1), v), w);
+}
+
+double noise(const Pattern::Noise& n, glm::dvec3 p) {
+  // At the octaves' whole coordinates noise is 0: moved apart by the fractions of multiples of irrational numbers, no
+  // plane of the scene is all of it.
+  constexpr glm::dvec3 kApart(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+  double sum = 0, strength = 1, all = 0;
+  for (int octave = 0; octave < n.octaves; ++octave) {
+    const auto number = static_cast<std::uint64_t>(octave);
+    sum += strength * gradient_noise(p + kApart * (octave + 1.0), mix64(n.seed) + number);
+    all += strength;
+    strength *= n.gain;
+    p *= n.lacunarity;
+  }
+  return std::clamp(0.5 + 0.5 * n.contrast * sum / all, 0.0, 1.0);
+}
+
+double bricks(const Pattern::Bricks& b, glm::dvec3 p) {
+  const double row = p.y / b.height + kOffset;
+  if (beyond(row) || beyond(p.x / b.width)) return 0.5;
+  const double column = p.x / b.width + kOffset - b.shift * (std::floor(row) - 2 * std::floor(row / 2));
+  // Half of the mortar to either side of a cell's edge.
+  const auto off_edge = [](double place, double size) {
+    const double part = fraction(place);
+    return std::min(part, 1 - part) * size;
+  };
+  return std::min(off_edge(row, b.height), off_edge(column, b.width)) < b.mortar / 2 ? 1 : 0;
+}
+
+double pattern_value(const Pattern& pattern, glm::dvec3 position) {
+  const glm::dvec3 p = pattern.to_pattern(position);
+  if (!std::isfinite(p.x + p.y + p.z)) return std::nan("");
+  struct Value {
+    glm::dvec3 p;
+    double operator()(const Pattern::Checker&) const { return checker(p); }
+    double operator()(const Pattern::Stripes& s) const { return stripes(s, p); }
+    double operator()(const Pattern::Gradient& g) const { return gradient(g, p); }
+    double operator()(const Pattern::Noise& n) const { return noise(n, p); }
+    double operator()(const Pattern::Bricks& b) const { return bricks(b, p); }
+  };
+  return std::visit(Value{p}, pattern.kind);
+}
+
+}  // namespace fathom::runtime

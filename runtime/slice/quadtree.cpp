@@ -1,0 +1,162 @@
+#include "runtime/slice/quadtree.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "vm/specialise.h"
+
+namespace fathom::runtime {
+namespace {
+
+// Edges of the tiles, pixels; a tile holds kSide * kSide of the next.
+constexpr int kEdges[] = {256, 64, 16};
+constexpr int kLevels = 3, kSide = 4;
+static_assert(kSide * kSide == vm::kEnclosedBoxes);
+// With fewer choices a row at a time is as fast.
+constexpr std::size_t kLeastChoices = 24;
+
+struct Tile {
+  int x, y;  // of its first pixel
+};
+
+class QuadtreeWorker {
+ public:
+  QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
+      : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {
+    for (int axis = 0; axis < 3; ++axis) {
+      auto &columns = columns_[static_cast<std::size_t>(axis)], &rows = rows_[static_cast<std::size_t>(axis)];
+      for (int x = 0; x < slice.width; ++x) columns.push_back(static_cast<float>(slice.point(x, 0)[axis]));
+      for (int y = 0; y < slice.height; ++y) rows.push_back(static_cast<float>(slice.point(0, y)[axis]));
+      by_column_[static_cast<std::size_t>(axis)] = columns.front() != columns.back();
+    }
+  }
+
+  // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
+  void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
+    const int edge = kEdges[level];
+    set_boxes(first, edge);
+    vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
+    specialiser.look(part, boxes(), workspace_);
+    const float infinity = std::numeric_limits<float>::infinity();
+    specialiser.decide(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const Tile tile = tile_of(first, edge, i);
+      if (tile.x >= slice_.width || tile.y >= slice_.height || (only < vm::kEnclosedBoxes && i != only)) continue;
+      if (sign_ && (specialiser.lo(i) > 0 || specialiser.hi(i) < 0)) {
+        fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
+        continue;
+      }
+      const vm::Part& child = cut(part, specialiser, i, level);
+      if (level + 1 < kLevels) {
+        run(child, tile, level + 1);
+      } else {
+        evaluate(child, tile);
+      }
+    }
+  }
+
+ private:
+  // What of `part` matters in box i; the part itself where writing that down costs more than it saves.
+  const vm::Part& cut(const vm::Part& part, vm::Specialiser& specialiser, std::size_t i, int level) {
+    constexpr std::uint32_t kCheap = 16;  // choices
+    if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
+    vm::Part& child = parts_[static_cast<std::size_t>(level)];
+    specialiser.part(i, child);
+    return child;
+  }
+  static Tile tile_of(Tile first, int edge, std::size_t i) {
+    return {first.x + edge * static_cast<int>(i % kSide), first.y + edge * static_cast<int>(i / kSide)};
+  }
+  vm::Boxes boxes() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
+
+  // From the first pixel's centre to the last one's, in the coordinates the pixels are evaluated at.
+  void set_boxes(Tile first, int edge) {
+    for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
+      const Tile tile = tile_of(first, edge, i);
+      const int x0 = std::min(tile.x, slice_.width - 1), y0 = std::min(tile.y, slice_.height - 1);
+      const int x1 = std::min(tile.x + edge, slice_.width) - 1, y1 = std::min(tile.y + edge, slice_.height) - 1;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float a = place(axis, x0, y0), b = place(axis, std::max(x0, x1), std::max(y0, y1));
+        lo_[axis][i] = std::min(a, b), hi_[axis][i] = std::max(a, b);
+      }
+    }
+  }
+
+  // A coordinate of a pixel.
+  float place(std::size_t axis, int x, int y) const {
+    return by_column_[axis] ? columns_[axis][static_cast<std::size_t>(x)] : rows_[axis][static_cast<std::size_t>(y)];
+  }
+  float* row(int y) { return field_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice_.width); }
+
+  void fill(Tile tile, int edge, float value) {
+    const int x1 = std::min(tile.x + edge, slice_.width), y1 = std::min(tile.y + edge, slice_.height);
+    for (int y = tile.y; y < y1; ++y) std::fill(row(y) + tile.x, row(y) + x1, value);
+  }
+
+  void evaluate(const vm::Part& part, Tile tile) {
+    constexpr int kEdge = kEdges[kLevels - 1];
+    const int x1 = std::min(tile.x + kEdge, slice_.width), y1 = std::min(tile.y + kEdge, slice_.height);
+    alignas(64) std::array<std::array<float, kEdge * kEdge>, 3> points;
+    alignas(64) std::array<float, kEdge * kEdge> values;
+    std::size_t count = 0;
+    for (int y = tile.y; y < y1; ++y, count += static_cast<std::size_t>(x1 - tile.x)) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        float* to = points[axis].data() + count;
+        if (by_column_[axis]) {
+          std::copy(columns_[axis].data() + tile.x, columns_[axis].data() + x1, to);
+        } else {
+          std::fill(to, to + (x1 - tile.x), rows_[axis][static_cast<std::size_t>(y)]);
+        }
+      }
+    }
+    vm::evaluate_distance(part, {points[0].data(), points[1].data(), points[2].data()}, count, values.data(),
+                          workspace_);
+    const float* from = values.data();
+    for (int y = tile.y; y < y1; ++y, from += x1 - tile.x) std::copy_n(from, x1 - tile.x, row(y) + tile.x);
+  }
+
+  const Slice& slice_;
+  const bool sign_;
+  std::vector<float>& field_;
+  // [axis] where the first row's pixels are, and the first column's, and whether it changes along a row.
+  std::array<std::vector<float>, 3> columns_, rows_;
+  std::array<bool, 3> by_column_{};
+  vm::Workspace workspace_;
+  std::array<vm::Specialiser, kLevels> specialisers_;
+  std::array<vm::Part, kLevels> parts_;
+  alignas(64) float lo_[3][vm::kEnclosedBoxes], hi_[3][vm::kEnclosedBoxes];
+};
+
+}  // namespace
+
+bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
+                          std::vector<float>& field) {
+  vm::Expression expression;
+  if (!expression.read(distance) || expression.choices().size() < kLeastChoices) return false;
+  const vm::Part part = vm::whole(distance);
+  const int step = kEdges[0] * kSide;
+  const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
+  std::atomic<int> next{0};
+  // The largest tiles are handed out one by one; what is known of sixteen costs as much as of one.
+  constexpr int kTiles = kSide * kSide;
+  const auto work = [&] {
+    QuadtreeWorker worker(slice, wanted, field);
+    for (int i = next++; i < columns * rows * kTiles; i = next++) {
+      const int block = i / kTiles;
+      worker.run(part, {block % columns * step, block / columns * step}, 0,
+                 threads > 1 ? static_cast<std::size_t>(i % kTiles) : vm::kEnclosedBoxes);
+      if (threads <= 1) next += kTiles - 1;
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < std::min(threads, columns * rows * kTiles); ++i) others.emplace_back(work);
+  work();
+  for (std::thread& thread : others) thread.join();
+  return true;
+}
+
+}  // namespace fathom::runtime

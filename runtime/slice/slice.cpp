@@ -1,0 +1,211 @@
+#include "runtime/slice/slice.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "runtime/slice/quadtree.h"
+#include "vm/evaluate.h"
+
+namespace fathom::runtime {
+namespace {
+
+// The scene's axes of a slice: that of its first coordinate, that of its second, and whether the picture's right and
+// up are their negative directions.
+struct View {
+  int first, second;
+  bool left, down;
+};
+
+View view_of(Axis axis) {
+  if (axis == Axis::X) return {2, 1, true, false};
+  if (axis == Axis::Y) return {0, 2, false, true};
+  return {0, 1, false, false};
+}
+
+constexpr double kWithoutEnd = 2;  // scene units; how far an endless side is shown
+
+// An interval with ends, not empty, a tenth longer than [lo, hi].
+void frame_side(double& lo, double& hi) {
+  if (!(lo <= hi)) lo = -kWithoutEnd, hi = kWithoutEnd;
+  if (!std::isfinite(lo)) lo = std::min(-kWithoutEnd, std::isfinite(hi) ? hi - 2 * kWithoutEnd : 0);
+  if (!std::isfinite(hi)) hi = std::max(kWithoutEnd, lo + 2 * kWithoutEnd);
+  const double margin = 0.05 * (hi - lo);
+  lo -= margin;
+  hi += margin;
+}
+
+void widen(double& lo, double& hi, double length) {
+  const double margin = 0.5 * std::max(0.0, length - (hi - lo));
+  lo -= margin;
+  hi += margin;
+}
+
+// PixelRows are handed out one by one; each worker has its own scratch memory.
+class PixelRows {
+ public:
+  PixelRows(const vm::VerifiedProgram& distance, const Slice& slice, std::vector<float>& field)
+      : distance_(distance), slice_(slice), field_(field) {}
+
+  void work() {
+    const auto width = static_cast<std::size_t>(slice_.width);
+    std::array<std::vector<float>, 3> points;
+    for (auto& coordinates : points) coordinates.resize(width);
+    vm::Workspace workspace;
+    for (int row; (row = next_.fetch_add(1, std::memory_order_relaxed)) < slice_.height;) {
+      for (int column = 0; column < slice_.width; ++column) {
+        const glm::dvec3 point = slice_.point(column, row);
+        for (std::size_t i = 0; i < 3; ++i) {
+          points[i][static_cast<std::size_t>(column)] = static_cast<float>(point[static_cast<int>(i)]);
+        }
+      }
+      vm::evaluate_distance(distance_, {points[0].data(), points[1].data(), points[2].data()}, width,
+                            field_.data() + static_cast<std::size_t>(row) * width, workspace);
+    }
+  }
+
+ private:
+  const vm::VerifiedProgram& distance_;
+  const Slice& slice_;
+  std::vector<float>& field_;
+  std::atomic<int> next_{0};
+};
+
+// The colour-blind see blue and orange as different as anyone does; both are sRGB encoded already. The far end of
+// either is its faint colour, so that the surface stands out.
+struct Shade {
+  glm::dvec3 near, far, line;
+};
+constexpr Shade kInside{{0.13, 0.37, 0.70}, {0.66, 0.80, 0.94}, {0.05, 0.19, 0.42}};
+constexpr Shade kOutside{{0.95, 0.62, 0.25}, {1.0, 0.94, 0.84}, {0.66, 0.36, 0.05}};
+constexpr glm::dvec3 kSurfaceLine{0.04, 0.04, 0.05};
+constexpr glm::dvec3 kNotANumber{1, 0, 1};
+constexpr double kSurfaceWidth = 2.4, kBandWidth = 1.2;  // of the lines, pixels
+constexpr double kFlat =
+    1e-5;  // per pixel, of a band: a slope some thousand times less than a distance's is rounding
+
+class DistanceShader {
+ public:
+  DistanceShader(const std::vector<float>& field, int width, int height, double step)
+      : field_(field), width_(width), height_(height), step_(step) {}
+
+  glm::dvec3 color(int x, int y) const {
+    const double d = value(x, y);
+    if (std::isnan(d)) return kNotANumber;
+    const Shade& shade = d < 0 ? kInside : kOutside;
+    const double bands = std::abs(d) / step_;
+    // Half way to the faint colour after four bands.
+    glm::dvec3 color = glm::mix(shade.near, shade.far, std::isinf(bands) ? 1.0 : bands / (bands + 4));
+    const double slope = slope_per_pixel(x, y);
+    const double nearest = std::round(bands);
+    // A level that a whole region is at, as above a floor seen from above, is no line.
+    if (nearest >= 1 && std::isfinite(bands) && slope > kFlat * step_) {
+      color = glm::mix(color, shade.line, 0.75 * coverage(std::abs(bands - nearest) * step_, slope, kBandWidth));
+    }
+    return glm::mix(color, kSurfaceLine, coverage(std::abs(d), slope, kSurfaceWidth));
+  }
+
+ private:
+  double value(int x, int y) const {
+    return static_cast<double>(
+        field_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
+  }
+
+  // How fast the field changes, per pixel. Of the differences to either side the larger one: at a crease they cancel.
+  double slope_per_pixel(int x, int y) const {
+    const double here = value(x, y);
+    const auto difference = [&](int i, int j) {
+      if (i < 0 || j < 0 || i >= width_ || j >= height_) return 0.0;
+      const double change = std::abs(value(i, j) - here);
+      return std::isfinite(change) ? change : 0.0;
+    };
+    return std::hypot(std::max(difference(x - 1, y), difference(x + 1, y)),
+                      std::max(difference(x, y - 1), difference(x, y + 1)));
+  }
+
+  // How much of a pixel a line covers whose middle is `away` from the pixel's, in units of the field.
+  static double coverage(double away, double slope, double line_width) {
+    if (!(slope > 0)) return away == 0 ? 1 : 0;
+    return std::clamp(0.5 * line_width + 0.5 - away / slope, 0.0, 1.0);
+  }
+
+  const std::vector<float>& field_;
+  int width_, height_;
+  double step_;
+};
+
+}  // namespace
+
+glm::dvec3 Slice::point(int column, int row) const {
+  const View view = view_of(axis);
+  double across = (column + 0.5) / width, up = (height - row - 0.5) / height;
+  if (view.left) across = (width - column - 0.5) / width;
+  if (view.down) up = (row + 0.5) / height;
+  glm::dvec3 point;
+  point[static_cast<int>(axis)] = at;
+  point[view.first] = lo.x + across * (hi.x - lo.x);
+  point[view.second] = lo.y + up * (hi.y - lo.y);
+  return point;
+}
+
+glm::dvec2 on_plane(Axis axis, glm::dvec3 point) {
+  const View view = view_of(axis);
+  return {point[view.first], point[view.second]};
+}
+
+Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height) {
+  Slice slice{axis, at, on_plane(axis, box.lo), on_plane(axis, box.hi), width, height};
+  frame_side(slice.lo.x, slice.hi.x);
+  frame_side(slice.lo.y, slice.hi.y);
+  double pixel = std::max((slice.hi.x - slice.lo.x) / width, (slice.hi.y - slice.lo.y) / height);
+  if (!(pixel > 0)) pixel = 2 * kWithoutEnd / std::max(width, height);  // a solid without extent
+  widen(slice.lo.x, slice.hi.x, pixel * width);
+  widen(slice.lo.y, slice.hi.y, pixel * height);
+  return slice;
+}
+
+std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
+                                  SliceValues wanted) {
+  std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
+  if (evaluate_by_quadtree(distance, slice, wanted, threads, field)) return field;
+  PixelRows rows(distance, slice, field);
+  std::vector<std::thread> others;
+  for (int i = 1; i < std::min(threads, slice.height); ++i) others.emplace_back([&] { rows.work(); });
+  rows.work();
+  for (std::thread& thread : others) thread.join();
+  return field;
+}
+
+Picture sign_picture(const std::vector<float>& field, int width, int height) {
+  Picture picture{width, height, {}};
+  picture.rgb.reserve(3 * field.size());
+  for (const float value : field) picture.rgb.insert(picture.rgb.end(), 3, value < 0 ? 255 : 0);
+  return picture;
+}
+
+double band_step(double length) {
+  const double wanted = length / 10;
+  const double power = std::pow(10, std::floor(std::log10(wanted)));
+  double best = power;
+  for (const double step : {2 * power, 5 * power, 10 * power}) {
+    if (std::abs(std::log(step / wanted)) < std::abs(std::log(best / wanted))) best = step;
+  }
+  return best;
+}
+
+Picture distance_picture(const std::vector<float>& field, int width, int height, double step) {
+  const DistanceShader shader(field, width, height, step);
+  Picture picture{width, height, {}};
+  picture.rgb.reserve(3 * field.size());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::dvec3 color = shader.color(x, y);
+      for (int i = 0; i < 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(color[i] * 255 + 0.5));
+    }
+  }
+  return picture;
+}
+
+}  // namespace fathom::runtime

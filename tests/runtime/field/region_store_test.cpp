@@ -1,0 +1,107 @@
+// Regions that are kept from render to render.
+#include "runtime/field/region_store.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "runtime/field/field.h"
+#include "runtime/render.h"
+#include "tests/support/compiled.h"
+
+namespace fathom::region_store_test {
+namespace {
+
+using namespace fathom;
+using runtime::RegionOptions;
+using runtime::RegionStore;
+
+// A cube of balls, large enough for regions. `first` moves the first of them.
+compiler::CompiledScene balls(double first, double light = 1) {
+  std::string objects;
+  for (int i = 0; i < 343; ++i) {
+    const double x = i % 7 + (i == 0 ? first : 0);
+    objects += std::string(i > 0 ? "," : "") + R"({"type": "sphere", "radius": 0.3, "translate": [)" +
+               std::to_string(x) + "," + std::to_string(i / 7 % 7) + "," + std::to_string(i / 49) + "]}";
+  }
+  return tests::compiled(
+      R"({"version": 1, "camera": {"position": [3, 3, 20], "target": [3, 3, 3]}, "film": {"width": 32, "height": 24},
+    "render": {"spp": 16}, "background": [)" +
+      std::to_string(light) + R"(, 1, 1], "objects": [)" + objects + "]}");
+}
+
+RegionOptions options() {
+  RegionOptions options;
+  options.always = true;
+  return options;
+}
+
+TEST_CASE("region store: the same program, box and options have the same regions; others their own") {
+  const compiler::CompiledScene a = balls(0), same = balls(0), moved = balls(0.1);
+  RegionStore store;
+  const auto first = store.build(a.surface, a.contents, options());
+  REQUIRE(first);
+  CHECK_FALSE(store.kept(*first));
+  RegionOptions threads = options();
+  threads.threads = 2;
+  CHECK(store.build(same.surface, same.contents, threads) == first);
+  CHECK(store.kept(*first));
+  CHECK(store.build(moved.surface, moved.contents, options()) != first);
+  RegionOptions less = options();
+  less.memory /= 2;
+  CHECK(store.build(a.surface, a.contents, less) != first);
+  RegionOptions larger = options();
+  larger.room = 1;
+  CHECK(store.build(a.surface, a.contents, larger) != first);
+}
+
+TEST_CASE("region store: what was not asked for is forgotten, and lives on with who has it") {
+  std::shared_ptr<const runtime::Regions> first;
+  RegionStore store;
+  {
+    const compiler::CompiledScene a = balls(0), b = balls(0.1);
+    first = store.build(a.surface, a.contents, options());
+    store.forget_unused();
+    CHECK(store.build(a.surface, a.contents, options()) == first);
+    store.forget_unused();
+    store.build(b.surface, b.contents, options());
+    store.forget_unused();
+    const auto again = store.build(a.surface, a.contents, options());
+    CHECK(again != first);
+    CHECK_FALSE(store.kept(*again));
+  }
+  // The program that it was built of is gone, but for the store's own.
+  runtime::RealScratch scratch;
+  std::uint64_t instructions = 0;
+  CHECK(first->evaluate(glm::dvec3(0, 0, 0.3), scratch, instructions) == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("region store: those that were interrupted are not kept, those that cannot be are") {
+  const compiler::CompiledScene a = balls(0);
+  RegionStore store;
+  RegionOptions interrupted = options();
+  interrupted.interrupted = [] { return true; };
+  CHECK_FALSE(store.build(a.surface, a.contents, interrupted));
+  CHECK(store.build(a.surface, a.contents, options()));
+  RegionOptions tiny = options();
+  tiny.memory = 1;
+  CHECK_FALSE(store.build(a.surface, a.contents, tiny));
+  CHECK_FALSE(store.build(a.surface, a.contents, tiny));
+}
+
+TEST_CASE("region store: a render with kept regions has the bits of one without, and says that they are kept") {
+  const compiler::CompiledScene first = balls(0), other_light = balls(0, 0.5);
+  runtime::RenderOptions options;
+  const std::uint64_t wanted = runtime::render(other_light, options).film.hash();
+  options.region_store = std::make_shared<RegionStore>();
+  const runtime::RenderResult built = runtime::render(first, options);
+  REQUIRE(built.stats.region_bytes > 0);
+  CHECK(built.stats.regions_kept == 0);
+  const runtime::RenderResult kept = runtime::render(other_light, options);
+  CHECK(kept.stats.regions_kept == 1);
+  CHECK(kept.stats.region_seconds == 0);
+  CHECK(kept.stats.region_bytes == built.stats.region_bytes);
+  CHECK(kept.film.hash() == wanted);
+}
+
+}  // namespace
+}  // namespace fathom::region_store_test

@@ -1,0 +1,214 @@
+// What lies beyond the scene: radiance, and directions against their density.
+#include "runtime/light/environment.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "runtime/base/color.h"
+#include "runtime/sampling/sampler.h"
+#include "tests/runtime/scenes.h"
+#include "tests/support/chi_square.h"
+#include "tests/support/effort.h"
+#include "tests/support/environments.h"
+#include "tests/support/sample_bins.h"
+
+namespace fathom::runtime::environment_test {
+namespace {
+
+using test::kPicture, test::kSky, test::random_image;
+
+const LightQuery kUp{{0, 0, 0}, {0, 1, 0}};
+const LightQuery kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
+const LightQuery kBoth{{0, 0, 0}, {0, 0, 1}, true};
+
+compiler::CompiledScene scene_with(const std::string& settings) {
+  return scene_of(settings + R"(, "objects": [{"type": "sphere", "radius": 1}])");
+}
+
+// A direction by height and turn, of which equal steps are equal solid angles.
+glm::vec3 direction_at(double y, double turn) {
+  const double s = std::sqrt(std::max(0.0, 1 - y * y));
+  return {s * std::cos(2 * M_PI * turn), y, s * std::sin(2 * M_PI * turn)};
+}
+
+// Directions fall as pdf() says and it integrates to 1; discs are left out of both.
+void check_density(const Environment& environment, const LightQuery& query) {
+  constexpr int kRows = 16, kColumns = 16, kGrid = 24;
+  std::vector<double> expected(kRows * kColumns), counts(kRows * kColumns);
+  double mass = 0;
+  for (int r = 0; r < kRows * kGrid; ++r) {
+    for (int c = 0; c < kColumns * kGrid; ++c) {
+      const glm::vec3 w = direction_at(1 - 2 * (r + 0.5) / (kRows * kGrid), (c + 0.5) / (kColumns * kGrid));
+      const double p = static_cast<double>(environment.pdf(query, w)) * 4 * M_PI / (kRows * kColumns * kGrid * kGrid);
+      expected[static_cast<std::size_t>(r / kGrid * kColumns + c / kGrid)] += p;
+      mass += p;
+    }
+  }
+  CHECK(mass == Approx(1).epsilon(0.01));
+  const int n = test::few(40000);
+  for (int i = 0; i < n; ++i) {
+    Sampler sampler(5, static_cast<std::uint32_t>(i), 0, 0);
+    const float choice = sampler.next();
+    const glm::vec3 w = environment.sample(query, choice, sampler.next2());
+    const double turn = std::atan2(w.z, w.x) / (2 * M_PI);
+    const int r = std::clamp(static_cast<int>((1 - static_cast<double>(w.y)) / 2 * kRows), 0, kRows - 1);
+    const int c = std::clamp(static_cast<int>((turn < 0 ? turn + 1 : turn) * kColumns), 0, kColumns - 1);
+    ++counts[static_cast<std::size_t>(r * kColumns + c)];
+  }
+  CHECK(std::abs(test::chi_square_deviation(counts, expected, n)) < 5);
+}
+
+// Irradiance by sampling, with its standard error.
+struct Mean {
+  double value, error;
+};
+Mean irradiance(const Environment& environment, const LightQuery& query, int n) {
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    Sampler sampler(6, static_cast<std::uint32_t>(i), 0, 0);
+    const float choice = sampler.next();
+    const glm::vec3 w = environment.sample(query, choice, sampler.next2());
+    const auto cosine = static_cast<double>(glm::dot(w, query.normal));
+    const auto pdf = static_cast<double>(environment.pdf(query, w));
+    if (!(cosine > 0) || !(pdf > 0)) continue;
+    const double value = cosine * static_cast<double>(luminance(environment.radiance(w))) / pdf;
+    sum += value;
+    squares += value * value;
+  }
+  return {sum / n, std::sqrt((squares / n - sum / n * (sum / n)) / n)};
+}
+
+TEST_CASE("environment: directions fall as their density says", "[lights]") {
+  const Environment sky(scene_with(kSky), nullptr);
+  const Environment picture(scene_with(kPicture), random_image(12, 6));
+  for (const LightQuery& query : {kUp, kAside, kBoth}) {
+    check_density(sky, query);
+    check_density(picture, query);
+  }
+}
+
+TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
+  const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
+  CHECK(!gradient.emits());  // rays find it
+  CHECK(gradient.estimate(kUp) == 0);
+  auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
+  const Environment picture(scene_with(kPicture), white);
+  const Mean of_white = irradiance(picture, kAside, 40000);
+  CHECK(std::abs(of_white.value - 2 * M_PI) < 4 * of_white.error);
+}
+
+TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and it turns counter-clockwise",
+          "[lights]") {
+  EnvironmentImage image{4, 2, std::vector<glm::vec3>(8, glm::vec3(0))};
+  for (std::size_t i = 0; i < 8; ++i) image.pixels[i] = glm::vec3(static_cast<float>(i));
+  const auto shared = std::make_shared<EnvironmentImage>(image);
+  const auto looking = [&](const char* rotate, glm::vec3 w) {
+    const std::string settings = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
+                                 R"(/tests/data/one-pixel.hdr", "rotate": )" +
+                                 std::string(rotate) + "}";
+    return Environment(scene_with(settings), shared).radiance(glm::normalize(w)).x;
+  };
+  // The middles of the pixels of the upper row: at 45 degrees of elevation, u = 1/8, 3/8, 5/8, 7/8.
+  const float s = std::sqrt(0.5f);
+  CHECK(looking("0", {-s, 1, s}) == Approx(0).margin(1e-5));
+  CHECK(looking("0", {-s, 1, -s}) == Approx(1));
+  CHECK(looking("0", {s, 1, -s}) == Approx(2));
+  CHECK(looking("0", {s, -1, s}) == Approx(7));
+  CHECK(looking("0", {0, 1, -1}) == Approx(1.5));
+  CHECK(looking("90", {-s, 1, -s}) == Approx(2));  // what was in front on the right is on the left
+}
+
+TEST_CASE("environment: discs give the irradiance asked for, and rays see them", "[lights]") {
+  const Environment lit(scene_with(R"("lights": {"far": {"type": "directional", "direction": [0, -1, 0],
+      "irradiance": [2, 2, 2], "angle": 5}})"),
+                        nullptr);
+  CHECK(lit.emits());
+  const Mean e = irradiance(lit, kUp, 20000);
+  CHECK(e.value == Approx(2).epsilon(1e-3));
+  const float sine = static_cast<float>(std::sin(5 * M_PI / 180));
+  CHECK(lit.radiance({0, 1, 0}).x == Approx(2 / (M_PI * static_cast<double>(sine * sine))).epsilon(1e-5));
+  CHECK(lit.radiance(glm::normalize(glm::vec3(0.99f * sine, std::sqrt(1 - sine * sine), 0))).x > 0);
+  CHECK(lit.radiance(glm::normalize(glm::vec3(1.02f * sine, std::sqrt(1 - sine * sine), 0))).x == 0);
+  CHECK(lit.pdf(kUp, {0, 1, 0}) == Approx(1 / (2 * M_PI * (1 - std::cos(5 * M_PI / 180)))).epsilon(1e-4));
+  CHECK(lit.pdf(kUp, {1, 0, 0}) == 0);
+}
+
+// Unaligned, what rounding to floats does to directions differs from place to place.
+std::string disc_of(double degrees) {
+  return R"("lights": {"far": {"type": "directional", "direction": [-1, -2, -1], "irradiance": [2, 2, 2], "angle": )" +
+         std::to_string(degrees) + "}}";
+}
+
+TEST_CASE("environment: a disc however small gives the irradiance asked for", "[lights]") {
+  for (const double degrees : {20.0, 0.265, 1e-2, 1e-4, 1e-6}) {
+    CAPTURE(degrees);
+    const Environment lit(scene_with(disc_of(degrees)), nullptr);
+    const Mean e = irradiance(lit, {{0, 0, 0}, glm::normalize(glm::vec3(1, 2, 1))}, 20000);
+    CHECK(e.value == Approx(2).epsilon(degrees > 1 ? 1e-3 : 1e-5));
+  }
+}
+
+// Once, a disc of 1e-4 degrees, as rays met it, was 7 % larger than its radiance was for.
+TEST_CASE("environment: rays that hit a small disc find its irradiance", "[lights]") {
+  const Environment lit(scene_with(disc_of(1e-4)), nullptr);
+  const glm::vec3 middle = glm::normalize(glm::vec3(1, 2, 1));
+  const glm::vec3 aside = glm::normalize(glm::cross(middle, glm::vec3(1, 0, 0)));
+  float least = 0, most = 1e-3f;  // sines; its rim is between
+  for (int i = 0; i < 40; ++i) {
+    const float between = (least + most) / 2;
+    (lit.radiance(glm::normalize(middle + between * aside)).x > 0 ? least : most) = between;
+  }
+  CHECK(M_PI * least * least * lit.radiance(middle).x == Approx(2).epsilon(1e-3));
+}
+
+TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[lights]") {
+  const Environment lit(scene_with(disc_of(10)), nullptr);
+  test::ChiSquareSetup setup;
+  setup.samples = test::few(100000);
+  // About the disc's middle, rows of 5 degrees: its rim is a side of cells.
+  setup.pole = glm::normalize(glm::vec3(1, 2, 1));
+  setup.rows = 36;
+  setup.columns = 72;
+  for (const LightQuery& query : {kUp, kBoth}) {
+    const auto sample = [&](Sampler& s) {
+      const float choice = s.next();
+      return lit.sample(query, choice, s.next2());
+    };
+    const auto pdf = [&](glm::vec3 w) { return static_cast<double>(lit.pdf(query, w)); };
+    const test::ChiSquare result = test::chi_square(sample, pdf, setup);
+    CAPTURE(result.describe());
+    CHECK(result.p > test::sidak(0.01, 2));
+    CHECK(result.integral == Approx(1).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("environment: a sky with its sun is sampled without bias", "[lights]") {
+  const compiler::CompiledScene scene =
+      scene_with(R"("background": {"type": "sky", "elevation": 40, "turbidity": 3})");
+  const Environment environment(scene, nullptr);
+  const Sky sky(scene.background.sky);
+  double level = static_cast<double>(luminance(sky.sun_irradiance())) * scene.background.sky.sun.y;
+  constexpr int kSteps = 300;
+  for (int r = 0; r < kSteps; ++r) {
+    for (int c = 0; c < kSteps; ++c) {
+      const double y = (r + 0.5) / kSteps;
+      level += y * static_cast<double>(luminance(sky.radiance(direction_at(y, (c + 0.5) / kSteps)))) * 2 * M_PI /
+               (kSteps * kSteps);
+    }
+  }
+  const Mean e = irradiance(environment, kUp, 60000);
+  CAPTURE(e.value, level, e.error);
+  CHECK(std::abs(e.value - level) < 4 * e.error + 1e-3 * level);
+  CHECK(e.error < 0.01 * level);
+}
+
+TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[lights]") {
+  const Environment dark(scene_with(R"("film": {})"), nullptr);
+  CHECK_FALSE(dark.emits());
+  CHECK(dark.estimate(kUp) == 0);
+  CHECK(dark.pdf(kUp, {0, 1, 0}) == 0);
+}
+
+}  // namespace
+}  // namespace fathom::runtime::environment_test

@@ -1,0 +1,137 @@
+#include "runtime/march/certify.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "runtime/march/march.h"
+#include "tests/runtime/rays.h"
+#include "tests/runtime/scenes.h"
+#include "tests/vm/float_bits.h"
+
+namespace fathom::runtime::certify_test {
+namespace {
+
+using Status = Arrival::Status;
+
+TEST_CASE("certify: first roots of a sphere, from outside and from within", "[march]") {
+  const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
+  const Field field = make_field(scene);
+  RealScratch scratch;
+  const Certified outside = certify(field, {0.5, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch);
+  CHECK(outside.status == Status::Hit);
+  CHECK(std::abs(outside.t - (5 - std::sqrt(0.75))) <= 1e-12);
+  CHECK(outside.width <= 1e-12);
+  const Certified inside = certify(field, {0.5, 0, 0}, {0, 0, -1}, -1, {0, 10, 0}, scratch);
+  CHECK(inside.status == Status::Hit);
+  CHECK(std::abs(inside.t - std::sqrt(0.75)) <= 1e-12);
+  CHECK(certify(field, {1.001, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch).status == Status::Miss);
+}
+
+TEST_CASE("certify: the end of the segment counts", "[march]") {
+  const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
+  const Field field = make_field(scene);
+  RealScratch scratch;
+  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 3.999, 0}, scratch).status == Status::Miss);
+  CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 4.001, 0}, scratch).status == Status::Hit);
+}
+
+TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
+  const auto box = scene_of(R"("objects": [{"type": "box", "half_size": [1, 1, 1]}])");
+  const auto ball = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
+  const Field box_field = make_field(box), ball_field = make_field(ball);
+  RealScratch scratch;
+  // Past an edge of the box.
+  const glm::dvec3 along = glm::normalize(glm::dvec3(1, -1, 0.5));
+  const auto past_edge = [&](double gap) {
+    return certify(box_field, glm::dvec3(1 + gap, 1 + gap, 0) - 5.0 * along, along, 1, {0, 10, 0}, scratch).status;
+  };
+  CHECK(past_edge(1e-13) == Status::Contact);
+  CHECK(past_edge(1e-10) == Status::Miss);
+  // A curve is nearly level where it touches: what the derivative excludes takes no resolution.
+  const glm::dvec3 aside = glm::normalize(glm::dvec3(2, -1, 0)), by = glm::normalize(glm::dvec3(1, 2, 3));
+  const auto past_ball = [&](double gap) {
+    return certify(ball_field, (1 + gap) * aside - 5.0 * by, by, 1, {0, 10, 0}, scratch);
+  };
+  CHECK(past_ball(1e-13).status == Status::Miss);
+  CHECK(past_ball(1e-13).evaluations < 100);
+  CHECK(past_ball(-1e-13).status == Status::Hit);
+}
+
+TEST_CASE("certify: intervals settle a long ray along a plane in a few evaluations", "[march]") {
+  const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])");
+  const Field field = make_field(scene);
+  RealScratch scratch;
+  const Certified along = certify(field, {0, 1e-6, 0}, {1, 0, 0}, 1, {0, 1e4, 0}, scratch);
+  CHECK(along.status == Status::Miss);
+  CHECK(along.evaluations < 10);
+  const double slope = 1e-6;
+  const Certified down = certify(field, {0, 1e-3, 0}, {1, -slope, 0}, 1, {0, 1e4, 0}, scratch);
+  REQUIRE(down.status == Status::Hit);
+  CHECK(down.t == Approx(1000).epsilon(1e-6));
+  CHECK(down.evaluations < 200);
+}
+
+// Rays that graze a fractal, and what blends.
+compiler::CompiledScene difficult_scene() {
+  return scene_of(R"("objects": [
+      {"type": "mandelbulb", "power": 8, "iterations": 8, "bailout": 16, "detail": 0.0005},
+      {"type": "smooth_union", "k": 0.2, "translate": [1.5, 0, 0], "of": [
+        {"type": "sphere", "radius": 0.5}, {"type": "box", "half_size": [0.4, 0.1, 0.4], "translate": [0, 0.5, 0]}]}])");
+}
+
+bool same(const Arrival& a, const Arrival& b) {
+  return a.status == b.status && a.side == b.side && a.t == b.t && a.width == b.width &&
+         a.evaluations == b.evaluations && a.certified == b.certified && a.instructions == b.instructions;
+}
+
+TEST_CASE("certify: rays that are searched side by side end as each does alone", "[march][isa]") {
+  const test::IsaGuard guard;
+  const auto scene = difficult_scene();
+  const Field field = make_field(scene);
+  // Short enough to end within the bound, where nothing is clipped.
+  Random random(8);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 400; ++i) {
+    const glm::dvec3 from(random.uniform(-1, 1), random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9));
+    rays.push_back({from, random.direction(), 0.1});
+  }
+  std::vector<Certified> alone;
+  RealScratch scratch;
+  int hits = 0;
+  for (const Ray& ray : rays) {
+    alone.push_back(certify(field, ray.origin, ray.direction, 0, {0, 0.1, 0}, scratch));
+    hits += alone.back().status == Status::Hit;
+  }
+  REQUIRE(hits > 40);
+  for (const std::string_view isa : vm::available_isas()) {
+    REQUIRE(vm::force_isa(isa));
+    const MarchResult together = march(field, rays, {.method = Method::Certified});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Arrival& arrival = together.arrivals[i];
+      INFO(isa << ", ray " << i);
+      CHECK(arrival.status == alone[i].status);
+      CHECK(arrival.t == alone[i].t);
+      CHECK(arrival.width == static_cast<float>(alone[i].width));
+      CHECK(arrival.certified == alone[i].evaluations);
+      CHECK(arrival.instructions == alone[i].instructions);
+    }
+  }
+}
+
+TEST_CASE("certify: in a stream, too, what becomes of a ray depends on that ray alone", "[march]") {
+  const auto scene = difficult_scene();
+  const Field field = make_field(scene);
+  const std::vector<Ray> rays = rays_at_sphere(3000, 3);
+  const MarchResult together = march(field, rays);
+  REQUIRE(together.counters.certified > 5);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (together.arrivals[i].certified == 0 && i % 50 != 0) continue;
+    INFO("ray " << i);
+    Arrival alone = march(field, std::span(rays).subspan(i, 1)).arrivals[0];
+    CHECK(same(alone, together.arrivals[i]));
+  }
+}
+
+}  // namespace
+}  // namespace fathom::runtime::certify_test
