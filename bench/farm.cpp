@@ -2,8 +2,8 @@
 //
 //     build/release/bench_farm [SCENE]
 //
-// What units cost comes from a real picture's map of costs (runtime/cli/pixel_costs.h), and what merging costs from
-// films that are written and read; machines, queue and disk are numbers, kFarms. Machines take units in order from
+// Units' costs are those of a real picture's pixels (runtime/cli/pixel_costs.h), merging's are measured on films that
+// are written and read; machines, queue and disk are numbers, kFarms. Machines take units in order from
 // one queue, which starts so many a second. They differ in speed, one in a hundred is four times slower, and they are
 // lost at random: that is noticed after a while, and the unit goes on from its checkpoint elsewhere. All write to one
 // disk, which serves one after the other. The time to the last film is given over that of the same machines without
@@ -60,7 +60,7 @@ struct Tally {
 // One render on one farm.
 class Simulation {
  public:
-  // What each unit of a frame costs on a machine of speed 1, seconds; and bytes of its film.
+  // `costs` are seconds of each unit of a frame on a machine of speed 1; `bytes` are those of a film.
   Simulation(const Farm& farm, int machines, std::vector<double> costs, std::uint64_t units, double bytes)
       : farm_(farm),
         costs_(std::move(costs)),
@@ -186,7 +186,7 @@ class Simulation {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Of the processor, to read a unit's film and to add it to a frame's: of each unit, and of each of its pixels.
+// Processor time to read a unit's film and to add it to a frame's: per unit, and per pixel of it.
 struct MergeCost {
   double unit, pixel;  // seconds
   double bytes;        // of a pixel, in a file

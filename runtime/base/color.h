@@ -1,4 +1,4 @@
-// What of a colour the eye sees as light.
+// The brightness of a colour.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -1,4 +1,4 @@
-// What the pixels of a frame cost, by a small picture of it.
+// Seconds that the pixels of a frame take, by a small picture of it.
 // Tested by: tests/runtime/cli/cli_plan_test.cpp
 #pragma once
 
@@ -15,7 +15,7 @@ class PixelCosts {
   PixelCosts(const compiler::CompiledScene& scene, runtime::RenderOptions options, int width, int height,
              std::uint32_t spp);
 
-  // Seconds of a sample of all pixels in an area of the frame, on all threads.
+  // Seconds that a sample of all pixels in an area of the frame takes, on all threads.
   double sum(const runtime::PixelRect& area) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace fathom::cli {
 
-// What the plan is cut by.
+// The cuts of a plan.
 struct PlanGrid {
   std::optional<FrameRange> frames;  // nothing: a still
   int width = 0, height = 0;         // pixels
