@@ -50,7 +50,7 @@ TEST_CASE("a folder includes only folders before it", "[layers]") {
   }
 }
 
-// What each folder of runtime/ includes stands before it in the list; "" is runtime/ itself.
+// The folders of runtime/, each after those that it includes; "" is runtime/ itself.
 const std::vector<std::string> kRuntime = {"base",     "sampling", "image", "film",  "denoise", "field", "march",
                                            "material", "light",    "path",  "slice", "",        "chart", "measure"};
 
