@@ -8,7 +8,8 @@
 // lost at random: that is noticed after a while, and the unit goes on from its checkpoint elsewhere. All write to one
 // disk, which serves one after the other. The time to the last film is given over that of the same machines without
 // any of this, so 1 is all that can be had; the shares say where the machines' time went. What `fathom plan` chooses
-// with --workers is the last row of each table. The films are merged by one process on one thread.
+// with --workers is the last row of each table. Rows are the middle one of three farms drawn at
+// random. The films are merged by one process on one thread.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -33,7 +34,7 @@ namespace {
 
 constexpr double kSpread = 0.15;                              // of the logarithm of machines' speeds
 constexpr double kSlow = 0.01, kSlowness = 4;                 // share of machines, and how many times slower they are
-constexpr double kCheckpoint = 600, kReplaced = 600;          // seconds; until a lost machine is back
+constexpr double kReplaced = 600;                             // seconds until a lost machine is back
 constexpr double kUnitOperations = 20, kMergeOperations = 3;  // of the disk per unit (strace)
 
 struct Farm {
@@ -42,10 +43,12 @@ struct Farm {
   double starts_per_second;      // by the queue
   double lost_after, noticed;    // mean hours until a machine is lost; seconds until the queue sees it
   double operations, bandwidth;  // of the disk per second; bytes
+  double checkpoint;             // seconds between those of a unit
 };
-constexpr Farm kFarms[] = {{"cluster", 1, 200, 24 * 30, 300, 20'000, 5e9},
-                           {"spot machines", 10, 200, 6, 300, 20'000, 5e9},
-                           {"slow disk", 1, 200, 24 * 30, 300, 2'000, 1e9}};
+constexpr Farm kFarms[] = {{"cluster", 1, 200, 24 * 30, 300, 20'000, 5e9, 600},
+                           {"spot machines", 10, 200, 6, 300, 20'000, 5e9, 600},
+                           {"slow disk", 1, 200, 24 * 30, 300, 2'000, 1e9, 600},
+                           {"cluster, a checkpoint each minute", 1, 200, 24 * 30, 300, 20'000, 5e9, 60}};
 
 constexpr double kUnitSeconds[] = {15, 30, 60, 120, 300, 600, 1800};
 constexpr double kMinutes[] = {10, 60, 480};  // that each machine has to do
@@ -61,11 +64,13 @@ struct Tally {
 class Simulation {
  public:
   // `costs` are seconds of each unit of a frame on a machine of speed 1; `bytes` are those of a film.
-  Simulation(const Farm& farm, int machines, std::vector<double> costs, std::uint64_t units, double bytes)
+  Simulation(const Farm& farm, int machines, std::vector<double> costs, std::uint64_t units, double bytes,
+             unsigned seed)
       : farm_(farm),
         costs_(std::move(costs)),
         units_(units),
-        service_(kUnitOperations / farm.operations + bytes / farm.bandwidth) {
+        service_(kUnitOperations / farm.operations + bytes / farm.bandwidth),
+        random_(seed) {
     std::normal_distribution<double> logarithm(0, kSpread);
     std::bernoulli_distribution slow(kSlow);
     for (int machine = 0; machine < machines; ++machine) {
@@ -146,7 +151,7 @@ class Simulation {
       return;
     }
     const double computed = std::max(0.0, lost - farm_.start),
-                 kept = std::floor(computed / kCheckpoint) * kCheckpoint;
+                 kept = std::floor(computed / farm_.checkpoint) * farm_.checkpoint;
     checkpoint(computed);
     tally_.lost += lost - kept + kReplaced;
     events_.push({begin + lost + farm_.noticed, Event::Noticed, 0, left - kept * speed});
@@ -156,7 +161,7 @@ class Simulation {
   // Checkpoints are written beside the work; the disk has them to do.
   void checkpoint(double computing) {
     disk_free_ = std::max(disk_free_, now_);
-    for (double at = kCheckpoint; at < computing; at += kCheckpoint) disk_free_ += busy();
+    for (double at = farm_.checkpoint; at < computing; at += farm_.checkpoint) disk_free_ += busy();
   }
 
   void write(const Event& event) {
@@ -174,7 +179,7 @@ class Simulation {
   const std::vector<double> costs_;
   const std::uint64_t units_;
   const double service_;  // seconds of the disk for a film
-  std::mt19937_64 random_{1};
+  std::mt19937_64 random_;
   std::vector<double> speeds_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::vector<double> returned_;
@@ -249,16 +254,21 @@ void simulate(const Farm& farm, const Job& job, double unit_seconds, const char*
   const double longest = *std::ranges::max_element(costs);
   const double pixels = static_cast<double>(grid.width) * grid.height / grid.columns / grid.rows;
   const double units = static_cast<double>(grid.units()), bytes = pixels * job.merging.bytes;
-  Simulation simulation(farm, job.machines, std::move(costs), grid.units(), bytes);
-  const double least = job.all_seconds() / simulation.speed();
-  const Tally tally = simulation.run();
+  // The middle one of three farms by the ratio.
+  std::vector<std::pair<double, Tally>> runs;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    Simulation simulation(farm, job.machines, costs, grid.units(), bytes, seed);
+    const Tally tally = simulation.run();
+    runs.emplace_back(tally.end * simulation.speed() / job.all_seconds(), tally);
+  }
+  std::ranges::sort(runs, {}, [](const auto& run) { return run.first; });
+  const auto& [ratio, tally] = runs[1];
   const double machines = tally.end * job.machines / 100;
   const double merge = units * (job.merging.unit + pixels * job.merging.pixel + kMergeOperations / farm.operations +
                                 bytes / farm.bandwidth);
   fmt::print("{:>6.0f} {:>7.0f} {:>9} {:>8.0f} {:>6.2f} {:>6.1f} {:>5.1f} {:>5.1f} {:>5.0f} {:>7.0f} {:>9.1f}  {}\n",
-             unit_seconds, longest, grid.units(), tally.end, tally.end / least, tally.started / machines,
-             tally.lost / machines, tally.waited / machines, 100 * tally.disk_busy / tally.end, units * bytes / 1e9,
-             merge / 60, mark);
+             unit_seconds, longest, grid.units(), tally.end, ratio, tally.started / machines, tally.lost / machines,
+             tally.waited / machines, 100 * tally.disk_busy / tally.end, units * bytes / 1e9, merge / 60, mark);
 }
 
 void simulate(const Farm& farm, const Job& job) {
