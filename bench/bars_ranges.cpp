@@ -10,6 +10,7 @@
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random_scene.h"
 #include "vm/evaluate.h"
+#include "vm/slope.h"
 
 namespace fathom::bench {
 namespace {

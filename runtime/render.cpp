@@ -108,10 +108,10 @@ World make_world(const compiler::CompiledScene& scene, const Settings& settings,
     share.spp = samples_with(scene, settings, options);
     RegionOptions regions = region_options(share);
     regions.interrupted = interruption(settings, options, start);
-    regions.store = options.region_store.get();
-    add_regions(world.field, scene, regions);
+    RegionStore* const store = options.region_store.get();
+    add_regions(world.field, scene, regions, store);
     if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
-    world.media.add_regions(scene, regions);
+    world.media.add_regions(scene, regions, store);
   }
   RealScratch scratch;
   const glm::dvec3 eye = world.camera.position();

@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "vm/interpret-inl.h"
+#include "vm/points.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

@@ -7,8 +7,9 @@
 #define FATHOM_VM_ENCLOSED_INL
 #endif
 
-#include "vm/enclose.h"
+#include "vm/choice_bounds.h"
 #include "vm/interpret-inl.h"
+#include "vm/nonexpansive.h"
 #include "vm/number/enclosure_elementary-inl.h"
 
 HWY_BEFORE_NAMESPACE();

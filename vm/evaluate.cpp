@@ -1,13 +1,12 @@
 // The f32 evaluators.
-// Compiled once for each instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for what chooses among
-// them at run time.
+// Compiled once for each instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for what chooses
+// among them at run time.
 #include "vm/evaluate.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <new>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/evaluate.cpp"
@@ -98,17 +97,6 @@ void evaluate_surface(const Code& program, Points points, std::size_t count, Sur
   HWY_DYNAMIC_DISPATCH(surface_batch)(program, points, count, out, workspace);
 }
 
-void* Workspace::reserve(std::size_t bytes) {
-  if (bytes > size_) {
-    const std::size_t larger = bytes + bytes / 2;
-    memory_.reset(::operator new(larger, std::align_val_t(64)));
-    size_ = larger;
-  }
-  return memory_.get();
-}
-
-void Workspace::Free::operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
-
 namespace {
 
 struct Isa {
@@ -152,7 +140,8 @@ bool force_isa(std::string_view name) {
   const std::int64_t supported = supported_targets();
   bool found = false;
   for (const Isa& isa : kIsas) found = found || (isa.name == name && (supported & isa.target) != 0);
-  // The instruction set and all below it: what is not compiled for this one runs on the next, not on the portable code.
+  // The instruction set and all below it: what is not compiled for this one runs on the next, not on the portable
+  // code.
   std::int64_t targets = 0;
   for (const Isa& isa : kIsas) {
     if (targets != 0 || isa.name == (found ? name : before)) targets |= isa.target;

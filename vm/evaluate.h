@@ -12,44 +12,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <string_view>
 #include <vector>
 
+#include "vm/points.h"
 #include "vm/verify.h"
+#include "vm/workspace.h"
 
 namespace fathom::vm {
-
-// Coordinates of a batch of points, scene units; three arrays of the same length.
-template <class S>
-struct PointsOf {
-  const S* x;  // [point]
-  const S* y;
-  const S* z;
-};
-using Points = PointsOf<float>;
-using RealPoints = PointsOf<double>;
-
-// Scratch memory for the stacks; grows to the largest program it has seen. Not to be shared between threads.
-class Workspace {
- public:
-  // At least `bytes` bytes, aligned to 64; what they held before is lost.
-  void* reserve(std::size_t bytes);
-
- private:
-  struct Free {
-    void operator()(void* memory) const;
-  };
-  std::unique_ptr<void, Free> memory_;
-  std::size_t size_ = 0;
-};
 
 // distance[i] = f(points[i]), float32, for i in [0, count).
 void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
 
-// The same distances, and how far around each point the solid is convex (vm/number/convex-inl.h): with L the program's
-// Lipschitz constant, at x within convex / L of the point p either f(x) >= convex - L |x - p|, or max(f, 0) is there
-// what one convex function is. At least |distance|; infinite when there is nothing else.
+// The same distances, and how far around each point the solid is convex (vm/number/convex-inl.h): with L the
+// program's Lipschitz constant, at x within convex / L of the point p either f(x) >= convex - L |x - p|, or max(f, 0)
+// is there what one convex function is. At least |distance|; infinite when there is nothing else.
 void evaluate_convex(const Code& program, Points points, std::size_t count, float* distance, float* convex,
                      Workspace& workspace);
 
@@ -59,7 +36,7 @@ struct SurfaceValues {
   float* gradient_x;  // df/dx of the winning branch; not normalised; zero where undefined, never NaN on finite input
   float* gradient_y;
   float* gradient_z;
-  std::uint32_t* surface;  // the number of the `tag` that won, 0 in a program without tags
+  std::uint32_t* surface;   // the number of the `tag` that won, 0 in a program without tags
   float* convex = nullptr;  // as of evaluate_convex; null where nobody asks
 };
 void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace);
@@ -120,15 +97,6 @@ struct AlongLine {
 };
 AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                          Workspace& workspace);
-
-// What a program can do over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite where nothing
-// is known, as where the value may jump.
-struct SlopeBound {
-  Range value;
-  double lipschitz;    // |f(p) - f(q)| <= lipschitz |p - q| in the box
-  double float_error;  // |f32 value - exact value| at f32 points of the box, scene units
-};
-SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
 // Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best
 // first. The environment variable FATHOM_ISA forces one.

@@ -16,8 +16,9 @@
 #include <type_traits>
 
 #include "vm/convexity.h"
-#include "vm/evaluate.h"
 #include "vm/meanings-inl.h"
+#include "vm/verify.h"
+#include "vm/workspace.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

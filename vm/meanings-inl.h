@@ -11,8 +11,11 @@
 #include <limits>
 #include <type_traits>
 
+#include "vm/domain-inl.h"
 #include "vm/opcode.h"
+#include "vm/outlines-inl.h"
 #include "vm/semantics-inl.h"
+#include "vm/solids-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -74,8 +77,8 @@ namespace fathom::vm::HWY_NAMESPACE {
 #include "vm/opcodes.def"
 #include "vm/opcodes_end.def"
 
-// How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and how
-// meanings are applied to it. `convex`: of a shape that is.
+// How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and
+// how meanings are applied to it. `convex`: of a shape that is.
 template <class T>
 struct ValueTraits {
   using Point = T;
@@ -126,8 +129,8 @@ struct ValueTraits<Convex<T>> {
   }
   static HWY_INLINE void tag(Convex<T>&, std::uint32_t) {}
 };
-// A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is nothing
-// to choose the machine works on the number alone, and the (left) operand's tag stays.
+// A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is
+// nothing to choose the machine works on the number alone, and the (left) operand's tag stays.
 inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits<Tagged<T>> {

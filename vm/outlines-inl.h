@@ -1,4 +1,5 @@
-// Meanings of the outlines' opcodes: signed distances in the xy plane, z ignored. Part of vm/semantics-inl.h.
+// Meanings of the outlines' opcodes: signed distances in the xy plane, z ignored. The head of vm/semantics-inl.h says
+// what holds for all meanings.
 //
 // All are exact and 1-Lipschitz outside, and inside unless said. Shapes with a mirror axis at x = 0 are folded onto
 // x >= 0 first: the nearest point of a symmetric boundary is on p's side. Where p's foot lies within a straight or

@@ -1,4 +1,5 @@
-// Meanings of the opcodes that are longer than a line (vm/opcodes.def), over any number type of vm/number/.
+// Meanings of the opcodes that are longer than a line (vm/opcodes.def), over any number type of vm/number/: basic
+// solids, polygons, the Mandelbulb and blends. Others are in vm/solids-inl.h, vm/outlines-inl.h and vm/domain-inl.h.
 //
 // T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is
 // that of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vm/domain-inl.h"
 #include "vm/number/along-inl.h"
 #include "vm/number/batch-inl.h"
 #include "vm/number/convex-inl.h"
@@ -26,6 +26,7 @@
 #include "vm/number/real-inl.h"
 #include "vm/number/slope_elementary-inl.h"
 #include "vm/number/tagged-inl.h"
+#include "vm/opcode.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -394,7 +395,4 @@ HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, cons
 
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#include "vm/outlines-inl.h"
-#include "vm/solids-inl.h"
 #endif

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "vm/enclose.h"
+#include "vm/choice_bounds.h"
 
 namespace fathom::vm {
 

@@ -23,8 +23,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "vm/evaluate.h"
 #include "vm/specialise.h"
+#include "vm/workspace.h"
 
 namespace fathom::vm {
 

@@ -1,11 +1,9 @@
-// What a program can do over one box of exact numbers: its values, its slope, its float error, and what its choices
-// choose from.
+#include "vm/slope.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "vm/enclose.h"
-#include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,5 +1,5 @@
 // Meanings of solids that are longer than a line: frames, arcs, polyhedra, periodic surfaces, fractals. The head of
-// semantics-inl.h, which includes this file, says what holds for all of them.
+// vm/semantics-inl.h says what holds for all meanings.
 #if defined(FATHOM_VM_SOLIDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SOLIDS_INL
 #undef FATHOM_VM_SOLIDS_INL
@@ -11,6 +11,7 @@
 
 #include "vm/number/interval-inl.h"
 #include "vm/number/number-inl.h"
+#include "vm/semantics-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

@@ -29,6 +29,7 @@
 #include "vm/expression.h"
 #include "vm/part.h"
 #include "vm/settle.h"
+#include "vm/slope.h"
 
 namespace fathom::vm {
 

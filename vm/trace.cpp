@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/evaluate.h"
 #include "vm/interpret-inl.h"
+#include "vm/workspace.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

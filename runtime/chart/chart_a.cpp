@@ -9,6 +9,7 @@
 
 #include "runtime/chart/markup.h"
 #include "runtime/chart/plot.h"
+#include "runtime/chart/plot_svg.h"
 
 namespace fathom::runtime {
 namespace {
@@ -95,7 +96,8 @@ PlotPoint point_of(const RayMeasurement& row, std::span<const RayMeasurement> ro
   return point;
 }
 
-std::vector<PlotSeries> series_of(const MeasuredRows& panel, const MeasuredRows& scene, Cost cost, const Colors& colors) {
+std::vector<PlotSeries> series_of(const MeasuredRows& panel, const MeasuredRows& scene, Cost cost,
+                                  const Colors& colors) {
   MeasuredRows sorted = panel;
   std::stable_sort(sorted.begin(), sorted.end(), [](const RayMeasurement& a, const RayMeasurement& b) {
     const auto coarseness = [](double eps) { return eps > 0 ? eps : 0; };

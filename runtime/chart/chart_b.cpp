@@ -10,6 +10,7 @@
 #include "runtime/chart/fit.h"
 #include "runtime/chart/markup.h"
 #include "runtime/chart/plot.h"
+#include "runtime/chart/plot_svg.h"
 
 namespace fathom::runtime {
 namespace {

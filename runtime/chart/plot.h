@@ -1,12 +1,10 @@
-// Plots with logarithmic axes as SVG texts: panels side by side that share both axes' scales and one legend.
+// A plot as data: panels side by side that share both axes' scales and one legend. plot_svg.h draws it.
 //
 // A series is a polyline through its points; a point may carry bars, a disc whose area grows with how often it fails,
-// and a label where there is room. Every point is drawn: 0 in a slot behind the axis's end, as a diamond; points
-// whose coordinates are negative or not finite are counted beside the panel's title.
+// and a label where there is room.
 //
 // Colours to choose from are those of M. Okabe, K. Ito, "Color Universal Design", 2008, which the colour-blind tell
-// apart. The text is the same for the same plot on every machine, has no ids, styles or scripts, and may stand within
-// HTML. Tested by: tests/runtime/chart/chart_plot_test.cpp
+// apart. Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <array>
@@ -57,10 +55,5 @@ struct Plot {
   std::string footer;  // small, at the end
   std::string disc_words, ring_words, front_words, bar_words, level_words;
 };
-
-std::string plot_svg(const Plot& plot);
-
-// Radius of the disc of so many failures, a million at most, pixels: its area is proportional to log10(1 + ppm).
-double disc_radius(double failures_ppm);
 
 }  // namespace fathom::runtime

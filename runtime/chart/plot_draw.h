@@ -1,12 +1,11 @@
-// What plot.cpp, plot_panel.cpp and plot_legend.cpp draw with: sizes, and marks as SVG elements. Pixels, y downwards.
-// Tested by: tests/runtime/chart/chart_plot_test.cpp
+// Sizes and marks of plots: what their panels, legend and titles are drawn with, as SVG elements. Pixels, y
+// downwards. Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
 #include <string>
 #include <string_view>
 
-#include "runtime/chart/label_layout.h"
 #include "runtime/chart/log_axis.h"
 #include "runtime/chart/plot.h"
 
@@ -38,19 +37,11 @@ std::string draw_line(glm::dvec2 from, glm::dvec2 to, std::string_view color, do
                       std::string_view attributes = "");
 std::string draw_circle(glm::dvec2 at, double radius, std::string_view attributes);
 
+// Radius of the disc of so many failures, a million at most, pixels: its area is proportional to log10(1 + ppm).
+double disc_radius(double failures_ppm);
 std::string draw_disc(glm::dvec2 at, double failures_ppm, std::string_view color);
 std::string draw_ring(glm::dvec2 at);
 // The series' marker; a diamond for a value of 0.
 std::string draw_marker(const PlotSeries& series, glm::dvec2 at, bool zero);
-
-// The panel's area is `area`; the axes are those of all panels, `first` has the labels of the y axis.
-std::string draw_panel(const PlotPanel& panel, const Rectangle& area, const LogAxis& x, const LogAxis& y, bool first);
-
-// The legend from `top` downwards.
-struct Legend {
-  std::string svg;
-  double height = 0;
-};
-Legend draw_legend(const Plot& plot, double top);
 
 }  // namespace fathom::runtime

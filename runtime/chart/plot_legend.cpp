@@ -1,3 +1,5 @@
+#include "runtime/chart/plot_legend.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+#include "runtime/chart/plot_panel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

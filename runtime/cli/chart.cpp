@@ -23,6 +23,7 @@
 #include "runtime/cli/chart_request.h"
 #include "runtime/cli/chart_scenes.h"
 #include "runtime/cli/output_file.h"
+#include "runtime/cli/scene_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/version.h"
 #include "runtime/image/image_io.h"

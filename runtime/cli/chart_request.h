@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 #include "runtime/cli/streams.h"
 #include "runtime/measure/measure_images.h"
 

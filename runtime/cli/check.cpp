@@ -16,6 +16,8 @@
 #include "runtime/cli/held_messages.h"
 #include "runtime/cli/picture_warning.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_frames.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/sampling/shutter.h"
 

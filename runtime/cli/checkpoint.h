@@ -22,7 +22,6 @@
 namespace fathom::cli {
 
 inline constexpr double kCheckpointInterval = 60;  // seconds
-inline constexpr const char* kCheckpointEnding = ".checkpoint";
 
 class Checkpoint {
  public:

@@ -11,6 +11,7 @@
 #include "runtime/base/atomic_file.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
 

@@ -40,14 +40,6 @@ std::string describe_values(const std::vector<float>& values, const Map& map) {
 
 }  // namespace
 
-Verdict read_map_name(std::string_view text, std::string& path) {
-  path = text;
-  const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
-  if ((format && format->shown) || runtime::is_float_map(path)) return std::nullopt;
-  return Complaint{fmt::format("`{}` does not end in the name of a format for maps", text),
-                   fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
-}
-
 std::vector<std::string> cost_map_files(const std::string& path) {
   std::vector<std::string> files;
   for (const Map& map : kMaps) files.push_back(beside(path, map.name));

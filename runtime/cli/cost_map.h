@@ -9,16 +9,11 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "runtime/cli/values.h"
 #include "runtime/film/film.h"
 
 namespace fathom::cli {
-
-// A file name with the ending of a picture format or of a map of numbers.
-Verdict read_map_name(std::string_view text, std::string& path);
 
 // The files for a `path` that was asked for.
 std::vector<std::string> cost_map_files(const std::string& path);

@@ -20,7 +20,7 @@
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/flip.h"
 #include "runtime/image/image_io.h"

@@ -12,9 +12,12 @@
 #include "runtime/cli/program_json.h"
 #include "runtime/cli/region_listing.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/trace_listing.h"
 #include "runtime/cli/verbs.h"
 #include "vm/disassemble.h"
+#include "compiler/shapes/print_graph.h"
+#include "compiler/frontend/print_syntax.h"
 
 namespace fathom::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include <ostream>
 
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 #include "vm/evaluate.h"
 #include "vm/printable.h"

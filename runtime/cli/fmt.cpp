@@ -9,7 +9,8 @@
 #include "compiler/frontend/text/read_text.h"
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

@@ -1,15 +1,12 @@
-// Which moments of a scene that moves are rendered: --frames, --fps and what goes with them.
+// The options that say which moments of a scene that moves are rendered, --frames, --fps and what goes with them;
+// and the names of the files of frames.
 // Tested by: tests/runtime/cli/cli_frames_test.cpp
 #pragma once
 
 #include <optional>
 #include <string>
-#include <variant>
 
-#include "compiler/frontend/animation.h"
 #include "runtime/cli/arguments.h"
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/streams.h"
 
 namespace fathom::cli {
 
@@ -37,23 +34,6 @@ void add_frames_option(Arguments& arguments, const std::string& doc, FrameOption
 void add_frame_options(Arguments& arguments, FrameOptions& options);
 // Those of a render, in a group of their own.
 void add_motion_options(Arguments& arguments, FrameOptions& options);
-
-// The frames of a scene that moves.
-struct Sequence {
-  compiler::Animation animation;
-  FrameRange frames;
-  double fps;
-
-  double time_of(int frame) const { return frame / fps; }  // seconds
-  // The scene's arguments for the frame.
-  SceneArguments at(const SceneArguments& arguments, int frame) const;
-  std::string describe(int frame) const;  // "frame 37 (1.542 s)"
-};
-
-// Those asked for, or the exit code after a message when the scene does not move, does not say how many frames there
-// are, or is given its time on the command line, too. The input has what the scene imports, then.
-std::variant<Sequence, ExitCode> sequence_of(const FrameOptions& options, SceneInput& input,
-                                             const SceneArguments& arguments, const Streams& streams);
 
 // The name of a frame's file: the frame's number takes the place of the row of # in the name, of which each is a
 // digit and there are more where the number needs them; without any it comes before the ending, in four digits. Of a

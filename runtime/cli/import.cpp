@@ -10,6 +10,7 @@
 #include "runtime/cli/import_files.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/scene_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

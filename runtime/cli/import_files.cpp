@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/cli/text_file.h"
+
 namespace fathom::cli {
 namespace {
 
@@ -27,7 +29,9 @@ compiler::ImportReader import_reader(const SceneArguments& arguments, const Stre
     if (on_import) on_import(file.string());
     std::error_code error;
     const fs::path allowed = fs::canonical(root ? fs::path(*root) : folder, error);
-    if (error) return compiler::ImportFault{fmt::format("the folder {}: {}", cli::quoted(root.value_or(".")), error.message())};
+    if (error)
+      return compiler::ImportFault{
+          fmt::format("the folder {}: {}", cli::quoted(root.value_or(".")), error.message())};
     const fs::path real = fs::weakly_canonical(file, error);
     if (error) return compiler::ImportFault{error.message()};
     if (!is_below(real, allowed)) {

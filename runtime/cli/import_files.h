@@ -3,7 +3,7 @@
 #pragma once
 
 #include "compiler/frontend/text/imports.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 
 namespace fathom::cli {
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/checkpoint.h"
 #include "runtime/cli/values.h"
 #include "runtime/film/noise.h"
 

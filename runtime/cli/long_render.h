@@ -11,6 +11,9 @@
 
 namespace fathom::cli {
 
+// The ending of a checkpoint's name where --checkpoint does not say it.
+inline constexpr const char* kCheckpointEnding = ".checkpoint";
+
 struct LongRender {
   std::optional<std::string> checkpoint;  // FILE
   std::optional<double> interval;         // seconds

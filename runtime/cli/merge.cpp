@@ -11,7 +11,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/plan_merge.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise/denoise.h"
 

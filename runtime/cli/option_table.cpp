@@ -1,9 +1,6 @@
 #include "runtime/cli/option_table.h"
 
-#include <algorithm>
 #include <sstream>
-
-#include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
 
@@ -15,16 +12,5 @@ std::vector<std::string> names_of(const OptionRow& option) {
 }
 
 bool takes_file(const OptionRow& option) { return option.value == "FILE" || option.value == "FOLDER"; }
-
-OptionTable option_table(std::string_view name) {
-  const auto verb = std::find_if(kVerbs.begin(), kVerbs.end(), [&](const Verb& each) { return each.name == name; });
-  std::istringstream nothing;
-  std::ostringstream unused;
-  OptionTable table;
-  Streams streams{nothing, unused, unused};
-  streams.options = &table;
-  verb->run({}, streams);
-  return table;
-}
 
 }  // namespace fathom::cli

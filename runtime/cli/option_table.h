@@ -29,7 +29,4 @@ std::vector<std::string> names_of(const OptionRow& option);
 // Whether the value is the name of a file, or of a folder.
 bool takes_file(const OptionRow& option);
 
-// The options of the verb `name`, which exists.
-OptionTable option_table(std::string_view name);
-
 }  // namespace fathom::cli

@@ -53,6 +53,14 @@ Verdict read_frame_output(std::string_view text, Output& output) {
   return std::nullopt;
 }
 
+Verdict read_map_name(std::string_view text, std::string& path) {
+  path = text;
+  const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
+  if ((format && format->shown) || runtime::is_float_map(path)) return std::nullopt;
+  return Complaint{fmt::format("`{}` does not end in the name of a format for maps", text),
+                   fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
+}
+
 std::string_view ending_of(const Output& output) {
   return output.film() ? kFilmEnding.substr(1) : output.format->ending;
 }

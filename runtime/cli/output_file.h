@@ -36,6 +36,9 @@ Verdict read_shown_output(std::string_view text, Output& output);
 // Or a folder, of PNGs until put_formats() says otherwise.
 Verdict read_frame_output(std::string_view text, Output& output);
 
+// A file name with the ending of a picture format or of a map of numbers.
+Verdict read_map_name(std::string_view text, std::string& path);
+
 // The option --format, which says the format of -o - and of folders. `format` is an index into the names; -1: not
 // given.
 void add_format_option(Arguments& arguments, bool shown_only, int& format);

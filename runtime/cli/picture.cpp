@@ -7,6 +7,7 @@
 
 #include "runtime/cli/held_messages.h"
 #include "runtime/cli/memory.h"
+#include "runtime/cli/render_memory.h"
 #include "runtime/cli/verbosity.h"
 #include "runtime/render.h"
 #include "runtime/sampling/shutter.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/cli/render_request.h"
+#include "runtime/cli/scene_file.h"
 #include "runtime/field/region_store.h"
 
 namespace fathom::cli {

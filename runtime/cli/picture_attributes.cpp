@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "runtime/cli/render_identity.h"
+#include "runtime/cli/scene_hash.h"
 #include "runtime/cli/version.h"
 #include "runtime/sampling/camera.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 // Columns of the matrix that acts on row vectors: of (p - eye) along each axis.
 using Column = glm::dvec4;
-Column along(glm::dvec3 axis, glm::dvec3 eye) { return {axis, -glm::dot(axis, eye)}; }
+Column column_along(glm::dvec3 axis, glm::dvec3 eye) { return {axis, -glm::dot(axis, eye)}; }
 
 runtime::Matrix4 matrix_of(const Column (&columns)[4]) {
   runtime::Matrix4 rows;
@@ -33,7 +33,8 @@ runtime::Matrix4 matrix_of(const Column (&columns)[4]) {
 runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
   const runtime::Camera camera(scene.camera, settings.width, settings.height);
   const glm::dvec3 eye = camera.position() + scene.origin;
-  const Column x = along(camera.right(), eye), y = along(camera.up(), eye), z = along(camera.forward(), eye);
+  const Column x = column_along(camera.right(), eye), y = column_along(camera.up(), eye),
+               z = column_along(camera.forward(), eye);
   using Projection = compiler::Camera::Projection;
   const bool orthographic = camera.projection() == Projection::Orthographic;
   const Column one{0, 0, 0, 1}, w = orthographic ? one : z;

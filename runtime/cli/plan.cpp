@@ -11,6 +11,8 @@
 #include "runtime/cli/plan_status.h"
 #include "runtime/cli/render_identity.h"
 #include "runtime/cli/render_options.h"
+#include "runtime/cli/scene_frames.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <ostream>
 
-#include "runtime/cli/checkpoint.h"
+#include "runtime/cli/long_render.h"
 #include "runtime/cli/memory.h"
 
 namespace fathom::cli {

@@ -10,6 +10,7 @@
 
 #include "runtime/cli/picture.h"
 #include "runtime/cli/render_plan.h"
+#include "runtime/cli/scene_frames.h"
 
 namespace fathom::cli {
 

@@ -3,8 +3,6 @@
 // Tested by: tests/runtime/cli/cli_checkpoint_test.cpp
 #pragma once
 
-#include <string>
-
 #include "compiler/compiled_scene.h"
 #include "runtime/film/film_file.h"
 #include "runtime/path/options.h"
@@ -14,10 +12,6 @@ namespace fathom::cli {
 // The version of what the renderer makes of a scene: films of another are of another render. Raised by whoever
 // changes a bit of a picture; tests/runtime/renderer_bits_test.cpp fails until it is.
 inline constexpr int kRendererBits = 8;
-
-// Digests in hexadecimal: of all that the scene was compiled to, but for its film and settings; of its programs.
-std::string scene_hash(const compiler::CompiledScene& scene);
-std::string program_hash(const compiler::CompiledScene& scene);
 
 runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                   const runtime::RenderOptions& options);

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/cost_map.h"
-#include "runtime/cli/sequence.h"
-#include "runtime/cli/standard_output.h"
+#include "runtime/cli/request_checks.h"
 
 namespace fathom::cli {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "compiler/source.h"
 #include "runtime/cli/plan_grid.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/film/film_file.h"
 
 namespace fathom::cli {

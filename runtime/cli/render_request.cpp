@@ -5,12 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/cli/checkpoint.h"
-#include "runtime/cli/cost_map.h"
-#include "runtime/cli/sequence.h"
-#include "runtime/cli/standard_output.h"
 #include "runtime/film/adaptive.h"
-#include "runtime/image/image_io.h"
 
 namespace fathom::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "runtime/cli/frame_options.h"
 #include "runtime/cli/long_render.h"
 #include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 #include "runtime/cli/unit_options.h"
 #include "runtime/path/options.h"
 

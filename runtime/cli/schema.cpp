@@ -11,6 +11,7 @@
 #include "runtime/cli/arguments.h"
 #include "runtime/cli/editor_files.h"
 #include "runtime/cli/output_file.h"
+#include "runtime/cli/text_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {
@@ -28,7 +29,7 @@ ExitCode write_extension(const std::string& folder, const Streams& streams) {
     const std::filesystem::path path = std::filesystem::path(folder) / file.path;
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
-    if (error) return fail(streams, kIo, fmt::format("cannot make {}: {}", quoted(folder), error.message()));
+    if (error) return fail(streams, kIo, fmt::format("cannot make {}: {}", cli::quoted(folder), error.message()));
     if (const auto problem = write_text(file.text, path.string())) return fail(streams, kIo, *problem);
   }
   say(streams, fmt::format("wrote {}", folder));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <ostream>
 
@@ -10,6 +9,7 @@
 #include "runtime/cli/picture.h"
 #include "runtime/cli/picture_job.h"
 #include "runtime/cli/render_files.h"
+#include "runtime/cli/scene_frames.h"
 
 namespace fathom::cli {
 namespace {
@@ -161,26 +161,6 @@ class FrameRun {
 };
 
 }  // namespace
-
-std::optional<ExitCode> check_frames(const RenderRequest& request, const Streams& streams) {
-  const auto folder = std::find_if(request.outputs.begin(), request.outputs.end(),
-                                   [](const Output& output) { return output.folder(); });
-  if (!request.frames.given()) {
-    if (request.frames.fixed_noise) return fail(streams, kUsage, "--fixed-noise is for --frames, which is not given");
-    if (folder == request.outputs.end()) return std::nullopt;
-    return fail(streams, kUsage, fmt::format("`{}` is a folder: a picture needs a name", folder->path),
-                {fmt::format("write -o {}out.png, or add --frames for pictures named by number", folder->path)});
-  }
-  const auto refuse = [&](std::string_view what, std::string_view remedy) {
-    return fail(streams, kUsage, fmt::format("{} does not go with --frames", what), {std::string(remedy)});
-  };
-  if (request.watch) return refuse("--watch", "watch a moment of it: -D time=1.5 --watch");
-  if (std::any_of(request.outputs.begin(), request.outputs.end(), [](const Output& o) { return o.standard(); })) {
-    return refuse("`-o -`, which takes one picture,", "name the files, as -o out.png for out-0000.png and on");
-  }
-  if (request.stats_json == "-") return refuse("`--stats-json -`", "name the files, as --stats-json stats.json");
-  return std::nullopt;
-}
 
 ExitCode render_frames(const RenderRequest& request, const Streams& streams,
                        std::optional<Interruption>& interruption) {

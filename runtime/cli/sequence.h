@@ -10,10 +10,6 @@
 
 namespace fathom::cli {
 
-// An ExitCode, after a message, when another option of the request does not go with --frames, or one that does is
-// given without.
-std::optional<ExitCode> check_frames(const RenderRequest& request, const Streams& streams);
-
 // All frames that the request asks for.
 ExitCode render_frames(const RenderRequest& request, const Streams& streams,
                        std::optional<Interruption>& interruption);

@@ -9,7 +9,7 @@
 #include "runtime/cli/memory.h"
 #include "runtime/cli/output_file.h"
 #include "runtime/cli/picture_attributes.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/scene_arguments.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
 #include "runtime/image/image_read.h"

@@ -58,7 +58,7 @@ std::variant<std::uint64_t, ExitCode> queue_number(const Streams& streams) {
   return fail(streams, kUsage, "--unit env: no queue has set the number of a task", {"they are " + variable_names()});
 }
 
-constexpr std::array<std::string_view, 4> kOwn = {"--plan", "--unit", "--units", "--per-task"};
+constexpr std::array<std::string_view, 4> kUnitNames = {"--plan", "--unit", "--units", "--per-task"};
 // What may be said beside them: how the work is done.
 constexpr std::array<std::string_view, 7> kRunning = {
     "--threads", "--limit", "--quiet", "--verbose", "--profile", "--checkpoint-interval", "--error-format"};
@@ -94,7 +94,7 @@ std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Argu
   }
   if (options.per_task && !one) return fail(streams, kUsage, "--per-task goes with --unit");
   for (const Arguments::Given& option : given) {
-    if (std::ranges::find(kOwn, option.name) != kOwn.end()) continue;
+    if (std::ranges::find(kUnitNames, option.name) != kUnitNames.end()) continue;
     if (std::ranges::find(kRunning, option.name) != kRunning.end()) {
       std::ranges::copy(option.arguments(), std::back_inserter(options.running));
       continue;

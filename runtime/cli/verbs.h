@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/cli/option_table.h"
 #include "runtime/cli/streams.h"
 
 namespace fathom::cli {
@@ -65,5 +66,8 @@ inline std::string usage_of(const Verb& verb) {
   std::string usage = "fathom " + std::string(verb.name);
   return verb.arguments.empty() ? usage : usage + ' ' + std::string(verb.arguments);
 }
+
+// The options of the verb `name`, which exists.
+OptionTable option_table(std::string_view name);
 
 }  // namespace fathom::cli

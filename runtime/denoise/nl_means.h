@@ -14,11 +14,10 @@
 #pragma once
 
 #include <array>
-#include <vector>
+
+#include "runtime/denoise/plane.h"
 
 namespace fathom::runtime {
-
-using Plane = std::vector<float>;  // [y][x]
 
 struct NlMeansInput {
   int width = 0, height = 0;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runtime/base/pixel_rect.h"
-#include "runtime/denoise/nl_means.h"
+#include "runtime/denoise/plane.h"
 
 namespace fathom::runtime {
 

@@ -124,13 +124,14 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   return field;
 }
 
-void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options) {
+void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options,
+                 RegionStore* store) {
   RegionOptions chosen = options;
   chosen.room = room_of(field, compiled);
   chosen.magnitude = field.magnitude;
   const compiler::Box& contents = contents_of(field, compiled);
-  field.regions = options.store ? options.store->build(compiled.surface, contents, chosen)
-                                : Regions::build(compiled.surface, contents, chosen);
+  field.regions =
+      store ? store->build(compiled.surface, contents, chosen) : Regions::build(compiled.surface, contents, chosen);
   if (field.regions) become_large(field, field.regions->far_levels());
 }
 

@@ -14,6 +14,8 @@
 
 namespace fathom::runtime {
 
+class RegionStore;
+
 struct Field {
   const vm::VerifiedProgram* distance;
   const vm::VerifiedProgram* surface;  // the same field with `tag`s
@@ -77,8 +79,10 @@ double extent_of(const compiler::CompiledScene& scene);
 
 inline constexpr double kDefaultFar = 1e4;  // scene units
 
-// Builds the regions of `compiled`, if it gains by them, for its `field` and what evaluates surfaces with it.
-void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options);
+// Builds the regions of `compiled`, if it gains by them, for its `field` and what evaluates surfaces with it. They
+// are taken from `store` where it has them already.
+void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options,
+                 RegionStore* store = nullptr);
 
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6

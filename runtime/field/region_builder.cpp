@@ -7,8 +7,6 @@
 #include <limits>
 #include <thread>
 
-#include "runtime/field/region_splitter.h"
-
 namespace fathom::runtime {
 namespace {
 
@@ -22,8 +20,6 @@ constexpr std::size_t kGridShare = 8;
 constexpr std::size_t kBytesPerWord = 24;
 // What cutting a program takes for each choice and each instruction in it (vm/specialise.h), measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
-// How many times what regions may take is there to build them: for cutting programs, and for cells to be split.
-constexpr std::size_t kBuildShare = 2;
 // Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
 // one.
 constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
@@ -37,23 +33,30 @@ std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::si
   return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
 }
 
+std::size_t most_work(const RegionPlan& plan, const RegionOptions& options) {
+  return static_cast<std::size_t>(
+      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
+}
+
 }  // namespace
 
 RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options)
-    : options_(options), plan_(plan), program_(program), regions_(std::make_shared<Regions>()) {
+    : options_(options),
+      plan_(plan),
+      program_(program),
+      budget_{options.memory, most_work(plan, options)},
+      regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
   regions_->far_ = plan.far;
   std::copy(plan.lo.begin(), plan.lo.end(), regions_->tree_.lo);
   regions_->tree_.size = plan.size;
   regions_->tree_.levels = plan.levels;
-  most_work_ = static_cast<std::size_t>(
-      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
 }
 
 std::shared_ptr<const Regions> RegionBuilder::build() {
   const auto start = std::chrono::steady_clock::now();
   if (program_.size * kBytesPerWord > options_.memory) return nullptr;
-  if (cutting_bytes(plan_.choices, plan_.instructions, 0) > kBuildShare * options_.memory) return nullptr;
+  if (cutting_bytes(plan_.choices, plan_.instructions, 0) > budget_.build_memory()) return nullptr;
   regions_->whole_part_ = vm::whole(program_);
   regions_->constants_.emplace(program_);
   if (!split_root()) return nullptr;
@@ -69,43 +72,38 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 // whole are not worth it, for an instruction of one costs as much as many of the whole.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
-  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, most_work_ /= 2) {
-    if (plan_.instructions > most_work_) return false;  // of the root alone
+  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, budget_.most_work /= 2) {
+    if (plan_.instructions > budget_.most_work) return false;  // of the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->skeletons_ = {};
     regions_->facts_ = {};
-    bytes_ = regions_->constants_->bytes();
-    work_ = 0, pending_bytes_ = 0;
+    budget_.bytes = regions_->constants_->bytes();
+    budget_.work = 0, budget_.pending_bytes = 0;
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
-    if (interrupted_) return false;
-    if (!is_in_vain()) return true;
+    if (budget_.interrupted) return false;
+    if (!budget_.is_spent()) return true;
   }
   return false;
 }
 
-bool RegionBuilder::is_in_vain() const {
-  return bytes_ > options_.memory || pending_bytes_ > kBuildShare * options_.memory || work_ > most_work_ ||
-         interrupted_;
-}
-
 // As many threads as there is memory to cut the largest of the cells' parts in each.
-std::size_t RegionBuilder::threads_for(const std::vector<Cell>& cells) const {
+std::size_t RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
   std::size_t largest = 0;
-  for (const Cell& cell : cells) {
+  for (const RegionCell& cell : cells) {
     largest = std::max(largest, cutting_bytes(cell.part.choices, cell.part.sources.size(), cell.part.bytes()));
   }
-  const std::size_t affordable =
-      std::max<std::size_t>(1, kBuildShare * options_.memory / std::max<std::size_t>(1, largest));
+  const std::size_t affordable = std::max<std::size_t>(1, budget_.build_memory() / std::max<std::size_t>(1, largest));
   return std::min({static_cast<std::size_t>(std::max(1, options_.threads)), cells.size(), affordable});
 }
 
-void RegionBuilder::split_all(std::vector<Cell> cells) {
-  while (!cells.empty() && !is_in_vain()) {
-    std::vector<Piece> pieces(cells.size());
-    pending_bytes_ = 0;
+void RegionBuilder::split_all(std::vector<RegionCell> cells) {
+  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, longer_};
+  while (!cells.empty() && !budget_.is_spent()) {
+    std::vector<RegionPiece> pieces(cells.size());
+    budget_.pending_bytes = 0;
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      Splitter splitter(*this);
+      RegionSplitter splitter(rules, budget_);
       for (std::size_t i = next++; i < cells.size(); i = next++) {
         splitter.run(cells[i], pieces[i]);
         cells[i].part = {};
@@ -115,22 +113,22 @@ void RegionBuilder::split_all(std::vector<Cell> cells) {
     for (std::size_t i = threads_for(cells); i > 1; --i) threads.emplace_back(work);
     work();
     for (std::thread& thread : threads) thread.join();
-    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, pending_bytes_);
-    if (is_in_vain()) return;
+    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, budget_.pending_bytes);
+    if (budget_.is_spent()) return;
     append_all(cells, pieces);
   }
 }
 
 // In the order of the cells, which the cells that are still to be split take the place of.
-void RegionBuilder::append_all(std::vector<Cell>& cells, std::vector<Piece>& pieces) {
+void RegionBuilder::append_all(std::vector<RegionCell>& cells, std::vector<RegionPiece>& pieces) {
   std::size_t nodes = regions_->nodes_.size(), words = regions_->pool_.size();
-  for (const Piece& piece : pieces) nodes += piece.nodes.size(), words += piece.pool.size();
+  for (const RegionPiece& piece : pieces) nodes += piece.nodes.size(), words += piece.pool.size();
   regions_->nodes_.reserve(nodes), regions_->pool_.reserve(words);
-  std::vector<Cell> pending;
+  std::vector<RegionCell> pending;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::uint32_t first = append(pieces[i]);
     regions_->nodes_[cells[i].node] = make_node(Kind::Inner, first, 0);
-    for (Cell& cell : pieces[i].pending) {
+    for (RegionCell& cell : pieces[i].pending) {
       cell.node += first;
       pending.push_back(std::move(cell));
     }
@@ -140,7 +138,7 @@ void RegionBuilder::append_all(std::vector<Cell>& cells, std::vector<Piece>& pie
 }
 
 // The number its first node gets.
-std::uint32_t RegionBuilder::append(Piece& piece) {
+std::uint32_t RegionBuilder::append(RegionPiece& piece) {
   Regions& r = *regions_;
   const auto first = static_cast<std::uint32_t>(r.nodes_.size());
   const auto pool = static_cast<std::uint32_t>(r.pool_.size());
@@ -181,7 +179,8 @@ void RegionBuilder::close_outside() {
 }
 
 void RegionBuilder::choose_grid() {
-  const std::size_t rest = bytes_, most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
+  const std::size_t rest = budget_.bytes,
+                    most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
   const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
   int level = std::min(kMostGridLevel, regions_->tree_.levels);
   while (level > 0 && bytes(level) > most) --level;

@@ -19,7 +19,7 @@ struct RegionTree {
   bool beyond_cache;  // a core's own cache does not hold the scene's regions
 };
 
-inline constexpr std::size_t kMostPoints = 768;  // found together: as many as a thread moves on at once (lanes.h)
+inline constexpr std::size_t kMostPoints = 768;  // found together: as many as a thread moves on at once (lane_rows.h)
 
 inline constexpr std::uint32_t kOutside = 0xffffffff;      // in place of a leaf's word
 inline constexpr std::uint32_t kFirstNear = 0x80000000u;   // words below are inner cells' and far leaves'

@@ -17,25 +17,25 @@ constexpr int kShared = 2;
 
 }  // namespace
 
-RegionBuilder::Splitter::Splitter(RegionBuilder& builder)
-    : builder_(builder),
-      regions_(*builder.regions_),
-      levels_(regions_.tree_.levels),
-      leaf_choices_(builder.longer_ * kLeafChoices),
+RegionSplitter::RegionSplitter(const SplitRules& rules, RegionBudget& budget)
+    : rules_(rules),
+      budget_(budget),
+      levels_(rules.tree.levels),
+      leaf_choices_(rules.longer * kLeafChoices),
       parts_(static_cast<std::size_t>(levels_) + 1) {}
 
-void RegionBuilder::Splitter::run(const Cell& cell, Piece& piece) {
+void RegionSplitter::run(const RegionCell& cell, RegionPiece& piece) {
   piece_ = &piece;
   piece.nodes.resize(8);
   split(cell.part, cell.at, cell.level, cell.limit, cell.idle, 0);
 }
 
-void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far,
-                                    std::uint32_t first) {
-  builder_.work_ += part.sources.size();
-  if (builder_.is_in_vain()) return;
-  if (builder_.options_.interrupted && builder_.options_.interrupted()) {
-    builder_.interrupted_ = true;
+void RegionSplitter::split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far,
+                           std::uint32_t first) {
+  budget_.work += part.sources.size();
+  if (budget_.is_spent()) return;
+  if (rules_.options.interrupted && rules_.options.interrupted()) {
+    budget_.interrupted = true;
     return;
   }
   const int below = level + 1;
@@ -46,7 +46,7 @@ void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int l
   Children done = make_far(limits, first);
   Parts& parts = parts_[static_cast<std::size_t>(below)];
   make_parts(limits, below, first, done, parts);
-  builder_.bytes_ += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
+  budget_.bytes += bytes_of(*piece_) - bytes_before + 8 * sizeof(Node);
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (done[i]) continue;
     const double shorter = static_cast<double>(parts[i].words.size()) / static_cast<double>(part.words.size());
@@ -55,12 +55,12 @@ void RegionBuilder::Splitter::split(const vm::Part& part, const Place& at, int l
   }
 }
 
-void RegionBuilder::Splitter::go_on(vm::Part& child, double shorter, const Place& at, int level, float limit,
-                                    int idle_so_far, std::uint32_t node) {
-  const int idle = shorter < kShorterPart || level <= builder_.options_.room ? 0 : idle_so_far + 1;
+void RegionSplitter::go_on(vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
+                           std::uint32_t node) {
+  const int idle = shorter < kShorterPart || level <= rules_.options.room ? 0 : idle_so_far + 1;
   if (idle > kMostIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {
-    builder_.pending_bytes_ += child.bytes();
+    budget_.pending_bytes += child.bytes();
     piece_->pending.push_back({at, level, limit, idle, std::move(child), node});
     return;
   }
@@ -70,18 +70,18 @@ void RegionBuilder::Splitter::go_on(vm::Part& child, double shorter, const Place
   split(child, at, level, limit, idle, grandchildren);
 }
 
-RegionBuilder::Splitter::Limits RegionBuilder::Splitter::limits_of(const BoxArrays& boxes, float limit) const {
+RegionSplitter::Limits RegionSplitter::limits_of(const BoxArrays& boxes, float limit) const {
   Limits limits;
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    const float most = std::min(limit, regions_.far_.cap({boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]},
-                                                         {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]}));
+    const float most = std::min(limit, rules_.far.cap({boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]},
+                                                      {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]}));
     const float hi = specialiser_.hi(i), highest = std::min(hi + error_ + kCellError * std::abs(hi), most);
-    limits[i] = std::max(regions_.far_.first, regions_.far_.level(highest));
+    limits[i] = std::max(rules_.far.first, rules_.far.level(highest));
   }
   return limits;
 }
 
-RegionBuilder::Splitter::Children RegionBuilder::Splitter::make_far(const Limits& limits, std::uint32_t first) {
+RegionSplitter::Children RegionSplitter::make_far(const Limits& limits, std::uint32_t first) {
   Children far;
   for (std::uint32_t i = 0; i < far.size(); ++i) {
     far[i] = specialiser_.lo(i) * (1 - kCellError) - error_ >= limits[i];
@@ -92,8 +92,7 @@ RegionBuilder::Splitter::Children RegionBuilder::Splitter::make_far(const Limits
   return far;
 }
 
-void RegionBuilder::Splitter::make_parts(const Limits& limits, int level, std::uint32_t first, Children& done,
-                                         Parts& parts) {
+void RegionSplitter::make_parts(const Limits& limits, int level, std::uint32_t first, Children& done, Parts& parts) {
   Children seen = done;
   for (std::size_t begin = 0; begin < seen.size(); ++begin) {
     if (seen[begin]) continue;
@@ -108,35 +107,34 @@ void RegionBuilder::Splitter::make_parts(const Limits& limits, int level, std::u
   }
 }
 
-BoxArrays RegionBuilder::Splitter::children_of(const Place& at, int level) {
+BoxArrays RegionSplitter::children_of(const Place& at, int level) {
   BoxArrays boxes;
-  const double size = static_cast<double>(regions_.tree_.size), edge = size / (1u << level),
-               margin = size * kCellMargin;
+  const double size = static_cast<double>(rules_.tree.size), edge = size / (1u << level), margin = size * kCellMargin;
   float largest = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
-      const double lo = static_cast<double>(regions_.tree_.lo[axis]) + edge * (2.0 * at[axis] + (i >> axis & 1));
+      const double lo = static_cast<double>(rules_.tree.lo[axis]) + edge * (2.0 * at[axis] + (i >> axis & 1));
       boxes.lo[axis][i] = static_cast<float>(lo - margin), boxes.hi[axis][i] = static_cast<float>(lo + edge + margin);
       largest = std::max({largest, -boxes.lo[axis][i], boxes.hi[axis][i]});
     }
   }
-  error_ = kCellError * (largest + builder_.options_.magnitude);
+  error_ = kCellError * (largest + rules_.options.magnitude);
   return boxes;
 }
 
-std::size_t RegionBuilder::Splitter::bytes_of(const Piece& piece) {
+std::size_t RegionSplitter::bytes_of(const RegionPiece& piece) {
   return (piece.pool.size() + piece.programs.size() + piece.slots.size()) * sizeof(std::uint32_t) +
          piece.skeletons.bytes();
 }
 
-void RegionBuilder::Splitter::make_leaf(const vm::Part& part, float limit, std::uint32_t node) {
-  const std::uint32_t at = piece_->skeletons.pack(part, *regions_.constants_, piece_->pool);
+void RegionSplitter::make_leaf(const vm::Part& part, float limit, std::uint32_t node) {
+  const std::uint32_t at = piece_->skeletons.pack(part, rules_.constants, piece_->pool);
   piece_->nodes[node] = make_node(Kind::Program, intern(at), limit);
   ++piece_->facts.programs;
 }
 
-std::uint32_t RegionBuilder::Splitter::intern(std::uint32_t start) {
-  Piece& piece = *piece_;
+std::uint32_t RegionSplitter::intern(std::uint32_t start) {
+  RegionPiece& piece = *piece_;
   piece.programs.push_back(start);
   if (2 * piece.programs.size() > piece.slots.size()) grow_slots();
   std::uint32_t& slot = piece.slots[slot_of(program(piece.programs.size() - 1))];
@@ -149,15 +147,15 @@ std::uint32_t RegionBuilder::Splitter::intern(std::uint32_t start) {
   return piece.programs[slot - 1];
 }
 
-std::span<const std::uint32_t> RegionBuilder::Splitter::program(std::size_t number) const {
-  const Piece& piece = *piece_;
+std::span<const std::uint32_t> RegionSplitter::program(std::size_t number) const {
+  const RegionPiece& piece = *piece_;
   const std::size_t begin = piece.programs[number];
   const bool last = number + 1 == piece.programs.size();
   return std::span(piece.pool).subspan(begin, (last ? piece.pool.size() : piece.programs[number + 1]) - begin);
 }
 
 // The slot of an equal program, or the free one where it belongs.
-std::size_t RegionBuilder::Splitter::slot_of(std::span<const std::uint32_t> wanted) const {
+std::size_t RegionSplitter::slot_of(std::span<const std::uint32_t> wanted) const {
   const std::vector<std::uint32_t>& slots = piece_->slots;
   for (std::size_t at = vm::hash_of(wanted);; ++at) {
     const std::uint32_t held = slots[at & (slots.size() - 1)];
@@ -166,8 +164,8 @@ std::size_t RegionBuilder::Splitter::slot_of(std::span<const std::uint32_t> want
 }
 
 // Of all programs but the last, which is not entered yet.
-void RegionBuilder::Splitter::grow_slots() {
-  Piece& piece = *piece_;
+void RegionSplitter::grow_slots() {
+  RegionPiece& piece = *piece_;
   piece.slots.assign(std::max<std::size_t>(64, 2 * piece.slots.size()), 0);
   for (std::uint32_t i = 0; i + 1 < piece.programs.size(); ++i) piece.slots[slot_of(program(i))] = i + 1;
 }

@@ -1,4 +1,5 @@
-// Splitting the cells of the octree of regions (runtime/field/region_builder.h): which leaves they become.
+// Splitting the cells of the octree of regions (runtime/field/regions.h): which leaves they become.
+// Tested by: tests/runtime/field/regions_test.cpp
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "runtime/field/region_builder.h"
+#include "runtime/field/far_levels.h"
+#include "runtime/field/region_budget.h"
+#include "runtime/field/region_find.h"
+#include "runtime/field/regions.h"
+#include "vm/skeleton.h"
+#include "vm/specialise.h"
 
 namespace fathom::runtime {
 
@@ -28,13 +34,43 @@ struct BoxArrays {
 // (kDistanceError), since operands within one are compared.
 inline constexpr float kCellError = 0x1p-18f;
 
+// A cell that is to be split, and what of the program matters in it where its value is at most `limit`.
+struct RegionCell {
+  std::array<std::uint32_t, 3> at;  // in cells of its level
+  int level;
+  float limit;
+  int idle;  // levels at which its part did not get shorter
+  vm::Part part;
+  std::uint32_t node;  // that it is
+};
+
+// What one thread has made of a cell: nodes[0..8) are its children, and numbers are its own.
+struct RegionPiece {
+  std::vector<Regions::Node> nodes;
+  vm::Skeletons skeletons;
+  std::vector<std::uint32_t> pool;
+  std::vector<std::uint32_t> programs;  // where they begin in the pool, one behind the other
+  std::vector<std::uint32_t> slots;     // a hash table of them: number + 1, or 0
+  std::vector<RegionCell> pending;      // left for other threads
+  Regions::Facts facts;
+};
+
+// All cells are split by the same rules.
+struct SplitRules {
+  const RegionOptions& options;
+  const RegionTree& tree;  // its root and the number of its levels
+  const FarLevels& far;
+  const vm::Constants& constants;
+  std::uint32_t longer;  // how much longer than they should be leaves are
+};
+
 // Splits cells, on one thread.
-class RegionBuilder::Splitter {
+class RegionSplitter {
  public:
-  explicit Splitter(RegionBuilder& builder);
+  RegionSplitter(const SplitRules& rules, RegionBudget& budget);
 
   // Makes the cell's descendants, into an empty piece.
-  void run(const Cell& cell, Piece& piece);
+  void run(const RegionCell& cell, RegionPiece& piece);
 
  private:
   using Node = Regions::Node;
@@ -58,7 +94,7 @@ class RegionBuilder::Splitter {
   // Sets error_, too.
   BoxArrays children_of(const Place& at, int level);
   // What a piece's leaves take, but for the nodes.
-  static std::size_t bytes_of(const Piece& piece);
+  static std::size_t bytes_of(const RegionPiece& piece);
   void make_leaf(const vm::Part& part, float limit, std::uint32_t node);
   // The program that was packed last, or an equal one before it.
   std::uint32_t intern(std::uint32_t start);
@@ -66,15 +102,15 @@ class RegionBuilder::Splitter {
   std::size_t slot_of(std::span<const std::uint32_t> program) const;
   void grow_slots();
 
-  RegionBuilder& builder_;
-  const Regions& regions_;
+  const SplitRules rules_;
+  RegionBudget& budget_;
   const int levels_;
   const std::uint32_t leaf_choices_;
   vm::Specialiser specialiser_;
   vm::Workspace workspace_;
   std::vector<Parts> parts_;  // [level]
   float error_ = 0;           // of f32, in the cell that is split
-  Piece* piece_ = nullptr;
+  RegionPiece* piece_ = nullptr;
 };
 
 }  // namespace fathom::runtime

@@ -35,8 +35,6 @@
 
 namespace fathom::runtime {
 
-class RegionStore;
-
 struct RegionOptions {
   int threads = 1;
   std::size_t memory = 64u << 20;  // bytes; where they would take more, leaves are longer, or there are none
@@ -48,7 +46,6 @@ struct RegionOptions {
   float magnitude = 0;  // of the numbers that cancel in the field, scene units (compiler/bounds.h)
   // Asked before each cell is split, by any thread. Once it is true there will be no regions.
   std::function<bool()> interrupted = {};
-  RegionStore* store = nullptr;  // where they may be already (runtime/field/region_store.h)
 };
 
 // How often points were in leaves of each kind.

@@ -10,51 +10,22 @@
 // Tested by: tests/runtime/film/film_file_test.cpp
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
 #include "runtime/base/atomic_file.h"
+#include "runtime/film/film_contents.h"
 #include "runtime/film/partial_render.h"
-#include "runtime/image/float_image.h"
 #include "runtime/image/image_read.h"
 
 namespace fathom::runtime {
 
-// The names and values of what renders must agree in; any order, but always the same.
-using Identity = std::vector<std::pair<std::string, std::string>>;
-
 // What two identities differ in, for people, with words for where each is: "spp is 64 there and 128 here".
 std::vector<std::string> differences(const Identity& first, const Identity& second, std::string_view there = "there",
                                      std::string_view here = "here");
-
-struct FilmHeader {
-  Identity identity;
-  Attributes attributes;      // of the pictures that are made of it, but for those about how many samples it has
-  int width = 0, height = 0;  // of the whole picture, pixels
-  SampleRange samples;        // of each pixel, that the film is to have when it is done
-  glm::dvec3 origin{0};       // of its positions in the scene, scene units
-};
-
-// What the film is, whether its sums were read or not.
-struct FilmShape {
-  PixelRect area;
-  FilmLayers layers;
-  std::size_t stages = 1;
-  double first_share = 1;
-
-  bool operator==(const FilmShape&) const = default;
-};
-
-struct FilmFile {
-  FilmHeader header;
-  FilmShape shape;
-  PartialRender render;
-};
 
 struct UnreadFilm {
   std::string problem;  // for people

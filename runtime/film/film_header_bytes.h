@@ -2,12 +2,14 @@
 // Tested by: tests/runtime/film/film_file_test.cpp
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "runtime/film/film_file.h"
+#include "runtime/film/film_contents.h"
+#include "runtime/film/partial_render.h"
 #include "vm/bytes.h"
 
 namespace fathom::runtime {

@@ -7,8 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 
-#include "runtime/light/light_shapes.h"
+#include "runtime/light/shape_sample.h"
 
 namespace fathom::runtime {
 

@@ -16,14 +16,9 @@
 #include <glm/vec3.hpp>
 
 #include "compiler/compiled_scene.h"
+#include "runtime/light/shape_sample.h"
 
 namespace fathom::runtime {
-
-struct ShapeSample {
-  glm::dvec3 position{0};
-  glm::dvec3 normal{0};  // outward
-  double pdf = 0;        // per solid angle at the place it was chosen for; 0: no sample
-};
 
 class LampShape {
  public:

@@ -2,7 +2,11 @@
 // sampled. Tested by: tests/runtime/light/light_shapes_test.cpp
 #pragma once
 
-#include "runtime/light/light_shapes.h"
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "compiler/compiled_scene.h"
+#include "runtime/light/shape_sample.h"
 
 namespace fathom::runtime {
 

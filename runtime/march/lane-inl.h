@@ -1,4 +1,4 @@
-// A register of lanes: a view of what lanes.h keeps in arrays. N: vm's Batch (f32 lanes) or Real (one double).
+// A register of lanes: a view of what lane_rows.h keeps in arrays. N: vm's Batch (f32 lanes) or Real (one double).
 #if defined(FATHOM_RUNTIME_LANE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_LANE_INL
 #undef FATHOM_RUNTIME_LANE_INL
@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "runtime/march/lanes.h"
+#include "runtime/march/lane_rows.h"
 #include "vm/number/batch-inl.h"
 #include "vm/number/real-inl.h"
 

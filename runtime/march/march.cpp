@@ -1,15 +1,9 @@
 #include "runtime/march/march.h"
 
-#include <utility>
-
 #include "runtime/march/stream.h"
-#include "vm/check.h"
 
 namespace fathom::runtime {
 namespace {
-
-// Rays searched side by side, at least: two registers of doubles, and few enough not to be missed in the stream.
-constexpr std::size_t kSideBySide = 16;
 
 // Every ray searched in double from its start.
 class Certifier final : public Marcher {
@@ -30,75 +24,6 @@ class Certifier final : public Marcher {
 };
 
 }  // namespace
-
-int Marcher::capacity_for(const Field& field) { return field.regions ? kMostRays : kMostRays / 2; }
-
-// With regions every point has its own program, and nothing is gained by asking for many.
-Marcher::Marcher(const Field& field)
-    : field_(field), capacity_(capacity_for(field)), side_by_side_(field.regions ? 1 : kSideBySide) {}
-
-void Marcher::refuse() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
-
-void Marcher::advance() {
-  if (waiting_.count > 0) begin_waiting();
-  if (live_ > 0) step();
-  search();
-}
-
-void Marcher::begin_waiting() {
-  clip(waiting_, clipped_, field_.bound, field_.far);
-  begin(waiting_);
-  clipped_ = waiting_.count;
-}
-
-void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
-                           std::uint64_t instructions) {
-  searched_.push_back({Search(field_, course.origin, course.direction, side, stretch), course.entry, course.id,
-                       evaluations, instructions});
-}
-
-// Searches while so many are left that they fill the machine's registers, or nothing else is under way.
-void Marcher::search() {
-  if (searched_.size() < side_by_side_ && (live_ > 0 || searched_.empty())) return;
-  const Stage before = clock_.enter(Stage::Resolve);
-  do {
-    search_once();
-  } while (searched_.size() >= side_by_side_);
-  clock_.enter(before);
-}
-
-// Answers one question of every ray.
-void Marcher::search_once() {
-  const std::size_t count = searched_.size();
-  for (std::vector<double>& coordinates : question_) coordinates.resize(count);
-  answer_.resize(count);
-  price_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 point = searched_[i].search.point();
-    for (int axis = 0; axis < 3; ++axis) question_[axis][i] = point[axis];
-  }
-  field_.evaluate({question_[0].data(), question_[1].data(), question_[2].data()}, count, answer_.data(),
-                  price_.data(), real_scratch_);
-  for (std::size_t i = count; i-- > 0;) {
-    searched_[i].search.give(answer_[i], price_[i], real_scratch_);
-    if (searched_[i].search.done()) end_search(i);
-  }
-}
-
-// The last one takes its place.
-void Marcher::end_search(std::size_t i) {
-  const Searched& ray = searched_[i];
-  const Certified& found = ray.search.result();
-  if (found.status == Arrival::Status::Invalid) counters_.note_invalid(ray.search.point());
-  ++counters_.certified;
-  counters_.certified_evaluations += found.evaluations;
-  counters_.evaluations += found.evaluations;
-  arrive(ray.id, found.status, static_cast<std::int8_t>(found.side), ray.evaluations + found.evaluations,
-         found.evaluations, static_cast<float>(found.width), ray.entry + found.t,
-         ray.instructions + found.instructions);
-  if (i + 1 < searched_.size()) searched_[i] = std::move(searched_.back());
-  searched_.pop_back();
-}
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {
   if (marching.method == Method::Certified) return std::make_unique<Certifier>(field);

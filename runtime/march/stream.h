@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "runtime/march/lanes.h"
-#include "runtime/march/march.h"
+#include "runtime/march/marcher.h"
+#include "runtime/march/method.h"
 
 namespace fathom::runtime {
 

@@ -245,7 +245,7 @@ class Tiered {
   LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
   N error_, g_, r_, t_;         // of the sample: d_f, value, safe radius, place
-  N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lanes.h
+  N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lane_rows.h
   N band_, unseen_, evaluations_;
   Mask on_line_;     // of kConvex alone: whether the line through both holds
   N reach_, ahead_;  // how far it does; how far is free

@@ -10,10 +10,10 @@ Media::Media(const compiler::CompiledScene& scene, double extent, std::optional<
   }
 }
 
-void Media::add_regions(const compiler::CompiledScene& scene, RegionOptions options) {
+void Media::add_regions(const compiler::CompiledScene& scene, RegionOptions options, RegionStore* store) {
   for (std::size_t i = 0; i < media_.size(); ++i) {
     Field& field = media_[i].field;
-    runtime::add_regions(field, scene.media[i], options);
+    runtime::add_regions(field, scene.media[i], options, store);
     if (field.regions) options.memory -= std::min(options.memory, field.regions->facts().bytes);
   }
 }

@@ -21,8 +21,9 @@ class Media {
   std::size_t size() const { return media_.size(); }
   const Field& field(std::size_t medium) const { return media_[medium].field; }
   std::uint32_t material(std::size_t medium) const { return media_[medium].material; }
-  // All of them together take no more memory than the options allow.
-  void add_regions(const compiler::CompiledScene& scene, RegionOptions options);
+  // Regions of every medium, as runtime::add_regions() builds them. Together they take no more memory than the
+  // options allow.
+  void add_regions(const compiler::CompiledScene& scene, RegionOptions options, RegionStore* store);
 
   // The medium that fills the place, in scene units of the programs; nothing in the open and within what is opaque.
   std::optional<std::uint32_t> at(glm::dvec3 place, RealScratch& scratch) const;

@@ -12,10 +12,10 @@
 namespace fathom::runtime {
 namespace {
 
-// Edges of the tiles, pixels; a tile holds kSide * kSide of the next.
+// Edges of the tiles, pixels; a tile holds kTilesAcross * kTilesAcross of the next.
 constexpr int kEdges[] = {256, 64, 16};
-constexpr int kLevels = 3, kSide = 4;
-static_assert(kSide * kSide == vm::kEnclosedBoxes);
+constexpr int kLevels = 3, kTilesAcross = 4;
+static_assert(kTilesAcross * kTilesAcross == vm::kEnclosedBoxes);
 // With fewer choices a row at a time is as fast.
 constexpr std::size_t kLeastChoices = 24;
 
@@ -69,7 +69,7 @@ class QuadtreeWorker {
     return child;
   }
   static Tile tile_of(Tile first, int edge, std::size_t i) {
-    return {first.x + edge * static_cast<int>(i % kSide), first.y + edge * static_cast<int>(i / kSide)};
+    return {first.x + edge * static_cast<int>(i % kTilesAcross), first.y + edge * static_cast<int>(i / kTilesAcross)};
   }
   vm::Boxes boxes() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
 
@@ -98,10 +98,10 @@ class QuadtreeWorker {
   }
 
   void evaluate(const vm::Part& part, Tile tile) {
-    constexpr int kEdge = kEdges[kLevels - 1];
-    const int x1 = std::min(tile.x + kEdge, slice_.width), y1 = std::min(tile.y + kEdge, slice_.height);
-    alignas(64) std::array<std::array<float, kEdge * kEdge>, 3> points;
-    alignas(64) std::array<float, kEdge * kEdge> values;
+    constexpr int kFinestEdge = kEdges[kLevels - 1];
+    const int x1 = std::min(tile.x + kFinestEdge, slice_.width), y1 = std::min(tile.y + kFinestEdge, slice_.height);
+    alignas(64) std::array<std::array<float, kFinestEdge * kFinestEdge>, 3> points;
+    alignas(64) std::array<float, kFinestEdge * kFinestEdge> values;
     std::size_t count = 0;
     for (int y = tile.y; y < y1; ++y, count += static_cast<std::size_t>(x1 - tile.x)) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -138,11 +138,11 @@ bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceVal
   vm::Expression expression;
   if (!expression.read(distance) || expression.choices().size() < kLeastChoices) return false;
   const vm::Part part = vm::whole(distance);
-  const int step = kEdges[0] * kSide;
+  const int step = kEdges[0] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   std::atomic<int> next{0};
   // The largest tiles are handed out one by one; what is known of sixteen costs as much as of one.
-  constexpr int kTiles = kSide * kSide;
+  constexpr int kTiles = kTilesAcross * kTilesAcross;
   const auto work = [&] {
     QuadtreeWorker worker(slice, wanted, field);
     for (int i = next++; i < columns * rows * kTiles; i = next++) {

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "runtime/slice/slice.h"
+#include "runtime/slice/slice_frame.h"
 #include "vm/verify.h"
 
 namespace fathom::runtime {

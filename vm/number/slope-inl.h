@@ -27,6 +27,7 @@
 #include <array>
 
 #include "vm/number/interval_elementary-inl.h"
+#include "vm/opcode.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

@@ -1,11 +1,15 @@
-#include "runtime/chart/plot.h"
+#include "runtime/chart/plot_svg.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
+#include "runtime/chart/log_axis.h"
 #include "runtime/chart/markup.h"
 #include "runtime/chart/plot_draw.h"
+#include "runtime/chart/plot_legend.h"
+#include "runtime/chart/plot_panel.h"
 
 namespace fathom::runtime {
 namespace {
