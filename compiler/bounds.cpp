@@ -1,10 +1,5 @@
 #include "compiler/bounds.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
@@ -21,6 +16,11 @@ Knowledge of_primitive(const NodeSpec& row, Params params) {
   if (!k.certified) k.reach = k.reach_max = 0;
   if (row.magnitude) k.magnitude = row.magnitude(params);
   return k;
+}
+
+bool reads_point(const Instruction& instruction) {
+  const vm::Form form = vm::info(instruction.opcode).form;
+  return form == vm::Form::Point || form == vm::Form::Shape || form == vm::Form::Outline;
 }
 
 }  // namespace
@@ -72,33 +72,11 @@ Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known)
   return result;
 }
 
-std::string_view name(Exactness exactness) {
-  switch (exactness) {
-    case Exactness::Exact:
-      return "exact";
-    case Exactness::Bound:
-      return "a lower bound";
-    default:
-      return "an estimate";
-  }
-}
-
-std::string describe(const Box& box) {
-  // Four digits, and more of a side that is far from zero for its length.
-  const auto side = [](double lo, double hi) {
-    int digits = 4;
-    for (double ratio = std::max(std::abs(lo), std::abs(hi)) / (hi - lo); ratio >= 100 && digits < 17; ratio /= 10) {
-      ++digits;
-    }
-    return fmt::format("[{:.{}g},{:.{}g}]", lo, digits, hi, digits);
-  };
-  if (box.empty()) return "empty";
-  return side(box.lo.x, box.hi.x) + "x" + side(box.lo.y, box.hi.y) + "x" + side(box.lo.z, box.hi.z);
-}
-
-std::string describe(const Knowledge& k) {
-  return fmt::format("bound {}, {} outside, Lipschitz <= {:.4g} ({})", describe(k.box), name(k.outside), k.lipschitz,
-                     k.certified ? "proved" : "estimate");
+bool takes_own_point(const Graph& graph, NodeId id) {
+  if (graph.children(id).empty()) return false;
+  const Code code = spec(graph.kind(id)).code(graph.params(id));
+  return code.points.size() == 1 && code.points[0].empty() &&
+         std::none_of(code.after.begin(), code.after.end(), reads_point);
 }
 
 }  // namespace fathom::compiler

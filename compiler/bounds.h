@@ -19,4 +19,7 @@ std::vector<Knowledge> analyse(const Graph& graph);
 // none.
 Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known);
 
+// Whether the node's children are evaluated at the node's own point, and their distances are all it needs.
+bool takes_own_point(const Graph& graph, NodeId id);
+
 }  // namespace fathom::compiler

@@ -11,6 +11,7 @@
 
 #include "compiler/blends.h"
 #include "compiler/bounds.h"
+#include "compiler/derive.h"
 #include "compiler/extent.h"
 #include "compiler/fits_float.h"
 #include "compiler/framing.h"
@@ -46,8 +47,9 @@ void place_camera(Elaborated& elaborated, const Box& extent) {
 }
 
 // All places of the scene become those of the programs; returns the origin.
-glm::dvec3 move_to_origin(Elaborated& elaborated, const std::optional<glm::dvec3>& given) {
-  const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, elaborated.camera);
+glm::dvec3 move_to_origin(Elaborated& elaborated, const std::vector<Knowledge>& known,
+                          const std::optional<glm::dvec3>& given) {
+  const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, known, elaborated.camera);
   if (origin == glm::dvec3(0)) return origin;
   elaborated.scene = moved(elaborated.scene, origin, elaborated.surfaces);
   elaborated.camera.position -= origin;
@@ -83,7 +85,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   if (on_pass) on_pass(kOrigin, scene);
   if (options.stop_after == kOrigin) return scene;
   for (const Pass& pass : passes()) {
-    if (!(keep_paint && pass.run == unpaint) && has_work(pass, scene)) scene = pass.run(scene);
+    if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
     if (on_pass) on_pass(pass.name, scene);
     if (options.stop_after == pass.name) break;
   }
@@ -149,10 +151,11 @@ bool needs_tags(std::span<const Surface> surfaces) {
   return surfaces.size() > 1 || std::any_of(surfaces.begin(), surfaces.end(), std::mem_fn(&Surface::placed));
 }
 
-// `optimised` is `scene` after the passes, without paint; `painted`: whether the surface program needs tags.
-std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised, bool painted,
-                                           const Source& source, Diagnostics& diagnostics,
-                                           const CompileOptions& options) {
+// `optimised` is `scene` after the passes, without paint, of which `known` is known; `painted`: whether the surface
+// program needs tags.
+std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised,
+                                           const std::vector<Knowledge>& known, bool painted, const Source& source,
+                                           Diagnostics& diagnostics, const CompileOptions& options) {
   const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
   std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
   if (!distance) return std::nullopt;
@@ -160,11 +163,10 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
   if (painted)
     surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
-  const std::vector<Knowledge> all_known = analyse(optimised.graph);
-  const Knowledge& known = all_known[optimised.root];
+  const Knowledge& all = known[optimised.root];
   return CompiledField{
-      std::move(*distance), std::move(*surface), known.box,      contents(optimised.graph, optimised.root, all_known),
-      known.lipschitz,      known.magnitude,     known.certified};
+      std::move(*distance), std::move(*surface), all.box,      contents(optimised.graph, optimised.root, known),
+      all.lipschitz,        all.magnitude,       all.certified};
 }
 
 // `what` of the solids of transparent materials are more than the limit at the scene's `node`.
@@ -197,7 +199,7 @@ std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool p
       report_media(maker.graph(), maker.first_body(i), "instructions", options.limits, diagnostics);
       return std::nullopt;
     }
-    auto compiled = compile_field(medium.scene, inside, painted, source, diagnostics, options);
+    auto compiled = compile_field(medium.scene, inside, analyse(inside.graph), painted, source, diagnostics, options);
     if (!compiled) return std::nullopt;
     instructions = std::min(most, instructions + compiled->distance.instructions());
     media.push_back({std::move(*compiled), medium.material});
@@ -267,40 +269,6 @@ void warn_of_smallness(const Scene& scene, const std::vector<Knowledge>& known, 
 
 }  // namespace
 
-std::span<const Pass> passes() {
-  constexpr auto paint = [](Kind kind) { return kind == Kind::Paint; };
-  constexpr auto transform = [](Kind kind) { return kind == Kind::Transform; };
-  constexpr auto function = [](Kind kind) { return spec(kind).category == Category::Function; };
-  constexpr auto folds = [](Kind kind) {
-    return is_blend(kind) || keeps_signs(kind) || kind == Kind::Round || kind == Kind::Transform ||
-           kind == Kind::Complement || kind == Kind::Scaled;
-  };
-  constexpr auto list = [](Kind kind) {
-    return kind == Kind::Union || kind == Kind::Intersection || kind == Kind::Subtraction;
-  };
-  constexpr auto commutes = [](Kind kind) {
-    return kind == Kind::Add || kind == Kind::Multiply || kind == Kind::Minimum || kind == Kind::Maximum ||
-           kind == Kind::Union || kind == Kind::Intersection || kind == Kind::Subtraction;
-  };
-  static constexpr Pass kPasses[] = {
-      {"unpaint", unpaint, paint},
-      {"fold", fold, folds},
-      {"arithmetic", arithmetic, function},
-      {"affine", affine, transform},
-      {"flatten", flatten, list},
-      {"share", share, commutes},
-      {"cull", cull, list, Pass::Leaves::Sign},
-  };
-  return kPasses;
-}
-
-bool has_work(const Pass& pass, const Scene& scene) {
-  for (NodeId id = 0; id <= scene.root; ++id) {
-    if (pass.changes(scene.graph.kind(id))) return true;
-  }
-  return false;
-}
-
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options) {
   std::optional<ReadScene> read =
       read_scene(source, diagnostics, options.limits, options.definitions, options.imports);
@@ -316,20 +284,26 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   std::optional<Elaborated> elaborated =
       elaborate(read->file, diagnostics, options.definitions, options.limits, std::move(read->parameters));
   if (!elaborated) return std::nullopt;
+  std::optional<Scene> derived = derive(elaborated->scene, elaborated->type_spans, options.limits, diagnostics);
+  if (!derived) return std::nullopt;
+  elaborated->scene = *std::move(derived);
   read.reset();  // for the rest of compiling: of 200,000 balls 120 MB
   find_files(*elaborated, source, options.file_at_hand, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
 
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
-  Box whole_extent = extent(elaborated->scene, analyse(elaborated->scene.graph));
+  const std::vector<Knowledge> known_before = analyse(elaborated->scene.graph);
+  Box whole_extent = extent(elaborated->scene, known_before);
   place_camera(*elaborated, whole_extent);
   const glm::dvec3 origin =
-      options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated, options.origin);
+      options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated, known_before, options.origin);
   whole_extent = whole_extent.moved(-origin);
   place_camera(*elaborated, whole_extent);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
+  const std::vector<Knowledge> known = analyse(field.graph);
   const bool tagged = needs_tags(elaborated->surfaces);
-  std::optional<CompiledField> whole = compile_field(elaborated->scene, field, tagged, source, diagnostics, options);
+  std::optional<CompiledField> whole =
+      compile_field(elaborated->scene, field, known, tagged, source, diagnostics, options);
   if (!whole) return std::nullopt;
   std::optional<std::vector<Medium>> media = compile_media(*elaborated, tagged, source, diagnostics, options);
   if (!media) return std::nullopt;
@@ -337,7 +311,6 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
       assemble_all(elaborated->formulas, source, options.limits, diagnostics);
   if (!formulas) return std::nullopt;
 
-  const std::vector<Knowledge> known = analyse(field.graph);
   warn_of_cancellation(field, known, elaborated->camera, diagnostics);
   warn_of_smallness(field, known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);

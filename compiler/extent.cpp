@@ -1,7 +1,7 @@
 #include "compiler/extent.h"
 
 #include "compiler/affine.h"
-#include "compiler/origin.h"
+#include "compiler/bounds.h"
 
 namespace fathom::compiler {
 namespace {

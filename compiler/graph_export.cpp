@@ -8,6 +8,7 @@
 #include "compiler/bounds.h"
 #include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
+#include "compiler/shapes/print_graph.h"
 
 namespace fathom::compiler {
 namespace {
@@ -38,7 +39,9 @@ std::string_view word(Exactness exactness) {
 
 GraphJson finite_or_null(double number) { return std::isfinite(number) ? GraphJson(number) : GraphJson(nullptr); }
 
-GraphJson to_json(glm::dvec3 v) { return GraphJson::array({finite_or_null(v.x), finite_or_null(v.y), finite_or_null(v.z)}); }
+GraphJson to_json(glm::dvec3 v) {
+  return GraphJson::array({finite_or_null(v.x), finite_or_null(v.y), finite_or_null(v.z)});
+}
 
 GraphJson to_json(const Box& box) {
   if (box.empty()) return nullptr;
@@ -66,7 +69,8 @@ GraphJson source_json(const Origin& origin, const Source& source) {
   return json;
 }
 
-GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const Knowledge& known, const Source& source) {
+GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const Knowledge& known,
+                    const Source& source) {
   GraphJson children = GraphJson::array();
   for (const NodeId child : graph.children(id)) children.push_back(nodes.number_of[child]);
   return {{"id", nodes.number_of[id]},        {"type", spec(graph.kind(id)).name},

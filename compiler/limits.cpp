@@ -45,4 +45,15 @@ std::optional<Excess> excess_of(const vm::VerifiedProgram& program, const Limits
   return std::nullopt;
 }
 
+std::optional<Excess> excess_of(double nodes, const Limits& limits) {
+  if (limits.memory > 0 && kBytesPerNode * nodes > limits.memory) {
+    return Excess{fmt::format("the scene's {} nodes up to here take more than {:.15g} bytes of memory, {} per node",
+                              nodes, limits.memory, kBytesPerNode),
+                  raise(&Limits::memory, 2 * limits.memory)};
+  }
+  if (nodes <= limits.nodes) return std::nullopt;
+  return Excess{fmt::format("the scene has more than {} nodes here", limits.nodes),
+                raise(&Limits::nodes, 2 * limits.nodes)};
+}
+
 }  // namespace fathom::compiler

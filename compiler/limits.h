@@ -114,4 +114,7 @@ struct Excess {
 };
 std::optional<Excess> excess_of(const vm::VerifiedProgram& program, const Limits& limits);
 
+// The same of a graph with that many nodes.
+std::optional<Excess> excess_of(double nodes, const Limits& limits);
+
 }  // namespace fathom::compiler

@@ -9,15 +9,15 @@
 namespace fathom::compiler {
 
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
-  const Graph& graph = scene.graph;
   bool any = false;
   for (NodeId id = 0; id <= scene.root; ++id) {
-    any = any || (graph.kind(id) == Kind::Bounded && graph.params(id)[8] != 1);
+    any = any || (scene.graph.kind(id) == Kind::Bounded && scene.graph.params(id)[8] != 1);
   }
   if (!any) return;
   const FieldGraph field(scene);
+  const Graph& graph = field.graph();
   std::set<std::uint32_t> warned;
-  for (NodeId id = 0; id <= scene.root; ++id) {
+  for (NodeId id = 0; id <= field.root(); ++id) {
     if (!field.reached(id) || graph.kind(id) != Kind::Bounded || !field.estimates(id)) continue;
     const Span span = graph.origin(id).span;
     if (!warned.insert(span.begin).second) continue;

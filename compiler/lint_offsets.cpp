@@ -14,6 +14,7 @@
 #include "compiler/blends.h"
 #include "compiler/lints.h"
 #include "compiler/report.h"
+#include "compiler/shapes/print_graph.h"
 
 namespace fathom::compiler {
 namespace {

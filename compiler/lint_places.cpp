@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/affine.h"
+#include "compiler/bounds.h"
 #include "compiler/lints.h"
 #include "compiler/origin.h"
 #include "compiler/report.h"

@@ -15,6 +15,7 @@
 #include "compiler/passes/signs.h"
 #include "compiler/report.h"
 #include "compiler/shapes/node_table.h"
+#include "compiler/shapes/print_graph.h"
 #include "vm/evaluate.h"
 
 namespace fathom::compiler {
@@ -59,7 +60,7 @@ glm::dvec3 nearest_point(const Box& box, glm::dvec3 p) { return glm::min(glm::ma
 class Linter {
  public:
   Linter(const Scene& scene, const SceneTables& tables, Diagnostics& diagnostics)
-      : scene_(scene), graph_(scene.graph), tables_(tables), diagnostics_(diagnostics), field_(scene) {}
+      : field_(scene), scene_(field_.scene()), graph_(field_.graph()), tables_(tables), diagnostics_(diagnostics) {}
 
   void run(const vm::VerifiedProgram& surface) {
     find_vanishing();
@@ -331,11 +332,11 @@ class Linter {
          "move the camera's `position` out, or cut room for it");
   }
 
+  const FieldGraph field_;
   const Scene& scene_;
   const Graph& graph_;
   const SceneTables& tables_;
   Diagnostics& diagnostics_;
-  const FieldGraph field_;
   Containment containment_;
   std::vector<bool> vanishes_;     // [node]
   std::vector<bool> holds_clear_;  // [node] whether light passes some of it, which then shows what it holds

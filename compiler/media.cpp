@@ -120,7 +120,7 @@ MediumScene MediaMaker::make(std::size_t i) {
   operands.push_back(own.size() == 1 ? own[0] : scene.graph.add(Kind::Union, {}, own, origin));
   for (const NodeId node : medium.cuts) operands.push_back(copied(node));
   scene.root = operands.size() == 1 ? operands[0] : scene.graph.add(Kind::Subtraction, {}, operands, origin);
-  return {medium.material, level(scene)};
+  return {medium.material, std::move(scene)};
 }
 
 void mark_mixed(const Scene& scene, std::span<const Material> materials, std::span<Surface> surfaces) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vm/enclose.h"
+#include "vm/evaluate.h"
 #include "vm/trace.h"
 
 namespace fathom::compiler {

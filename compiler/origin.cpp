@@ -20,11 +20,6 @@ namespace {
 
 using glm::dvec3;
 
-bool reads_point(const Instruction& instruction) {
-  const vm::Form form = vm::info(instruction.opcode).form;
-  return form == vm::Form::Point || form == vm::Form::Shape || form == vm::Form::Outline;
-}
-
 // The largest power of two up to `value` > 0.
 double power_of_two(double value) {
   int exponent;
@@ -168,15 +163,7 @@ bool pays(const Scene& scene, dvec3 origin, double magnitude) {
 
 }  // namespace
 
-bool takes_own_point(const Graph& graph, NodeId id) {
-  if (graph.children(id).empty()) return false;
-  const Code code = spec(graph.kind(id)).code(graph.params(id));
-  return code.points.size() == 1 && code.points[0].empty() &&
-         std::none_of(code.after.begin(), code.after.end(), reads_point);
-}
-
-dvec3 choose_origin(const Scene& scene, const Camera& camera) {
-  const std::vector<Knowledge> known = analyse(scene.graph);
+dvec3 choose_origin(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera) {
   const Box part = extent(scene, known);
   const Box view{glm::min(camera.position, camera.target), glm::max(camera.position, camera.target)};
   const dvec3 near_view = part.contains(camera.target) ? middle_if_far(view) : dvec3(0);

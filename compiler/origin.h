@@ -3,7 +3,7 @@
 // A float has 24 bits: at 1e5 neighbouring coordinates are 0.008 apart, and no surface is known better. So a scene
 // far from zero is compiled around an origin of its own: each node is moved by -origin, in double, before the passes.
 //
-//     const glm::dvec3 origin = choose_origin(scene, camera);
+//     const glm::dvec3 origin = choose_origin(scene, analyse(scene.graph), camera);
 //     const Scene local = moved(scene, origin);               // local(p) = scene(p + origin)
 //
 // Tested by: tests/compiler/origin_test.cpp
@@ -14,6 +14,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "compiler/graph.h"
+#include "compiler/knowledge.h"
 
 namespace fathom::compiler {
 
@@ -22,8 +23,8 @@ namespace fathom::compiler {
 // scene without an end in some direction the way to the target is added. 0 along axes on which the middle is no
 // farther from zero than 8 times half the box's diagonal, as in most scenes it is not. A multiple of the largest
 // power of two within the latter, so that numbers of few digits stay so. No origin is chosen that would make float
-// errors larger.
-glm::dvec3 choose_origin(const Scene& scene, const Camera& camera);
+// errors larger. `known` is of analyse() (compiler/bounds.h).
+glm::dvec3 choose_origin(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera);
 
 // The scene with `origin` at zero. A move goes through what only combines or changes distances, and ends in the
 // numbers of transforms, planes, triangles and quads, or in a new transform. Below that transform points have the
@@ -33,8 +34,5 @@ glm::dvec3 choose_origin(const Scene& scene, const Camera& camera);
 // back to these.
 Scene moved(const Scene& scene, glm::dvec3 origin, std::vector<Surface>& surfaces);
 Scene moved(const Scene& scene, glm::dvec3 origin);
-
-// Whether the node's children are evaluated at the node's own point, and their distances are all it needs.
-bool takes_own_point(const Graph& graph, NodeId id);
 
 }  // namespace fathom::compiler

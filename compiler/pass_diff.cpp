@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "compiler/line_diff.h"
+#include "compiler/shapes/print_graph.h"
 
 namespace fathom::compiler {
 namespace {

@@ -208,35 +208,35 @@ std::vector<ProbeRow> probe(const Scene& scene, const std::vector<Surface>& surf
   Probing probing(scene, options);
   const FieldGraph& field = probing.field();
   std::vector<std::pair<What, NodeId>> others;
-  std::vector<bool> taken(scene.root + 1, false);
-  taken[scene.root] = true;
+  std::vector<bool> taken(field.root() + 1, false);
+  taken[field.root()] = true;
   for (const NodeId object : field.objects(surfaces)) {
-    if (object == scene.root || taken[object]) continue;
+    if (object == field.root() || taken[object]) continue;
     others.push_back({What::Object, object});
     taken[object] = true;
   }
-  for (NodeId id = 0; id < scene.root; ++id) {
+  for (NodeId id = 0; id < field.root(); ++id) {
     if (!field.reached(id) || taken[id] || !has_own_proof(field, id)) continue;
     others.push_back({What::Node, id});
     taken[id] = true;
   }
   std::vector<ProbeRow> rows;
-  probing.add(What::Scene, scene.root, options.points, rows);
+  probing.add(What::Scene, field.root(), options.points, rows);
   const std::uint64_t share = std::max(kFewest, options.points / std::max<std::size_t>(others.size(), 1));
   for (const auto& [what, id] : others) probing.add(what, id, std::min(share, options.points), rows);
 
   // Where a constant breaks that no probed node below accounts for: every node below.
   const std::vector<bool> below = broken_below(field, rows);
-  std::vector<bool> suspect(scene.root + 1, false);
+  std::vector<bool> suspect(field.root() + 1, false);
   for (const ProbeRow& row : rows) {
     if (!row.broken() || below[row.node]) continue;
     for (const NodeId child : field.children(row.node)) suspect[child] = true;
   }
-  for (NodeId id = scene.root + 1; id-- > 0;) {
+  for (NodeId id = field.root() + 1; id-- > 0;) {
     if (!suspect[id]) continue;
     for (const NodeId child : field.children(id)) suspect[child] = true;
   }
-  for (NodeId id = 0; id < scene.root; ++id) {
+  for (NodeId id = 0; id < field.root(); ++id) {
     if (suspect[id] && !taken[id]) probing.add(What::Node, id, std::min(share, options.points), rows);
   }
   return rows;

@@ -6,7 +6,8 @@
 #include <set>
 
 #include "compiler/bounds.h"
-#include "compiler/formula_field.h"
+#include "compiler/formula_bound.h"
+#include "compiler/passes/passes.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
@@ -26,18 +27,18 @@ std::string describe(const Place& place) {
 }
 
 FieldGraph::FieldGraph(const Scene& scene)
-    : scene_(scene),
-      known_(analyse(scene.graph)),
-      reached_(scene.graph.size(), false),
-      cost_(scene.graph.size(), 1),
-      steepness_(scene.graph.size(), 1),
-      costliest_(scene.graph.size(), 0) {
-  reached_[scene.root] = true;
-  for (NodeId id = scene.root + 1; id-- > 0;) {
+    : scene_(level(scene)),
+      known_(analyse(graph())),
+      reached_(graph().size(), false),
+      cost_(graph().size(), 1),
+      steepness_(graph().size(), 1),
+      costliest_(graph().size(), 0) {
+  reached_[root()] = true;
+  for (NodeId id = root() + 1; id-- > 0;) {
     if (!reached_[id]) continue;
     for (const NodeId child : children(id)) reached_[child] = true;
   }
-  for (NodeId id = 0; id <= scene.root; ++id) {
+  for (NodeId id = 0; id <= root(); ++id) {
     if (!reached_[id]) continue;
     double below = 0, steepest = 0;
     costliest_[id] = id;
@@ -45,7 +46,7 @@ FieldGraph::FieldGraph(const Scene& scene)
       below = std::max(below, known_[child].lipschitz);
       steepest = std::max(steepest, steepness_[child]);
     }
-    const bool levels = scene.graph.kind(id) == Kind::Scaled;
+    const bool levels = graph().kind(id) == Kind::Scaled;
     if (below == 0) below = steepest = 1;
     cost_[id] = levels ? 1 : known_[id].lipschitz / below;
     steepness_[id] = steepest * cost_[id];
@@ -117,7 +118,7 @@ std::string_view class_of(const Knowledge& knowledge) {
 Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
   const FieldGraph field(scene);
   Report report;
-  report.certified = field.known(scene.root).certified;
+  report.certified = field.known(field.root()).certified;
   for (const NodeId object : field.objects(surfaces)) {
     const std::uint32_t surface = field.surface(object);
     ObjectReport& row = report.objects.emplace_back();
@@ -127,7 +128,7 @@ Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
     const NodeId worst = field.costliest(object);
     if (field.cost(worst) > kCheap) row.costliest = {field.place(worst), field.cost(worst)};
   }
-  for (NodeId id = 0; id <= scene.root; ++id) {
+  for (NodeId id = 0; id <= field.root(); ++id) {
     if (!field.reached(id) || !field.estimates(id)) continue;
     Estimate& estimate = report.estimates.emplace_back(Estimate{field.place(id), std::nullopt});
     if (report.estimates.size() <= Report::kMostSearched) estimate.operation = field.unbounded_operation(id);

@@ -60,7 +60,7 @@ std::string_view class_of(const Knowledge& knowledge);
 // What the report and the checks beside it (lints, probe) know of a graph.
 class FieldGraph {
  public:
-  explicit FieldGraph(const Scene& scene);
+  explicit FieldGraph(const Scene& scene);  // looks at level(scene), compiler/passes/passes.h
 
   // Whether the root reaches the node by nodes that are distances, not by the parts of formulas.
   bool reached(NodeId id) const { return reached_[id]; }
@@ -85,11 +85,12 @@ class FieldGraph {
   // The object's number in `surfaces` of the first Paint within; 0 when there is none.
   std::uint32_t surface(NodeId object) const;
 
+  const Scene& scene() const { return scene_; }
   const Graph& graph() const { return scene_.graph; }
   NodeId root() const { return scene_.root; }
 
  private:
-  const Scene& scene_;
+  const Scene scene_;
   std::vector<Knowledge> known_;          // [node]
   std::vector<bool> reached_;             // [node]
   std::vector<double> cost_, steepness_;  // [node]

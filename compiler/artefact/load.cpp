@@ -8,6 +8,7 @@
 
 #include "vm/evaluate.h"
 #include "vm/opcode.h"
+#include "vm/slope.h"
 
 namespace fathom::compiler {
 namespace {

@@ -18,11 +18,6 @@ const syntax::Value* value_of(const syntax::File& file, std::string_view name) {
 
 }  // namespace
 
-bool declares(const Scope& parameters, std::string_view name) {
-  const auto& entries = parameters.entries();
-  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.parameter.name == name; });
-}
-
 std::optional<Animation> read_animation(Source& source, Diagnostics& diagnostics, const Limits& limits,
                                         const Definitions& definitions, const ImportReader& imports) {
   std::optional<ReadScene> read = read_scene(source, diagnostics, limits, definitions, imports);

@@ -18,8 +18,6 @@
 
 namespace fathom::compiler {
 
-inline constexpr std::string_view kTimeParameter = "time", kFrameParameter = "frame";
-
 // What a scene says of its animation, at its parameters' defaults.
 struct Animation {
   bool time = false, frame = false;  // whether it declares that parameter
@@ -33,7 +31,5 @@ std::optional<Animation> read_animation(Source& source, Diagnostics& diagnostics
 
 // The values of those of the two parameters that the scene declares, at a time in seconds.
 Definitions moment(const Animation& animation, int frame, double time);
-
-bool declares(const Scope& parameters, std::string_view name);
 
 }  // namespace fathom::compiler

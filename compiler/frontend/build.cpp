@@ -8,6 +8,7 @@
 
 #include "compiler/frontend/fold_nodes.h"
 #include "compiler/frontend/formula_nodes.h"
+#include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -39,46 +40,13 @@ SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vec
 
 // Reports it once; what is not built then is not missed.
 bool SceneBuilder::too_many_nodes(const CheckedNode& node) {
-  const auto nodes = static_cast<double>(std::max(scene_.graph.size(), built_nodes_));
-  const bool too_large = limits_.memory > 0 && kBytesPerNode * nodes > limits_.memory;
-  if (full_ || (nodes <= limits_.nodes && !too_large)) return full_;
+  const std::optional<Excess> excess =
+      excess_of(static_cast<double>(std::max(scene_.graph.size(), built_nodes_)), limits_);
+  if (full_ || !excess) return full_;
   full_ = true;
-  const char* const shared = "a named node with materials in it is another in each object that uses it";
-  if (too_large) {
-    diagnostics_.error(
-        "E0312", node.span,
-        fmt::format("the scene's {} nodes up to here take more than {:.15g} bytes of memory, {} per node", nodes,
-                    limits_.memory, kBytesPerNode),
-        "", {shared, raise(&Limits::memory, 2 * limits_.memory)});
-  } else {
-    diagnostics_.error("E0312", node.span, fmt::format("the scene has more than {} nodes here", limits_.nodes), "",
-                       {shared, raise(&Limits::nodes, 2 * limits_.nodes)});
-  }
+  diagnostics_.error("E0312", node.span, excess->what, "",
+                     {"a named node with materials in it is another in each object that uses it", excess->remedy});
   return true;
-}
-
-// How often the node evaluates its child, and how long it iterates.
-void SceneBuilder::check_size(const CheckedNode& node, NodeId id) {
-  const Code code = spec(scene_.graph.kind(id)).code(scene_.graph.params(id));
-  const auto copies = static_cast<double>(code.points.size());
-  if (copies > limits_.copies) {
-    diagnostics_.error(
-        "E0312", node.type_span,
-        fmt::format("{} copies of the node count at every point; at most {} are evaluated", copies, limits_.copies),
-        "", {"make `period` larger or the node smaller", raise(&Limits::copies, copies)});
-  }
-  for (const Instruction& instruction : code.after) {
-    const vm::OpcodeInfo& row = vm::info(instruction.opcode);
-    for (int i = 0; i < row.immediates; ++i) {
-      const double count = instruction.immediates[static_cast<std::size_t>(i)];
-      if (!vm::is_integer_immediate(row, i) || count <= limits_.iterations) continue;
-      diagnostics_.error(
-          "E0312", node.type_span,
-          fmt::format("`{}` is {}; at most {} are allowed, for it is a loop at every point",
-                      vm::immediate_name(row, i), count, limits_.iterations),
-          "", {raise(&Limits::iterations, count)});
-    }
-  }
 }
 
 void SceneBuilder::add_object(const CheckedNode& node) {
@@ -155,19 +123,15 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
   if (node.formula && !holds_in_float(*node.formula, diagnostics_)) {
     children.push_back(scene_.graph.add(Kind::Constant, std::array<double, 1>{1.0}, {}));  // to go on with
   } else if (node.formula) {
-    children.push_back(make_formula(maker_, *node.formula, node.name));
-  }
-  if (const Complaint problem = maker_.complaint(node.kind, node.params, children)) {
-    const NodeSpec& row = spec(node.kind);
-    diagnostics_.error("E0302", node.type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
-    return {children[0], true};  // something to go on with
+    children.push_back(make_formula(scene_.graph, *node.formula, node.name));
   }
   const bool painted = !over.empty() && std::all_of(over.begin(), over.end(), std::mem_fn(&Built::painted));
-  const NodeId id = maker_.make(node.kind, node.params, children, {node.span, node.name});
-  check_size(node, id);
+  const NodeId id = scene_.graph.add(node.kind, node.params, children, {node.span, node.name});
+  if (type_spans_.size() <= id) type_spans_.resize(id + 1);
+  if (type_spans_[id].end == 0) type_spans_[id] = node.type_span;
   Built built{id, painted};
   // A combinator of one is that one.
-  if (spec(scene_.graph.kind(id)).category == Category::Combinator && over.size() == 1) {
+  if (spec(node.kind).category == Category::Combinator && over.size() == 1) {
     built.placements = over[0].placements;
     built.placements.push_back(id);
   }

@@ -1,4 +1,4 @@
-// From checked nodes to the graph, each object painted with its surface.
+// From checked nodes to the graph of nodes as described (compiler/derive.h), each object painted with its surface.
 //
 // A node without a material of its own is painted by what it lies in. A Paint is left out where every point below it
 // is painted further in already.
@@ -19,7 +19,7 @@
 #include "compiler/frontend/checked_node.h"
 #include "compiler/frontend/name_order.h"
 #include "compiler/graph.h"
-#include "compiler/make_node.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler {
 
@@ -32,12 +32,12 @@ class SceneBuilder {
                const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
                std::span<const Texture> textures, const Limits& limits, Diagnostics& diagnostics);
 
-  // Reports what is wrong with a node over its children.
   void add_object(const CheckedNode& node);
 
   // The union of the objects; the builder is empty afterwards.
   Scene finish();
   std::vector<Surface> take_surfaces() { return std::move(surfaces_); }
+  std::vector<Span> take_type_spans() { return std::move(type_spans_); }  // as Elaborated::type_spans
 
  private:
   // What a node becomes depends on the object it is in and the material it inherits.
@@ -64,7 +64,6 @@ class SceneBuilder {
   void paint(Built& built, Context context, const Origin& origin);
   std::string unique_name(const CheckedNode& node);
   bool too_many_nodes(const CheckedNode& node);
-  void check_size(const CheckedNode& node, NodeId id);
 
   const std::vector<CheckedNode>& named_;
   const std::vector<std::vector<Use>>& uses_;
@@ -76,7 +75,7 @@ class SceneBuilder {
   std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
   Diagnostics& diagnostics_;
   Scene scene_;
-  NodeMaker maker_{scene_.graph};
+  std::vector<Span> type_spans_;  // [node]
   std::vector<Surface> surfaces_;
   std::vector<std::string> object_names_;
   std::vector<NodeId> objects_;

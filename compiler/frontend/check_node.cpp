@@ -7,8 +7,10 @@
 
 #include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/placement.h"
+#include "compiler/frontend/read_formula.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/suggest.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
 namespace {

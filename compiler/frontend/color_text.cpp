@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "compiler/frontend/record_reader.h"
 #include "vm/real.h"
 
 namespace fathom::compiler {
@@ -34,7 +33,8 @@ bool is_color_text(const syntax::Value& value, ValueType type) {
 
 std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics) {
   const std::string_view digits = std::string_view(std::get<std::string>(value.data)).substr(1);
-  const bool all_hex = std::all_of(digits.begin(), digits.end(), [](char c) { return hex_digit(c) != kHexDigits.npos; });
+  const bool all_hex =
+      std::all_of(digits.begin(), digits.end(), [](char c) { return hex_digit(c) != kHexDigits.npos; });
   if (!all_hex || (digits.size() != 3 && digits.size() != 6)) {
     diagnostics.error("E0101", value.span, "a colour in hexadecimal has three or six digits", "",
                       {"write red, green and blue as \"#rrggbb\" or \"#rgb\": \"#c04020\", \"#c42\""});
@@ -42,8 +42,8 @@ std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnos
   }
   syntax::List channels;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t byte = digits.size() == 3 ? 17 * hex_digit(digits[i])
-                                                : 16 * hex_digit(digits[2 * i]) + hex_digit(digits[2 * i + 1]);
+    const std::size_t byte =
+        digits.size() == 3 ? 17 * hex_digit(digits[i]) : 16 * hex_digit(digits[2 * i]) + hex_digit(digits[2 * i + 1]);
     channels.push_back({value.span, srgb_to_linear(static_cast<double>(byte) / 255)});
   }
   return syntax::Value{value.span, std::move(channels)};

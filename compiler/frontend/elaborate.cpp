@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "compiler/frontend/animation.h"
 #include "compiler/frontend/build.h"
 #include "compiler/frontend/check_node.h"
 #include "compiler/frontend/check_sorts.h"
@@ -13,7 +12,6 @@
 #include "compiler/frontend/name_order.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/settings.h"
-#include "compiler/passes/passes.h"
 
 namespace fathom::compiler {
 namespace {
@@ -185,7 +183,8 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   SceneBuilder builder(scene.named, scene.uses, scene.order, out.materials, out.textures, limits, diagnostics);
   for (const CheckedNode& object : scene.objects) builder.add_object(object);
   if (diagnostics.has_errors()) return std::nullopt;
-  out.scene = level(builder.finish());
+  out.scene = builder.finish();
+  out.type_spans = builder.take_type_spans();
   out.surfaces = builder.take_surfaces();
   return out;
 }

@@ -16,8 +16,9 @@ namespace fathom::compiler {
 
 // The scene with its tables; `scene.root` is the union of the objects, each in a Paint node with its surface.
 struct Elaborated : SceneTables {
-  Scene scene;
-  std::vector<Scene> formulas;  // of the textures, as numbers
+  Scene scene;                   // of nodes as described (compiler/derive.h)
+  std::vector<Span> type_spans;  // [node] of the word that names the node's type; of the first nodes
+  std::vector<Scene> formulas;   // of the textures, as numbers
 };
 
 // Reports every semantic error of the file; nullopt when there was any. `definitions` are values for the scene's

@@ -17,6 +17,7 @@
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_functions.h"
 #include "compiler/frontend/formula_nodes.h"
+#include "compiler/frontend/formula_parser.h"
 #include "compiler/frontend/json_error.h"
 #include "compiler/frontend/make_syntax.h"
 

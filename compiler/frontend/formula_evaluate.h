@@ -16,4 +16,7 @@ std::span<const FunctionSpec> constant_functions();
 // nullopt when there is no function of this name with this many arguments.
 std::optional<double> call_function(std::string_view function, std::span<const double> arguments);
 
+// The value of a formula that has no x, y and z in it.
+double evaluate(const Formula& formula);
+
 }  // namespace fathom::compiler

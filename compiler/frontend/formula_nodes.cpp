@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compiler/fits_float.h"
+#include "compiler/shapes/node_table.h"
 #include "vm/check.h"
 
 namespace fathom::compiler {
@@ -54,19 +55,19 @@ bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
   return all;
 }
 
-NodeId make_formula(NodeMaker& maker, const Formula& formula, const std::string& name) {
+NodeId make_formula(Graph& graph, const Formula& formula, const std::string& name) {
   std::vector<NodeId> made, operands;
   for (const Formula::Node& node : formula.nodes) {
     const Origin origin{node.span, name};
     if (node.function == "const") {
-      made.push_back(maker.make(Kind::Constant, std::array<double, 1>{node.value}, {}, origin));
+      made.push_back(graph.add(Kind::Constant, std::array<double, 1>{node.value}, {}, origin));
       continue;
     }
     const NodeSpec* row = find_function(node.function);
     CHECK(row != nullptr, "formulas are of the machine's functions");
     operands.clear();
     for (const std::uint32_t argument : node.arguments) operands.push_back(made[argument]);
-    made.push_back(maker.make(row->kind, {}, operands, origin));
+    made.push_back(graph.add(row->kind, {}, operands, origin));
   }
   return made.back();
 }

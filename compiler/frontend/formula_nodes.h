@@ -5,8 +5,9 @@
 #include <span>
 #include <string>
 
+#include "compiler/diagnostics.h"
 #include "compiler/frontend/formula.h"
-#include "compiler/make_node.h"
+#include "compiler/graph.h"
 
 namespace fathom::compiler {
 
@@ -17,6 +18,6 @@ std::span<const FunctionSpec> machine_functions();
 bool holds_in_float(const Formula& formula, Diagnostics& diagnostics);
 
 // The node that is the formula's value. `name` is that of the scene's node it belongs to.
-NodeId make_formula(NodeMaker& maker, const Formula& formula, const std::string& name);
+NodeId make_formula(Graph& graph, const Formula& formula, const std::string& name);
 
 }  // namespace fathom::compiler

@@ -10,9 +10,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "compiler/diagnostics.h"
 #include "compiler/frontend/formula_builder.h"
 #include "compiler/frontend/formula_functions.h"
 #include "compiler/frontend/formula_lexer.h"
+#include "compiler/frontend/scope.h"
 
 namespace fathom::compiler {
 
@@ -93,5 +95,12 @@ class FormulaParser {
 
 // Reports that x, y or z is used where there is no point.
 void report_no_point(std::string_view axis, Span span, Diagnostics& diagnostics);
+
+// The value of a constant of formulas, such as pi; nullopt when the name is none.
+std::optional<double> formula_constant(std::string_view name);
+
+// What is wrong with giving this name to a parameter or a definition where formulas have these functions
+// (compiler/frontend/formula_functions.h); empty when nothing is.
+std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions);
 
 }  // namespace fathom::compiler

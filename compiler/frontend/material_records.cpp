@@ -5,6 +5,7 @@
 #include "compiler/frontend/material_presets.h"
 #include "compiler/frontend/property_rows.h"
 #include "compiler/frontend/records.h"
+#include "compiler/compiled_scene.h"
 
 namespace fathom::compiler {
 namespace {

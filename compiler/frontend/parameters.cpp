@@ -8,6 +8,8 @@
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_evaluate.h"
 #include "compiler/frontend/formula_functions.h"
+#include "compiler/frontend/formula_parser.h"
+#include "compiler/frontend/read_formula.h"
 #include "compiler/frontend/record_reader.h"
 #include "compiler/frontend/suggest.h"
 
@@ -142,6 +144,11 @@ void warn_of_unused(const Scope& scope, Diagnostics& diagnostics) {
         {diagnostics.spelled(fmt::format("a number of the scene can be a formula, as in \"radius\": \"2*{}\"", name),
                              fmt::format("it stands for its value, as in sphere(2*{})", name))});
   }
+}
+
+bool declares(const Scope& parameters, std::string_view name) {
+  const auto& entries = parameters.entries();
+  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.parameter.name == name; });
 }
 
 }  // namespace fathom::compiler

@@ -27,4 +27,9 @@ void check_definitions(const Definitions& definitions, const Scope& scope, Diagn
 
 void warn_of_unused(const Scope& scope, Diagnostics& diagnostics);
 
+// Parameters that animate a scene which declares them (frontend/animation.h).
+inline constexpr std::string_view kTimeParameter = "time", kFrameParameter = "frame";
+
+bool declares(const Scope& parameters, std::string_view name);
+
 }  // namespace fathom::compiler

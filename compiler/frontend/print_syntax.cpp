@@ -1,4 +1,4 @@
-#include "compiler/frontend/syntax.h"
+#include "compiler/frontend/print_syntax.h"
 
 #include <fmt/format.h>
 
@@ -95,13 +95,6 @@ void print_lines(const Value& value, std::size_t indent, std::string& out) {
 }
 
 }  // namespace
-
-const Property* Record::find(std::string_view name) const {
-  for (const Property& property : properties) {
-    if (property.name == name) return &property;
-  }
-  return nullptr;
-}
 
 std::string print_syntax(const File& file) {
   std::string out;

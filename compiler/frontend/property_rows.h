@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/frontend/records.h"
+#include "compiler/frontend/record_spec.h"
 
 namespace fathom::compiler::rows {
 

@@ -1,4 +1,4 @@
-#include "compiler/frontend/formula.h"
+#include "compiler/frontend/read_formula.h"
 
 #include <fmt/format.h>
 

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "compiler/derive.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/expression_list.h"
 #include "compiler/frontend/json.h"
@@ -19,7 +20,8 @@ TextMaker text_maker(const Limits& limits) {
   return [&limits](const Source& scene, Diagnostics& diagnostics) -> std::optional<std::string> {
     Source source = scene;
     const std::optional<ReadScene> read = read_scene(source, diagnostics, limits);
-    if (read) elaborate(read->file, diagnostics, {}, limits);
+    const std::optional<Elaborated> checked = read ? elaborate(read->file, diagnostics, {}, limits) : std::nullopt;
+    if (checked) derive(checked->scene, checked->type_spans, limits, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
     return text::print_text(read->file, source);
   };

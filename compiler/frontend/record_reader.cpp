@@ -238,40 +238,6 @@ bool is_numeric(ValueType type) {
 
 }  // namespace
 
-std::string describe(const Value& value) {
-  struct Describer {
-    std::string operator()(std::monostate) const { return "null"; }
-    std::string operator()(bool b) const { return b ? "true" : "false"; }
-    std::string operator()(double number) const {
-      return std::isnan(number) ? "not a number" : fmt::format("{}", number);
-    }
-    std::string operator()(const std::string&) const { return "a string"; }
-    std::string operator()(const syntax::List& list) const {
-      if (list.empty()) return "an empty list";
-      const auto number = [](const Value& item) { return std::holds_alternative<double>(item.data); };
-      const bool numbers = std::all_of(list.begin(), list.end(), number);
-      if (list.size() == 1) return numbers ? "a list of one number" : "a list";
-      return numbers ? fmt::format("a list of {} numbers", list.size()) : "a list";
-    }
-    std::string operator()(const syntax::Record&) const { return "an object"; }
-    std::string operator()(const syntax::ReadFormula&) const { return "a formula"; }
-  };
-  return std::visit(Describer{}, value.data);
-}
-
-std::optional<glm::dvec3> three_numbers(const Value& value) {
-  if (const double* number = std::get_if<double>(&value.data)) return glm::dvec3(*number);
-  const auto* list = std::get_if<syntax::List>(&value.data);
-  if (list == nullptr || list->size() != 3) return std::nullopt;
-  glm::dvec3 out;
-  for (int i = 0; i < 3; ++i) {
-    const double* number = std::get_if<double>(&(*list)[static_cast<std::size_t>(i)].data);
-    if (number == nullptr) return std::nullopt;
-    out[i] = *number;
-  }
-  return out;
-}
-
 // The numbers of a number, a list or a list of lists, in order.
 void append_numbers(const Value& value, std::vector<double>& out) {
   if (const double* number = std::get_if<double>(&value.data)) out.push_back(*number);

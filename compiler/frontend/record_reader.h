@@ -65,13 +65,4 @@ class RecordReader {
   std::vector<std::unique_ptr<const syntax::Value>> evaluated_;  // values that had formulas in them
 };
 
-// "a number", "a string", "a list of 2", ...
-std::string describe(const syntax::Value& value);
-
-// The three numbers (or one, three times) of a list; nullopt when the value is anything else.
-std::optional<glm::dvec3> three_numbers(const syntax::Value& value);
-
-// The bracket that opens a record or list.
-inline Span opening(Span span) { return {span.begin, span.begin + 1}; }
-
 }  // namespace fathom::compiler

@@ -4,6 +4,7 @@
 
 #include "compiler/compiled_scene.h"
 #include "compiler/frontend/property_rows.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
 namespace {
@@ -101,13 +102,6 @@ std::vector<RecordSpec> make_node_records() {
 }
 
 }  // namespace
-
-const PropertySpec* RecordSpec::find(std::string_view property) const {
-  for (const PropertySpec& row : properties) {
-    if (row.name == property) return &row;
-  }
-  return nullptr;
-}
 
 const RecordSpec& scene_record() {
   static const RecordSpec record{

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "compiler/frontend/records.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
 namespace {

@@ -6,8 +6,11 @@
 // properties type, radius and translate; `{"use": "ball"}` has the property use.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -47,6 +50,22 @@ struct File {
   Value root;
 };
 
-std::string print_syntax(const File& file);
-
 }  // namespace fathom::compiler::syntax
+
+namespace fathom::compiler {
+
+// "a number", "a string", "a list of 2", ...
+std::string describe(const syntax::Value& value);
+
+// The three numbers (or one, three times) of a list; nullopt when the value is anything else.
+std::optional<glm::dvec3> three_numbers(const syntax::Value& value);
+
+// The bracket that opens a record or list.
+inline Span opening(Span span) { return {span.begin, span.begin + 1}; }
+
+// Whether the value is a formula, as a string or read already.
+inline bool is_formula_text(const syntax::Value& value) {
+  return std::holds_alternative<std::string>(value.data) || std::holds_alternative<syntax::ReadFormula>(value.data);
+}
+
+}  // namespace fathom::compiler

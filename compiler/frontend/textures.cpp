@@ -9,6 +9,7 @@
 
 #include "compiler/frontend/formula_nodes.h"
 #include "compiler/frontend/placement.h"
+#include "compiler/frontend/read_formula.h"
 #include "compiler/frontend/record_family.h"
 #include "compiler/frontend/written_numbers.h"
 
@@ -68,7 +69,8 @@ std::optional<ReadTexture> TextureReader::read(const syntax::Value& value, const
   if (!std::holds_alternative<syntax::Record>(value.data)) return read_formulas(value, parameter, context.space);
   if (context.depth <= kDeepestPattern) return read_pattern(value, parameter, context);
   diagnostics_.error("E0109", opening(value.span), "patterns nested too deep",
-                     fmt::format("this is within {} others", kDeepestPattern), {"mix fewer patterns, or write a formula"});
+                     fmt::format("this is within {} others", kDeepestPattern),
+                     {"mix fewer patterns, or write a formula"});
   return std::nullopt;
 }
 
@@ -145,8 +147,7 @@ std::optional<std::uint32_t> TextureReader::add_formula(const syntax::Value& val
   }
   if (!formula || !holds_in_float(*formula, diagnostics_)) return std::nullopt;
   Scene scene;
-  NodeMaker maker(scene.graph);
-  scene.root = make_formula(maker, *formula, "");
+  scene.root = make_formula(scene.graph, *formula, "");
   formulas.push_back(std::move(scene));
   return static_cast<std::uint32_t>(formulas.size() - 1);
 }

@@ -7,7 +7,7 @@
 
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_lexer.h"
-#include "compiler/frontend/record_reader.h"
+#include "compiler/frontend/read_formula.h"
 
 namespace fathom::compiler {
 namespace {
@@ -22,8 +22,7 @@ bool may_be_number(ValueType type) {
 bool may_be_numbers(ValueType type) {
   return type == ValueType::Vec2 || type == ValueType::Vec3 || type == ValueType::Points ||
          type == ValueType::Color || type == ValueType::Scale || type == ValueType::Translation ||
-         type == ValueType::Rotation ||
-         type == ValueType::Background;
+         type == ValueType::Rotation || type == ValueType::Background;
 }
 
 bool has_text(const Value& value) {

@@ -27,9 +27,4 @@ std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& 
 // formula.
 std::string explain(const syntax::Value& written, const syntax::Value& part);
 
-// Whether the value is a formula, as a string or read already.
-inline bool is_formula_text(const syntax::Value& value) {
-  return std::holds_alternative<std::string>(value.data) || std::holds_alternative<syntax::ReadFormula>(value.data);
-}
-
 }  // namespace fathom::compiler

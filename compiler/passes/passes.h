@@ -13,18 +13,15 @@ namespace fathom::compiler {
 struct Pass {
   std::string_view name;
   Scene (*run)(const Scene&);
-  bool (*changes)(Kind);  // whether it can do anything to a node of the kind; without such nodes it is left out
   enum class Leaves { Field, Sign } leaves = Leaves::Field;  // what of the scene stays as it was
 };
 
 // What is done to the distance, in order. The surface program keeps its Paint and takes the others.
 std::span<const Pass> passes();
-// Whether the scene has a node that the pass can do anything to.
-bool has_work(const Pass& pass, const Scene& scene);
 
 // Divides the operands of unions, intersections and cuts by their Lipschitz constants where these differ, so that the
 // steep one of them slows no ray down but its own. Only where the sign of the value is all that counts: below an
-// offset or a blend the values are left as they are. The front end's last step; the others leave the field as it is.
+// offset or a blend the values are left as they are.
 Scene level(const Scene& scene);
 
 // Removes Paint: what the distance alone needs.

@@ -8,6 +8,7 @@
 
 #include "compiler/shapes/rows.h"
 #include "vm/real.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
 namespace {

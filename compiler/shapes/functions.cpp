@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "compiler/formula_field.h"
 #include "compiler/shapes/rows.h"
 
 namespace fathom::compiler {
@@ -132,16 +131,14 @@ std::vector<NodeSpec> function_rows() {
                   {"formula", ParamType::Formula, Rule::Any, kRequired,
                    "in x, y and z; the solid is where it is negative"}},
        .doc = "a solid given by a formula",
-       .operand = Sort::Number,
-       .build = build_expression},
+       .operand = Sort::Number},
       {.kind = Kind::Displacement,
        .name = "displacement",
        .category = Category::Alteration,
        .params = {{"formula", ParamType::Formula, Rule::Any, kRequired,
                    "in x, y and z; added to the node's distance"}},
        .doc = "a node whose surface moves inwards by a formula",
-       .operand = Sort::Solid,
-       .build = build_displacement},
+       .operand = Sort::Solid},
       {.kind = Kind::Displaced,
        .name = "displaced",
        .category = Category::Internal,

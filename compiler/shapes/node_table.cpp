@@ -39,14 +39,6 @@ const NodeSpec* find(const SpecsByName& names, std::string_view name) {
 
 }  // namespace
 
-std::vector<double> NodeSpec::with_derived(Params given, std::span<const Knowledge> children) const {
-  std::vector<double> all(given.begin(), given.end());
-  if (!derive) return all;
-  const std::vector<double> derived = derive(given, children);
-  all.insert(all.end(), derived.begin(), derived.end());
-  return all;
-}
-
 const std::vector<NodeSpec>& node_table() {
   static const std::vector<NodeSpec> table = make_table();
   return table;

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "compiler/shapes/node_table.h"
+#include "compiler/shapes/node_spec.h"
 
 namespace fathom::compiler {
 

@@ -1,4 +1,4 @@
-// Scenes as the front end hands them on, from JSON text, and short ways to look at them.
+// Scenes as elaborate() and derive() make them of JSON text, and short ways to look at them.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,8 +8,10 @@
 #include <string>
 #include <utility>
 
+#include "compiler/derive.h"
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/json.h"
+#include "compiler/shapes/print_graph.h"
 
 namespace fathom::test {
 
@@ -19,6 +21,10 @@ inline compiler::Elaborated elaborated(const std::string& text, const compiler::
   const auto file = compiler::read_json(source, diagnostics);
   std::optional<compiler::Elaborated> out;
   if (file) out = compiler::elaborate(*file, diagnostics, definitions);
+  if (out) {
+    const auto scene = compiler::derive(out->scene, out->type_spans, {}, diagnostics);
+    if (scene) out->scene = *scene;
+  }
   INFO(diagnostics.print(source, compiler::ErrorFormat::Text));
   REQUIRE(out.has_value());
   REQUIRE(!diagnostics.has_errors());

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_evaluate.h"
+#include "compiler/frontend/read_formula.h"
 #include "tests/compiler/formula_texts.h"
 
 namespace fathom::formula_errors_test {

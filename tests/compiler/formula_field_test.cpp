@@ -1,6 +1,8 @@
 // Formulas as fields: the bounds that are proved for them, and the boxes of what they displace.
 #include "compiler/formula_field.h"
 
+#include "compiler/formula_bound.h"
+
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>

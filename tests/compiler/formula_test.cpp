@@ -1,5 +1,4 @@
 // Formulas: what they mean and what they are made into.
-#include "compiler/frontend/formula.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,8 @@
 #include "compiler/frontend/formula_evaluate.h"
 #include "compiler/frontend/formula_functions.h"
 #include "compiler/frontend/formula_nodes.h"
+#include "compiler/frontend/formula_parser.h"
+#include "compiler/frontend/read_formula.h"
 #include "compiler/frontend/text/read_text.h"
 #include "tests/compiler/formula_texts.h"
 #include "tests/support/judge_noise.h"

@@ -12,6 +12,7 @@
 #include "tests/vm/formula.h"
 #include "vm/disassemble.h"
 #include "vm/evaluate.h"
+#include "vm/slope.h"
 
 namespace fathom::test::fuse_test {
 namespace {

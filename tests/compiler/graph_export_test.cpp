@@ -5,6 +5,7 @@
 #include <set>
 
 #include "compiler/compile.h"
+#include "compiler/shapes/print_graph.h"
 
 namespace fathom::graph_export_test {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compiler/shapes/print_graph.h"
+
 namespace fathom::graph_test {
 
 namespace {

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "compiler/frontend/print_syntax.h"
+
 namespace fathom::json_test {
 
 namespace {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "compiler/compile.h"
+#include "compiler/shapes/print_graph.h"
 #include "tests/support/effort.h"
 #include "tests/support/golden.h"
 #include "vm/disassemble.h"

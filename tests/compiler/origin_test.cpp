@@ -11,6 +11,7 @@
 #include "compiler/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/rewrite.h"
+#include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
 #include "tests/support/effort.h"
 #include "tests/support/judge.h"

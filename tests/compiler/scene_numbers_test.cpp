@@ -9,6 +9,7 @@
 
 #include "compiler/frontend/elaborate.h"
 #include "compiler/frontend/json.h"
+#include "compiler/frontend/print_syntax.h"
 #include "compiler/frontend/written_numbers.h"
 #include "tests/compiler/elaborated.h"
 

@@ -13,6 +13,7 @@
 #include "tests/fuzz/target.h"
 #include "tests/vm/float_bits.h"
 #include "vm/disassemble.h"
+#include "vm/slope.h"
 #include "vm/specialise.h"
 #include "vm/trace.h"
 

@@ -7,6 +7,7 @@
 #include "compiler/frontend/json.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/write_json.h"
+#include "compiler/shapes/print_graph.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/draw_small.h"

@@ -5,12 +5,10 @@
 
 #include <cmath>
 
-#include "compiler/formula_field.h"
-#include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_evaluate.h"
 #include "compiler/frontend/formula_nodes.h"
+#include "compiler/frontend/read_formula.h"
 #include "compiler/lower.h"
-#include "compiler/make_node.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 
@@ -76,8 +74,7 @@ void check_number(const compiler::syntax::Value& value, const std::string& text,
 
 void check_program_of(const Formula& formula, std::size_t size) {
   compiler::Scene scene;
-  compiler::NodeMaker maker(scene.graph);
-  scene.root = compiler::make_formula(maker, formula, "f");
+  scene.root = compiler::make_formula(scene.graph, formula, "f");
   auto code = compiler::lower(scene.graph, scene.root, Source("formula", ""), 2000);
   if (!code) return;
   auto verified = vm::verify(std::move(*code));

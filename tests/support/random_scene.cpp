@@ -90,7 +90,7 @@ class Maker {
   // Moved in and out by a formula, if that is nowhere too steep to be proved.
   NodeId displaced(NodeId child) {
     const std::vector<NodeId> operands = {child, random_formula(maker_, random_)};
-    const NodeId id = add(Kind::Displacement, {}, operands);
+    const NodeId id = compiler::make_field(maker_, Kind::Displacement, {}, operands, {});
     return maker_.known(id).certified ? id : child;
   }
 

@@ -9,6 +9,7 @@
 
 #include "tests/support/effort.h"
 #include "tests/vm/float_bits.h"
+#include "vm/slope.h"
 
 namespace fathom::test::formula_test {
 namespace {

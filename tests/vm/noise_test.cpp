@@ -11,6 +11,7 @@
 #include "tests/vm/boxes.h"
 #include "vm/noise_bounds.h"
 #include "vm/real.h"
+#include "vm/slope.h"
 
 namespace fathom::test::noise_test {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "tests/support/effort.h"
 #include "tests/vm/boxes.h"
+#include "vm/nonexpansive.h"
 
 namespace fathom::test::nonexpansive_test {
 namespace {

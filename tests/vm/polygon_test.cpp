@@ -4,6 +4,7 @@
 
 #include "tests/vm/formula.h"
 #include "vm/disassemble.h"
+#include "vm/slope.h"
 
 namespace fathom::test::polygon_test {
 namespace {

@@ -16,6 +16,7 @@
 #include "tests/support/random_program.h"
 #include "tests/support/random_scene.h"
 #include "tests/vm/formula.h"
+#include "vm/slope.h"
 
 namespace fathom::test::specialise_test {
 namespace {

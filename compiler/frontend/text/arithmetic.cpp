@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compiler/frontend/text/evaluator.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler::text {
 namespace {
@@ -14,11 +15,15 @@ struct BlendWord {
   std::string_view word, prefix, width;
 };
 // `{0.1}` is `{k = 0.1}`.
-constexpr BlendWord kBlendWords[] = {
-    {"", "smooth", "k"}, {"k", "smooth", "k"}, {"chamfer", "chamfer", "radius"}, {"round", "round", "radius"},
-    {"stairs", "stairs", "radius"}};
+constexpr BlendWord kBlendWords[] = {{"", "smooth", "k"},
+                                     {"k", "smooth", "k"},
+                                     {"chamfer", "chamfer", "radius"},
+                                     {"round", "round", "radius"},
+                                     {"stairs", "stairs", "radius"}};
 
-std::string_view combinator(char mark) { return mark == '+' ? "union" : mark == '-' ? "subtraction" : "intersection"; }
+std::string_view combinator(char mark) {
+  return mark == '+' ? "union" : mark == '-' ? "subtraction" : "intersection";
+}
 std::string_view function_of(char mark) {
   return mark == '+' ? "add" : mark == '-' ? "minus" : mark == '*' ? "multiply" : "divide";
 }
@@ -48,8 +53,8 @@ Value Evaluator::evaluate_numbers(const Expr& expr, const Value& first) {
     const Joint& joint = expr.joints[i];
     const Value next = evaluate(*expr.of[i + 1]);
     if (joint.mark == '&' || joint.blend) {
-      fail("E0807", joint.span, fmt::format("`{}` joins nodes, not {} and {}", joint.blend ? "{...}" : "&", describe(sum),
-                                            describe(next)),
+      fail("E0807", joint.span,
+           fmt::format("`{}` joins nodes, not {} and {}", joint.blend ? "{...}" : "&", describe(sum), describe(next)),
            {joint.blend ? "" : "`and` of conditions is &&"});
     }
     if (is_node(next)) {
@@ -90,8 +95,7 @@ Value Evaluator::elementwise(char mark, const Value& a, const Value& b, Span spa
   std::vector<Value> parts;
   for (std::size_t i = 0; i < count; ++i) {
     take_step(span);
-    parts.push_back(
-        operate(mark, a.is(Type::List) ? a.list->of[i] : a, b.is(Type::List) ? b.list->of[i] : b, span));
+    parts.push_back(operate(mark, a.is(Type::List) ? a.list->of[i] : a, b.is(Type::List) ? b.list->of[i] : b, span));
   }
   return list(std::move(parts), span);
 }
@@ -107,8 +111,8 @@ Value Evaluator::evaluate_nodes(const Expr& expr, const Value& first) {
       const Value record = evaluate(*expr.joints[i].blend);
       next = record.record->fields;
     }
-    const bool goes_on = i < expr.joints.size() && (i == 0 || (expr.joints[i].mark == expr.joints[from].mark &&
-                                                               same_numbers(blend, next)));
+    const bool goes_on = i < expr.joints.size() &&
+                         (i == 0 || (expr.joints[i].mark == expr.joints[from].mark && same_numbers(blend, next)));
     if (!goes_on) {
       Node made;
       made.span = here({expr.span.begin, expr.of[i]->span.end});
@@ -141,8 +145,9 @@ void Evaluator::combine(const Joint& joint, const std::vector<Field>& blend, Nod
     made.fields.push_back({row->width, field.value.span, field.value});
   }
   made.spec = find_node(name);
-  const bool named = std::ranges::any_of(
-      blend, [](const Field& field) { return std::ranges::find(kBlendWords, field.name, &BlendWord::word) != std::end(kBlendWords); });
+  const bool named = std::ranges::any_of(blend, [](const Field& field) {
+    return std::ranges::find(kBlendWords, field.name, &BlendWord::word) != std::end(kBlendWords);
+  });
   if (made.spec == nullptr || (!blend.empty() && !named)) {
     fail("E0805", joint.span, "a blend of an unknown kind",
          {"{0.1} or {k = 0.1} is smooth; others are {chamfer = 0.1}, {round = 0.1} and {stairs = 0.1, steps = 3}"});
@@ -173,7 +178,8 @@ Value Evaluator::negate(const Value& value, Span span) {
 
 Value Evaluator::power(const Value& base, const Value& exponent, Span span) {
   if (!is_number(base) || !is_number(exponent)) {
-    fail("E0807", span, fmt::format("`^` of {} and {}", describe(base), describe(exponent)), {"powers are of numbers"});
+    fail("E0807", span, fmt::format("`^` of {} and {}", describe(base), describe(exponent)),
+         {"powers are of numbers"});
   }
   const auto varying = [&] {
     const FormulaId of = formula_of(base), to = formula_of(exponent);
@@ -192,9 +198,12 @@ Value Evaluator::power(const Value& base, const Value& exponent, Span span) {
 Value Evaluator::compare(const Expr& expr) {
   const Value a = evaluate(*expr.of[0]), b = evaluate(*expr.of[1]);
   const auto by_mark = [&](auto one, auto other) {
-    return expr.name == "==" ? one == other : expr.name == "!=" ? one != other : expr.name == "<" ? one < other
-                                                   : expr.name == "<=" ? one <= other : expr.name == ">" ? one > other
-                                                                                                         : one >= other;
+    return expr.name == "=="   ? one == other
+           : expr.name == "!=" ? one != other
+           : expr.name == "<"  ? one < other
+           : expr.name == "<=" ? one <= other
+           : expr.name == ">"  ? one > other
+                               : one >= other;
   };
   freeze(a, expr.span), freeze(b, expr.span);
   if (a.is(Type::Formula) || b.is(Type::Formula)) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "compiler/frontend/make_syntax.h"
+#include "compiler/frontend/print_syntax.h"
 
 namespace fathom::compiler::text {
 namespace {
@@ -130,7 +131,9 @@ class Emitter {
     }
   }
 
-  static void enter(Entry& entry, std::string label, Span span) { entry.label = std::move(label), entry.name_span = span; }
+  static void enter(Entry& entry, std::string label, Span span) {
+    entry.label = std::move(label), entry.name_span = span;
+  }
 
   void collect_material(const Statement& statement, const Value& value) {
     if (!value.is(Value::Type::Record) || !value.record->word || !value.record->word->material) return;
@@ -396,7 +399,8 @@ class Emitter {
       const bool pattern = from.word->pattern && !(from.word->background && place == Place::Background);
       record.add(pattern ? "pattern" : "type", from.word_span, make_value(from.word_span, from.word->text));
     }
-    for (const Field& field : from.fields) record.add(field.name, field.name_span, to_value(field.value, Place::Other));
+    for (const Field& field : from.fields)
+      record.add(field.name, field.name_span, to_value(field.value, Place::Other));
     return record.take();
   }
 
@@ -417,8 +421,7 @@ class Emitter {
 
 }  // namespace
 
-syntax::File to_syntax(const Tree& tree, const Evaluated& evaluated, const Limits& limits,
-                       Diagnostics& diagnostics) {
+syntax::File to_syntax(const Tree& tree, const Evaluated& evaluated, const Limits& limits, Diagnostics& diagnostics) {
   return Emitter(tree, evaluated, limits, diagnostics).run();
 }
 

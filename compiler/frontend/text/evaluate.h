@@ -5,25 +5,15 @@
 // Tested by: tests/compiler/text_evaluate_test.cpp, tests/golden/diagnostics (E0805 ...)
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "compiler/diagnostics.h"
 #include "compiler/frontend/parameters.h"
+#include "compiler/frontend/text/evaluated.h"
 #include "compiler/frontend/text/tree.h"
-#include "compiler/frontend/text/value.h"
 #include "compiler/limits.h"
 
 namespace fathom::compiler::text {
-
-// Values of the statements.
-struct Evaluated {
-  Store store;
-  std::vector<std::optional<Value>> values;  // [statement] nothing of a function, and after an error
-  Scope parameters;
-  // With keep_formulas: where a parameter's value was needed to go on, in a condition or a range.
-  std::vector<Span> frozen;
-};
 
 // `order` is that of frontend/text/names.h. With `keep_formulas` numbers keep how they came about (Value::spelling).
 Evaluated evaluate(const Tree& tree, const std::vector<std::uint32_t>& order, const Definitions& definitions,

@@ -7,7 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "compiler/frontend/text/evaluate.h"
+#include "compiler/diagnostics.h"
+#include "compiler/frontend/parameters.h"
+#include "compiler/frontend/text/evaluated.h"
+#include "compiler/frontend/text/tree.h"
+#include "compiler/limits.h"
 
 namespace fathom::compiler::text {
 
@@ -123,8 +127,8 @@ class Evaluator {
   Evaluated out_;
   std::vector<Scope> scopes_;                  // [module] parameters of the imports
   std::vector<std::optional<Value>> objects_;  // [module] once they were asked for
-  std::vector<Value> locals_;  // of all calls under way
-  std::size_t base_ = 0;       // of the locals of the innermost
+  std::vector<Value> locals_;                  // of all calls under way
+  std::size_t base_ = 0;                       // of the locals of the innermost
   double steps_ = 0, depth_ = 0;
   std::uint32_t trace_ = 0;  // where the innermost call or loop stands among the diagnostics' traces
 };

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compiler/frontend/formula.h"
+#include "compiler/frontend/formula_parser.h"
 #include "compiler/frontend/suggest.h"
 #include "compiler/frontend/text/order.h"
 #include "compiler/frontend/text/vocabulary.h"
@@ -383,8 +384,8 @@ class Resolver {
   Tree& tree_;
   Diagnostics& diagnostics_;
   std::vector<std::unordered_map<std::string_view, std::uint32_t>> globals_;  // [module] the statement's number
-  std::vector<bool> imported_;                                   // [statement] whether something uses the import
-  std::vector<std::vector<UseOf>> uses_;                         // [statement]
+  std::vector<bool> imported_;            // [statement] whether something uses the import
+  std::vector<std::vector<UseOf>> uses_;  // [statement]
   std::uint32_t current_ = 0;
   std::vector<Local> locals_;
   std::uint32_t slots_ = 0;

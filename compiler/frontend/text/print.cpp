@@ -12,10 +12,12 @@
 #include "compiler/frontend/color_text.h"
 #include "compiler/frontend/formula.h"
 #include "compiler/frontend/formula_lexer.h"
+#include "compiler/frontend/formula_parser.h"
 #include "compiler/frontend/formula_text.h"
 #include "compiler/frontend/text/print_lines.h"
 #include "compiler/frontend/text/token_cursor.h"
 #include "compiler/frontend/text/vocabulary.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler::text {
 namespace {
@@ -36,11 +38,21 @@ struct InfixWord {
   std::string_view blend;  // {} of its width
 };
 constexpr InfixWord kInfixWords[] = {
-    {"union", '+', ""},           {"subtraction", '-', ""},           {"intersection", '&', ""},
-    {"smooth_union", '+', "k"},   {"smooth_subtraction", '-', "k"},   {"smooth_intersection", '&', "k"},
-    {"chamfer_union", '+', "chamfer"}, {"chamfer_subtraction", '-', "chamfer"}, {"chamfer_intersection", '&', "chamfer"},
-    {"round_union", '+', "round"}, {"round_subtraction", '-', "round"}, {"round_intersection", '&', "round"},
-    {"stairs_union", '+', "stairs"}, {"stairs_subtraction", '-', "stairs"}, {"stairs_intersection", '&', "stairs"},
+    {"union", '+', ""},
+    {"subtraction", '-', ""},
+    {"intersection", '&', ""},
+    {"smooth_union", '+', "k"},
+    {"smooth_subtraction", '-', "k"},
+    {"smooth_intersection", '&', "k"},
+    {"chamfer_union", '+', "chamfer"},
+    {"chamfer_subtraction", '-', "chamfer"},
+    {"chamfer_intersection", '&', "chamfer"},
+    {"round_union", '+', "round"},
+    {"round_subtraction", '-', "round"},
+    {"round_intersection", '&', "round"},
+    {"stairs_union", '+', "stairs"},
+    {"stairs_subtraction", '-', "stairs"},
+    {"stairs_intersection", '&', "stairs"},
 };
 
 std::string quoted_text(std::string_view text) {
@@ -52,7 +64,9 @@ std::string quoted_text(std::string_view text) {
   return out + '"';
 }
 
-const SyntaxRecord* as_record(const SyntaxValue* value) { return value ? std::get_if<SyntaxRecord>(&value->data) : nullptr; }
+const SyntaxRecord* as_record(const SyntaxValue* value) {
+  return value ? std::get_if<SyntaxRecord>(&value->data) : nullptr;
+}
 const SyntaxValue* find_value(const SyntaxRecord& record, std::string_view name) {
   const Property* found = record.find(name);
   return found ? found->value.get() : nullptr;
@@ -116,7 +130,9 @@ class TextPrinter {
     return label == name ? fmt::format("{} {}", word, name) : fmt::format("{} {} {}", word, name, quoted_text(label));
   }
 
-  void add(std::string_view group, std::string text, Span span) { out_.push_back({group, std::move(text), span, {}, {}}); }
+  void add(std::string_view group, std::string text, Span span) {
+    out_.push_back({group, std::move(text), span, {}, {}});
+  }
 
   void add_params() {
     const SyntaxRecord* params = as_record(find_value(root_, "params"));
@@ -168,7 +184,8 @@ class TextPrinter {
     const SyntaxRecord& record = *as_record(&object);
     const std::string name = text_in(record, "name");
     const std::string text = node(object, true).text;
-    add("objects", name.empty() ? "object " + text : fmt::format("object {} {}", quoted_text(name), text), object.span);
+    add("objects", name.empty() ? "object " + text : fmt::format("object {} {}", quoted_text(name), text),
+        object.span);
   }
 
   // word(name = value, ...), or (name = value, ...) of a record without a type.
@@ -179,14 +196,16 @@ class TextPrinter {
     for (const Property& property : record.properties) {
       if (property.name == "type" || property.name == "pattern") continue;
       const bool is_text = property.name == "file" || property.name == "preset";
-      fields += (fields.empty() ? "" : ", ") + property.name + " = " + value_text(*property.value, is_text || is_choice(record, property));
+      fields += (fields.empty() ? "" : ", ") + property.name + " = " +
+                value_text(*property.value, is_text || is_choice(record, property));
     }
     return word + "(" + fields + ")";
   }
 
   // Whether the property's string is a word and no formula.
   static bool is_choice(const SyntaxRecord& record, const Property& property) {
-    for (const auto* family : {&camera_records(), &light_records(), &background_records(), &material_records(), &pattern_records()}) {
+    for (const auto* family :
+         {&camera_records(), &light_records(), &background_records(), &material_records(), &pattern_records()}) {
       for (const RecordSpec& row : *family) {
         if (text_in(record, "type") != row.type && text_in(record, "pattern") != row.type) continue;
         const PropertySpec* spec = row.find(property.name);
@@ -206,10 +225,12 @@ class TextPrinter {
     if (const auto* text = std::get_if<std::string>(&value.data)) {
       return is_text || text->starts_with('#') ? quoted_text(*text) : formula_text(*text);
     }
-    if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) return lines_text(formula_lines(**formula));
+    if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data))
+      return lines_text(formula_lines(**formula));
     if (const auto* record = std::get_if<SyntaxRecord>(&value.data)) return call_text(*record);
     std::string out;
-    for (const SyntaxValue& part : std::get<syntax::List>(value.data)) out += (out.empty() ? "" : ", ") + value_text(part, is_text);
+    for (const SyntaxValue& part : std::get<syntax::List>(value.data))
+      out += (out.empty() ? "" : ", ") + value_text(part, is_text);
     return "[" + out + "]";
   }
 
@@ -256,7 +277,8 @@ class TextPrinter {
     const std::string material = text_in(record, "material"), name = text_in(record, "name");
     if (!material.empty()) {
       const auto known = materials_.find(material);
-      out = {fmt::format("{}.material({})", out.atom(), known == materials_.end() ? quoted_text(material) : known->second)};
+      out = {fmt::format("{}.material({})", out.atom(),
+                         known == materials_.end() ? quoted_text(material) : known->second)};
     }
     if (!name.empty() && !is_object) out = {fmt::format("{}.name({})", out.atom(), quoted_text(name))};
     return out;
@@ -277,7 +299,8 @@ class TextPrinter {
       if (order[i] != "of") arguments += (arguments.empty() ? "" : ", ") + parameter(spec, *record.find(order[i]));
     }
     arguments += named(record, spec, std::span(order).first(without_name), !arguments.empty());
-    return {of ? fmt::format("{}.{}({})", node(*of).atom(), type, arguments) : fmt::format("{}({})", type, arguments)};
+    return {of ? fmt::format("{}.{}({})", node(*of).atom(), type, arguments)
+               : fmt::format("{}({})", type, arguments)};
   }
 
   std::string parameter(const NodeSpec& spec, const Property& property) {
@@ -287,7 +310,8 @@ class TextPrinter {
   }
 
   // The properties with a name, without those that every node may have.
-  std::string named(const SyntaxRecord& record, const NodeSpec& spec, std::span<const std::string_view> done, bool comma) {
+  std::string named(const SyntaxRecord& record, const NodeSpec& spec, std::span<const std::string_view> done,
+                    bool comma) {
     constexpr std::string_view kCommon[] = {"type", "of", "scale", "rotate", "translate", "material", "name"};
     std::string out;
     for (const Property& property : record.properties) {
@@ -316,7 +340,8 @@ class TextPrinter {
     for (const Property& property : record.properties) {
       const bool width = property.name == "k" || property.name == "radius";
       if (!width && std::ranges::find(spec.params, property.name, &ParamSpec::name) == spec.params.end()) continue;
-      const std::string name = width && row.blend == "k" ? "" : (width ? std::string(row.blend) : property.name) + " = ";
+      const std::string name =
+          width && row.blend == "k" ? "" : (width ? std::string(row.blend) : property.name) + " = ";
       out += (out.empty() ? "" : ", ") + name + value_text(*property.value);
     }
     return "{" + out + "}";

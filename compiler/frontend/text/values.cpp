@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compiler/frontend/text/evaluator.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler::text {
 namespace {

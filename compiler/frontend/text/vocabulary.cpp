@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "compiler/frontend/formula_nodes.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler::text {
 namespace {

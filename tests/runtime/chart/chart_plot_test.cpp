@@ -6,6 +6,8 @@
 #include "runtime/chart/log_axis.h"
 #include "runtime/chart/markup.h"
 #include "runtime/chart/plot.h"
+#include "runtime/chart/plot_draw.h"
+#include "runtime/chart/plot_svg.h"
 #include "tests/runtime/chart/svg_reading.h"
 #include "tests/runtime/cli/markup_check.h"
 #include "tests/support/effort.h"
