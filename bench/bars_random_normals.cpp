@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "bench/bars.h"
-#include "compiler/make_node.h"
+#include "compiler/shapes/make_node.h"
 #include "runtime/path/surface.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::bench {
 namespace {

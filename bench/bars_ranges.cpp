@@ -8,9 +8,9 @@
 
 #include "bench/bars.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
-#include "vm/evaluate.h"
-#include "vm/slope.h"
+#include "tests/support/random/random_scene.h"
+#include "vm/interpret/evaluate.h"
+#include "vm/range/slope.h"
 
 namespace fathom::bench {
 namespace {

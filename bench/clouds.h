@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compiler/compile.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::bench {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runtime/measure/stopwatch.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "bench/workload.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::bench {
 

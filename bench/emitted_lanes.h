@@ -8,7 +8,7 @@
 //     #include "scene_a.h"              // fathom emit cpp ... --namespace scene_a
 //     scene_a::distance(x, y, z)        // of three Batches
 //
-// with the headers that it includes included before. Tested by: tests/compiler/emitted_lanes_test.cpp
+// with the headers that it includes included before. Tested by: tests/compiler/emit/emitted_lanes_test.cpp
 #if defined(FATHOM_BENCH_EMITTED_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_EMITTED_LANES
 #undef FATHOM_BENCH_EMITTED_LANES

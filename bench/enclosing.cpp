@@ -8,7 +8,7 @@
 
 #include "bench/clouds.h"
 #include "runtime/measure/stopwatch.h"
-#include "vm/enclose.h"
+#include "vm/range/enclose.h"
 
 namespace {
 

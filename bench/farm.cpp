@@ -2,7 +2,7 @@
 //
 //     build/release/bench_farm [SCENE]
 //
-// Units' costs are those of a real picture's pixels (runtime/cli/pixel_costs.h), merging's are measured on films that
+// Units' costs are those of a real picture's pixels (runtime/cli/plan/pixel_costs.h), merging's are measured on films that
 // are written and read; machines, queue and disk are numbers, kFarms. Machines take units in order from
 // one queue, which starts so many a second. They differ in speed, one in a hundred is four times slower, and they are
 // lost at random: that is noticed after a while, and the unit goes on from its checkpoint elsewhere. All write to one
@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "bench/scene_file.h"
-#include "runtime/cli/pixel_costs.h"
-#include "runtime/cli/plan_grid.h"
+#include "runtime/cli/plan/pixel_costs.h"
+#include "runtime/cli/plan/plan_grid.h"
 #include "runtime/film/film_file.h"
 #include "runtime/render.h"
 

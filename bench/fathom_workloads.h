@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/workload.h"
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::bench {
 

@@ -9,27 +9,27 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "compiler/blends.h"
-#include "compiler/bounds.h"
-#include "compiler/derive.h"
-#include "compiler/extent.h"
-#include "compiler/fits_float.h"
-#include "compiler/framing.h"
-#include "compiler/frontend/elaborate.h"
+#include "compiler/analysis/extent.h"
+#include "compiler/analysis/lamps.h"
+#include "compiler/analysis/lints.h"
+#include "compiler/analysis/media.h"
+#include "compiler/analysis/nan_regions.h"
+#include "compiler/analysis/origin.h"
+#include "compiler/derive/derive.h"
+#include "compiler/frontend/elaborate/elaborate.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/stage.h"
-#include "compiler/fuse.h"
-#include "compiler/lamps.h"
-#include "compiler/lints.h"
-#include "compiler/lower.h"
-#include "compiler/media.h"
-#include "compiler/nan_regions.h"
-#include "compiler/origin.h"
+#include "compiler/geometry/fits_float.h"
+#include "compiler/graph/rewrite.h"
+#include "compiler/lower/fuse.h"
+#include "compiler/lower/lower.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 #include "compiler/passes/signs.h"
+#include "compiler/scene/framing.h"
+#include "compiler/shapes/blends.h"
+#include "compiler/shapes/bounds.h"
 #include "compiler/shapes/node_table.h"
-#include "vm/opcode.h"
+#include "vm/program/opcode.h"
 
 namespace fathom::compiler {
 namespace {
@@ -37,7 +37,7 @@ namespace {
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
 constexpr std::string_view kGraph = "graph";    // the graph as it was read
-constexpr std::string_view kOrigin = "origin";  // the first step (compiler/origin.h)
+constexpr std::string_view kOrigin = "origin";  // the first step (compiler/analysis/origin.h)
 constexpr std::string_view kFuse = "fuse";      // the last, over programs
 
 // A camera that no one placed has the whole scene in its picture.
@@ -181,7 +181,7 @@ void report_media(const Graph& graph, NodeId node, std::string_view what, const 
        raise(&Limits::media, 2 * limits.media)});
 }
 
-// The insides of the transparent materials (compiler/media.h).
+// The insides of the transparent materials (compiler/analysis/media.h).
 std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool painted, const Source& source,
                                                  Diagnostics& diagnostics, const CompileOptions& options) {
   const auto most = static_cast<std::size_t>(options.limits.media);

@@ -1,5 +1,5 @@
 // The compiler's one function: scene text, in any format of read_scene.h, to CompiledScene. compile.cpp reads as the
-// list of passes. Tested by: tests/compiler/passes_test.cpp
+// list of passes. Tested by: tests/compiler/passes/passes_test.cpp
 #pragma once
 
 #include <functional>
@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
-#include "compiler/diagnostics.h"
-#include "compiler/frontend/parameters.h"
 #include "compiler/frontend/read_scene.h"
-#include "compiler/graph.h"
-#include "compiler/limits.h"
+#include "compiler/frontend/records/parameters.h"
+#include "compiler/graph/graph.h"
+#include "compiler/scene/compiled_scene.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
 
 namespace fathom::compiler {
 
@@ -27,7 +27,7 @@ struct CompileOptions {
   Definitions definitions;
   // Reads the files that the scene imports; without it only those that its source has are found.
   ImportReader imports;
-  // Warn of what is sound but surely not meant, or dear (compiler/lints.h).
+  // Warn of what is sound but surely not meant, or dear (compiler/analysis/lints.h).
   bool lint = false;
   // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
   bool lint_picture = false;
@@ -38,7 +38,7 @@ struct CompileOptions {
   // Called with the source and the files that it imports, in which the spans of all diagnostics are; also when it is
   // not understood.
   std::function<void(const Source& source)> on_source;
-  // The programs' zero in the scene, in place of one chosen for the scene (compiler/origin.h).
+  // The programs' zero in the scene, in place of one chosen for the scene (compiler/analysis/origin.h).
   std::optional<glm::dvec3> origin;
   // Called with what the front end read, its stage with it.
   std::function<void(const ReadScene& scene)> on_syntax;
@@ -57,7 +57,7 @@ struct GraphSize {
 // nullopt when the graph's program goes beyond a limit of the machine.
 std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits = {});
 
-// Names of the steps, in order: compiler/origin.h, those over the graph (compiler/passes/passes.h), compiler/fuse.h.
+// Names of the steps, in order: compiler/analysis/origin.h, those over the graph (compiler/passes/passes.h), compiler/lower/fuse.h.
 std::vector<std::string_view> pass_names();
 
 }  // namespace fathom::compiler

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "compiler/bounds.h"
-#include "compiler/passes/rewrite.h"
+#include "compiler/graph/rewrite.h"
+#include "compiler/shapes/bounds.h"
 #include "compiler/shapes/node_table.h"
 #include "compiler/shapes/print_graph.h"
 

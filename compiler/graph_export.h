@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "compiler/graph.h"
+#include "compiler/graph/graph.h"
 
 namespace fathom::compiler {
 

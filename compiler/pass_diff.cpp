@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "compiler/line_diff.h"
 #include "compiler/shapes/print_graph.h"
+#include "compiler/source/line_diff.h"
 
 namespace fathom::compiler {
 namespace {

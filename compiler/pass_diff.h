@@ -6,7 +6,7 @@
 //     @@ -1,3 +1,2 @@
 //     ...
 //
-// The graphs are printed with names by place (compiler/graph.h), so that a node keeps its name when others go.
+// The graphs are printed with names by place (compiler/graph/graph.h), so that a node keeps its name when others go.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 

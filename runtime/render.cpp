@@ -15,7 +15,7 @@
 #include "runtime/film/adaptive.h"
 #include "runtime/film/noise.h"
 #include "runtime/passes.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

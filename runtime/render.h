@@ -2,7 +2,7 @@
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/base/stats.h"
 #include "runtime/field/regions.h"
 #include "runtime/film/film.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "compiler/emit.h"
+#include "compiler/emit/emit.h"
 #include "tests/support/emitted_programs.h"
 
 namespace fathom::test {

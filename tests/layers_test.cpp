@@ -1,8 +1,10 @@
-// The folders' order: vm <- compiler <- runtime, and that of runtime's own. Reads every include of the sources.
+// The order of the source folders, read from every include: a folder includes only itself and folders before it, and
+// no two units include each other.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -14,89 +16,164 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The quoted includes of a file, from the repository's root.
-std::set<std::string> includes(const fs::path& file) {
-  std::ifstream in(file);
-  std::set<std::string> result;
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#include \"")) continue;
-    const std::size_t begin = line.find('"') + 1;
-    result.insert(line.substr(begin, line.find('"', begin) - begin));
-  }
+// Every folder with sources, each after those that it includes.
+const std::vector<std::string> kFolders = {
+    "vm/program",
+    "vm/encoding",
+    "vm/number",
+    "vm/interpret",
+    "vm/range",
+    "vm/prune",
+    "vm/record",
+    "compiler/source",
+    "compiler/geometry",
+    "compiler/graph",
+    "compiler/scene",
+    "compiler/shapes",
+    "compiler/lower",
+    "compiler/derive",
+    "compiler/passes",
+    "compiler/frontend/syntax",
+    "compiler/frontend/formula",
+    "compiler/frontend/records",
+    "compiler/frontend/elaborate",
+    "compiler/frontend/formats",
+    "compiler/frontend/text/parse",
+    "compiler/frontend/text/evaluate",
+    "compiler/frontend/text",
+    "compiler/frontend",
+    "compiler/analysis",
+    "compiler/emit",
+    "compiler/artefact",
+    "compiler",
+    "runtime/base",
+    "runtime/sampling",
+    "runtime/image",
+    "runtime/film",
+    "runtime/denoise",
+    "runtime/field",
+    "runtime/march",
+    "runtime/material",
+    "runtime/light",
+    "runtime/path",
+    "runtime/slice",
+    "runtime",
+    "runtime/chart",
+    "runtime/measure",
+    "runtime/cli/options",
+    "runtime/cli/dump",
+    "runtime/cli/input",
+    "runtime/cli/request",
+    "runtime/cli/picture",
+    "runtime/cli/frames",
+    "runtime/cli/plan",
+    "runtime/cli",
+};
+
+// The most files of a folder that one still finds a file in.
+constexpr int kMaxFiles = 35;
+
+std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+// "vm/range/slope.h" and "vm/range/slope.cpp" are the unit "vm/range/slope".
+std::string unit_of(const std::string& path) { return path.substr(0, path.find('.')); }
+
+// The files of vm/, compiler/ and runtime/ and their quoted includes, as paths from the repository's root.
+const std::map<std::string, std::set<std::string>>& all_includes() {
+  static const std::map<std::string, std::set<std::string>> result = [] {
+    std::map<std::string, std::set<std::string>> files;
+    for (const char* top : {"vm", "compiler", "runtime"}) {
+      for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / top)) {
+        if (!entry.is_regular_file()) continue;
+        std::set<std::string>& includes = files[fs::relative(entry.path(), FATHOM_SOURCE_DIR).string()];
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+          if (!line.starts_with("#include \"")) continue;
+          const std::size_t begin = line.find('"') + 1;
+          includes.insert(line.substr(begin, line.find('"', begin) - begin));
+        }
+      }
+    }
+    return files;
+  }();
   return result;
 }
 
-std::string top(const std::string& path) { return path.substr(0, path.find('/')); }
+// A path of includes that leads from a unit back to it; empty when there is none.
+std::vector<std::string> find_circle() {
+  std::map<std::string, std::set<std::string>> graph;
+  for (const auto& [file, includes] : all_includes()) {
+    for (const std::string& include : includes) {
+      if (all_includes().contains(include) && unit_of(include) != unit_of(file)) {
+        graph[unit_of(file)].insert(unit_of(include));
+      }
+    }
+  }
+  std::set<std::string> finished;
+  std::vector<std::string> path;
+  const std::function<bool(const std::string&)> leads_back = [&](const std::string& unit) {
+    if (const auto begin = std::ranges::find(path, unit); begin != path.end()) {
+      path.erase(path.begin(), begin);
+      return true;
+    }
+    if (finished.contains(unit)) return false;
+    path.push_back(unit);
+    if (std::ranges::any_of(graph[unit], leads_back)) return true;
+    path.pop_back();
+    finished.insert(unit);
+    return false;
+  };
+  std::vector<std::string> units;
+  for (const auto& [unit, includes] : graph) units.push_back(unit);
+  std::ranges::any_of(units, leads_back);
+  return path;
+}
 
 }  // namespace
 
 TEST_CASE("a folder includes only folders before it", "[layers]") {
-  const std::map<std::string, std::set<std::string>> allowed = {
-      {"vm", {"vm", "hwy"}},
-      {"compiler", {"vm", "compiler"}},
-      {"runtime", {"vm", "compiler", "runtime", "hwy"}},
-  };
-  for (const auto& [folder, may] : allowed) {
-    int files = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / folder)) {
-      if (!entry.is_regular_file()) continue;
-      ++files;
-      for (const std::string& include : includes(entry.path())) {
-        CAPTURE(entry.path().string(), include);
-        CHECK(may.count(top(include)) == 1);
-      }
-    }
-    CHECK(files > 10);
-  }
-}
-
-// The folders of runtime/, each after those that it includes; "" is runtime/ itself.
-const std::vector<std::string> kRuntime = {"base",     "sampling", "image", "film",  "denoise", "field", "march",
-                                           "material", "light",    "path",  "slice", "",        "chart", "measure"};
-
-// "runtime/film/film.h" -> "film", "runtime/render.h" -> "".
-std::string runtime_folder(const std::string& path) {
-  const std::string within = path.substr(std::string("runtime/").size());
-  const std::size_t slash = within.find('/');
-  return slash == std::string::npos ? "" : within.substr(0, slash);
-}
-
-TEST_CASE("a folder of the renderer includes only folders before it", "[layers]") {
-  const auto position = [](const std::string& folder) { return std::ranges::find(kRuntime, folder); };
-  std::set<std::string> seen;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "runtime")) {
-    if (!entry.is_regular_file()) continue;
-    const std::string folder = runtime_folder(fs::relative(entry.path(), FATHOM_SOURCE_DIR).string());
-    if (folder == "cli") continue;
-    seen.insert(folder);
-    CAPTURE(entry.path().string());
-    REQUIRE(position(folder) != kRuntime.end());
-    for (const std::string& include : includes(entry.path())) {
-      if (!include.starts_with("runtime/")) continue;
+  const auto position = [](const std::string& folder) { return std::ranges::find(kFolders, folder); };
+  std::map<std::string, int> counts;
+  for (const auto& [file, includes] : all_includes()) {
+    CAPTURE(file);
+    const std::string folder = folder_of(file);
+    ++counts[folder];
+    REQUIRE(position(folder) != kFolders.end());
+    for (const std::string& include : includes) {
       CAPTURE(include);
-      CHECK(position(runtime_folder(include)) <= position(folder));
+      if (include.starts_with("hwy/")) continue;
+      REQUIRE(all_includes().contains(include));
+      CHECK(position(folder_of(include)) <= position(folder));
     }
   }
-  CHECK(seen.size() == kRuntime.size());
+  CHECK(counts.size() == kFolders.size());
+  for (const auto& [folder, count] : counts) {
+    CAPTURE(folder, count);
+    CHECK(count <= kMaxFiles);
+  }
+}
+
+TEST_CASE("no two units include each other", "[layers]") {
+  for (const std::string& unit : find_circle()) FAIL_CHECK(unit);
+  CHECK(all_includes().size() > 500);
 }
 
 TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]") {
-  for (const std::string& folder : kRuntime) {
-    if (folder == "chart") continue;
-    for (const auto& entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "runtime" / folder)) {
-      if (!entry.is_regular_file()) continue;
-      for (const std::string& include : includes(entry.path())) {
-        CAPTURE(entry.path().string(), include);
-        CHECK((top(include) != "compiler" || include == "compiler/compiled_scene.h" || include == "compiler/box.h"));
-      }
+  for (const auto& [file, includes] : all_includes()) {
+    if (!file.starts_with("runtime/") || file.starts_with("runtime/cli/")) continue;
+    for (const std::string& include : includes) {
+      CAPTURE(file, include);
+      CHECK((!include.starts_with("compiler/") || include.starts_with("compiler/scene/") ||
+             include == "compiler/geometry/box.h"));
     }
   }
 }
 
 TEST_CASE("charts know numbers and pictures, not scenes and rays", "[layers]") {
-  for (const auto& entry : fs::directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "runtime/chart")) {
-    for (const std::string& include : includes(entry.path())) {
-      CAPTURE(entry.path().string(), include);
+  for (const auto& [file, includes] : all_includes()) {
+    if (folder_of(file) != "runtime/chart") continue;
+    for (const std::string& include : includes) {
+      CAPTURE(file, include);
       CHECK((include.starts_with("runtime/chart/") || include == "runtime/image/image.h"));
     }
   }

@@ -8,7 +8,7 @@
 //
 // A writer takes the values from the fields and leaves them as they are; a reader puts values there and fails when
 // one is missing, is of another name or outside its range. After the first failure a reader leaves the fields alone.
-// Tested by: tests/compiler/artefact_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include <array>

@@ -1,11 +1,11 @@
 // Fields as bytes, one after another without names: numbers as f64, whole numbers as u64, texts as u32 bytes and
 // these, a choice as u8, a list as u32 entries and these, what may be missing
-// as u8 0 or 1 and, after 1, itself (vm/bytes.h).
-// Tested by: tests/compiler/artefact_test.cpp
+// as u8 0 or 1 and, after 1, itself (vm/encoding/bytes.h).
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include "compiler/artefact/archive.h"
-#include "vm/bytes.h"
+#include "vm/encoding/bytes.h"
 
 namespace fathom::compiler {
 

@@ -11,8 +11,8 @@
 #include "compiler/artefact/byte_archive.h"
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/programs.h"
-#include "compiler/limits.h"
-#include "vm/binary.h"
+#include "compiler/source/limits.h"
+#include "vm/encoding/binary.h"
 
 namespace fathom::compiler {
 namespace {

@@ -9,7 +9,7 @@
 //
 // Nothing in a file is believed. Programs are verified; tables are checked for everything the renderer relies on;
 // what no check can show, bounds and constants, is proved again by compiling the text (compiler/artefact/load.h).
-// Tested by: tests/compiler/artefact_test.cpp, tests/golden (artefacts)
+// Tested by: tests/compiler/artefact/artefact_test.cpp, tests/golden (artefacts)
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@
 #include <variant>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
-#include "compiler/frontend/parameters.h"
-#include "vm/digest.h"
+#include "compiler/frontend/records/parameters.h"
+#include "compiler/scene/compiled_scene.h"
+#include "vm/encoding/digest.h"
 
 namespace fathom::compiler {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "compiler/frontend/textures.h"
+#include "compiler/frontend/elaborate/textures.h"
 
 namespace fathom::compiler {
 namespace {

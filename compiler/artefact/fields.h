@@ -1,10 +1,10 @@
 // What each part of a compiled scene consists of, beside its programs: the one list that files of compiled scenes,
 // as bytes and as text, are written and read by. Ranges are what the renderer relies on.
-// Tested by: tests/compiler/artefact_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include "compiler/artefact/archive.h"
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::compiler {
 

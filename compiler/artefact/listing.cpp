@@ -9,10 +9,10 @@
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/programs.h"
 #include "compiler/artefact/text_archive.h"
-#include "vm/assemble.h"
-#include "vm/binary.h"
-#include "vm/disassemble.h"
-#include "vm/escape.h"
+#include "vm/encoding/assemble.h"
+#include "vm/encoding/binary.h"
+#include "vm/encoding/disassemble.h"
+#include "vm/encoding/escape.h"
 
 namespace fathom::compiler {
 namespace {

@@ -7,7 +7,7 @@
 //       ...
 //     }
 //     program distance {
-//       ... a listing (vm/disassemble.h)
+//       ... a listing (vm/encoding/disassemble.h)
 //     }
 //     text "scene.json"
 //     |{
@@ -15,14 +15,14 @@
 //     ...
 //
 // A listing of one program alone is read, too: a scene of it in white, with the default camera and nothing proved.
-// Tested by: tests/compiler/artefact_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include <optional>
 #include <string>
 
 #include "compiler/artefact/compiled_file.h"
-#include "compiler/diagnostics.h"
+#include "compiler/source/diagnostics.h"
 
 namespace fathom::compiler {
 

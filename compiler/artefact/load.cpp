@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "vm/evaluate.h"
-#include "vm/opcode.h"
-#include "vm/slope.h"
+#include "vm/interpret/evaluate.h"
+#include "vm/program/opcode.h"
+#include "vm/range/slope.h"
 
 namespace fathom::compiler {
 namespace {

@@ -1,5 +1,5 @@
 // A compiled file on its way to a render: what in it no check can show is proved by compiling its text again.
-// Tested by: tests/compiler/artefact_test.cpp, tests/runtime/cli/cli_compile_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp, tests/runtime/cli/cli_compile_test.cpp
 #pragma once
 
 #include <optional>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::compiler {
 

@@ -1,5 +1,5 @@
 // The programs of a compiled scene in one order, and a scene made of programs read in that order.
-// Tested by: tests/compiler/artefact_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
-#include "compiler/limits.h"
+#include "compiler/scene/compiled_scene.h"
+#include "compiler/source/limits.h"
 
 namespace fathom::compiler {
 

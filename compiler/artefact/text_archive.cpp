@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "vm/escape.h"
+#include "vm/encoding/escape.h"
 
 namespace fathom::compiler {
 

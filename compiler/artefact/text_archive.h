@@ -11,7 +11,7 @@
 // What is missing is `none`. Numbers have the fewest digits that read back to the same. Fields stand in their order
 // and none may be missing: what is read was written by the other half. `;` begins a comment.
 //
-// Tested by: tests/compiler/artefact_test.cpp
+// Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include "compiler/artefact/archive.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "compiler/emit.h"
 #include "compiler/emit/cpp_text.h"
+#include "compiler/emit/emit.h"
 #include "compiler/emit/print_program.h"
 
 namespace fathom::compiler {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "compiler/emit.h"
+#include "compiler/emit/emit.h"
 #include "compiler/emit/print_program.h"
 
 namespace fathom::compiler {

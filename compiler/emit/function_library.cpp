@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "compiler/emit/print_function.h"
-#include "vm/record.h"
+#include "vm/record/record.h"
 
 namespace fathom::compiler {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/emit/language.h"
-#include "vm/opcode.h"
+#include "vm/program/opcode.h"
 
 namespace fathom::compiler {
 

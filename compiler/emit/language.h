@@ -1,11 +1,11 @@
-// What the languages that `fathom emit` writes differ in, beside how operations are spelled (vm/operations.def).
+// What the languages that `fathom emit` writes differ in, beside how operations are spelled (vm/record/operations.def).
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "vm/recorded_function.h"
+#include "vm/record/recorded_function.h"
 
 namespace fathom::compiler {
 

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <iterator>
 
-#include "compiler/emit.h"
+#include "compiler/emit/emit.h"
 
 namespace fathom::compiler {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::compiler {
 namespace {

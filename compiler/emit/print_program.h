@@ -4,8 +4,8 @@
 #include <glm/vec3.hpp>
 #include <string>
 
-#include "compiler/compiled_scene.h"
 #include "compiler/emit/function_library.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::compiler {
 

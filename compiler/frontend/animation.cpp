@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
+#include "compiler/frontend/elaborate/settings.h"
 #include "compiler/frontend/read_scene.h"
-#include "compiler/frontend/settings.h"
 
 namespace fathom::compiler {
 namespace {

@@ -4,17 +4,17 @@
 //     auto animation = read_animation(source, diagnostics);
 //     compile(source, diagnostics, {.definitions = moment(*animation, 37, 37 / animation->fps)});   // frame 37
 //
-// Tested by: tests/compiler/animation_test.cpp
+// Tested by: tests/compiler/frontend/animation_test.cpp
 #pragma once
 
 #include <optional>
 #include <string_view>
 
-#include "compiler/diagnostics.h"
-#include "compiler/frontend/parameters.h"
-#include "compiler/frontend/text/imports.h"
-#include "compiler/limits.h"
-#include "compiler/source.h"
+#include "compiler/frontend/records/parameters.h"
+#include "compiler/frontend/text/parse/imports.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
+#include "compiler/source/source.h"
 
 namespace fathom::compiler {
 

@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "compiler/derive.h"
-#include "compiler/frontend/elaborate.h"
-#include "compiler/frontend/expression_list.h"
-#include "compiler/frontend/json.h"
-#include "compiler/frontend/nested_nodes.h"
+#include "compiler/derive/derive.h"
+#include "compiler/frontend/elaborate/elaborate.h"
+#include "compiler/frontend/formats/expression_list.h"
+#include "compiler/frontend/formats/nested_nodes.h"
+#include "compiler/frontend/syntax/json.h"
 #include "compiler/frontend/text/print.h"
 
 namespace fathom::compiler {

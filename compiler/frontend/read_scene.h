@@ -1,14 +1,14 @@
 // The front ends together: which of the formats a text is in, and the scene it describes.
-// Tested by: tests/compiler/expression_list_test.cpp, tests/compiler/nested_nodes_test.cpp
+// Tested by: tests/compiler/frontend/formats/expression_list_test.cpp, tests/compiler/frontend/formats/nested_nodes_test.cpp
 #pragma once
 
 #include <optional>
 
-#include "compiler/diagnostics.h"
-#include "compiler/frontend/parameters.h"
-#include "compiler/frontend/syntax.h"
+#include "compiler/frontend/records/parameters.h"
+#include "compiler/frontend/syntax/syntax.h"
 #include "compiler/frontend/text/read_text.h"
-#include "compiler/limits.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
 
 namespace fathom::compiler {
 

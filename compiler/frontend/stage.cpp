@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <variant>
 
-#include "compiler/frontend/make_syntax.h"
-#include "compiler/lowest.h"
+#include "compiler/frontend/syntax/make_syntax.h"
+#include "compiler/scene/lowest.h"
 
 namespace fathom::compiler {
 namespace {

@@ -1,10 +1,10 @@
 // What a model from elsewhere is looked at with, since its format has none of it: a ground that it stands on, a lamp
 // with soft shadows, and a camera that has all of it in the picture. A drawing, which is seen from the front without
-// perspective, needs nothing. Tested by: tests/compiler/stage_test.cpp, tests/runtime/cli/cli_import_test.cpp
+// perspective, needs nothing. Tested by: tests/compiler/frontend/stage_test.cpp, tests/runtime/cli/input/cli_import_test.cpp
 #pragma once
 
-#include "compiler/compiled_scene.h"
 #include "compiler/frontend/read_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::compiler {
 

@@ -1,9 +1,9 @@
-#include "compiler/affine.h"
+#include "compiler/geometry/affine.h"
 
 #include <array>
 
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 
 namespace fathom::compiler {
 

@@ -4,13 +4,13 @@
 #include <span>
 #include <variant>
 
-#include "compiler/fits_float.h"
+#include "compiler/geometry/fits_float.h"
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 #include "compiler/shapes/node_table.h"
-#include "vm/check.h"
-#include "vm/evaluate.h"
-#include "vm/verify.h"
+#include "vm/interpret/evaluate.h"
+#include "vm/program/check.h"
+#include "vm/program/verify.h"
 
 namespace fathom::compiler {
 namespace {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "compiler/containment.h"
+#include "compiler/passes/containment.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/signs.h"
 

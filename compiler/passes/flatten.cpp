@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 
 namespace fathom::compiler {
 namespace {

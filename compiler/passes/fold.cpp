@@ -1,9 +1,9 @@
 #include <array>
 
-#include "compiler/affine.h"
-#include "compiler/blends.h"
+#include "compiler/geometry/affine.h"
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
+#include "compiler/shapes/blends.h"
 
 namespace fathom::compiler {
 namespace {

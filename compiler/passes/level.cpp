@@ -2,9 +2,9 @@
 #include <array>
 #include <limits>
 
-#include "compiler/bounds.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/signs.h"
+#include "compiler/shapes/bounds.h"
 
 namespace fathom::compiler {
 

@@ -1,12 +1,12 @@
 // The passes over the DAG. One pass = one file = one function = one name for `fathom dump --after`.
 // Each leaves the field as it was, but for rounding in double; level and cull leave its sign, and its being a
-// distance. Tested by: tests/compiler/passes_test.cpp
+// distance. Tested by: tests/compiler/passes/passes_test.cpp
 #pragma once
 
 #include <span>
 #include <string_view>
 
-#include "compiler/graph.h"
+#include "compiler/graph/graph.h"
 
 namespace fathom::compiler {
 

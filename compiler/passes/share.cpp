@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 
 namespace fathom::compiler {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "compiler/graph.h"
-#include "compiler/passes/rewrite.h"
+#include "compiler/graph/graph.h"
+#include "compiler/graph/rewrite.h"
 
 namespace fathom::compiler {
 

@@ -1,5 +1,5 @@
+#include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
-#include "compiler/passes/rewrite.h"
 
 namespace fathom::compiler {
 

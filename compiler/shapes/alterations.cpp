@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "compiler/affine.h"
+#include "compiler/geometry/affine.h"
 #include "compiler/shapes/revolve.h"
 #include "compiler/shapes/rows.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "compiler/shapes/rows.h"
-#include "vm/real.h"
 #include "compiler/shapes/node_table.h"
+#include "compiler/shapes/rows.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {

@@ -21,12 +21,12 @@
 #include <numbers>
 #include <utility>
 
-#include "compiler/affine.h"
-#include "compiler/direction.h"
-#include "compiler/make_node.h"
+#include "compiler/geometry/affine.h"
+#include "compiler/geometry/direction.h"
 #include "compiler/shapes/about_axis.h"
+#include "compiler/shapes/make_node.h"
 #include "compiler/shapes/rows.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {

@@ -12,7 +12,7 @@ namespace {
 using vm::Opcode;
 
 // Of a number in itself nothing is known: what a formula does is proved for the whole of it
-// (compiler/formula_field.h).
+// (compiler/derive/formula_field.h).
 Knowledge know_number(Params, std::span<const Knowledge>) {
   Knowledge k;
   k.box = Box::everything();

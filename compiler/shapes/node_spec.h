@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/graph.h"
-#include "compiler/knowledge.h"
-#include "vm/opcode.h"
+#include "compiler/graph/graph.h"
+#include "compiler/graph/knowledge.h"
+#include "vm/program/opcode.h"
 
 namespace fathom::compiler {
 
-class NodeMaker;  // compiler/make_node.h
+class NodeMaker;  // compiler/shapes/make_node.h
 
 using Params = std::span<const double>;
 using Complaint = std::optional<std::string>;
@@ -46,7 +46,7 @@ struct Instruction {
   std::uint32_t operand = 0;
 };
 
-// How a node is evaluated: instructions of the machine, emitted by compiler/lower.cpp.
+// How a node is evaluated: instructions of the machine, emitted by compiler/lower/lower.cpp.
 struct Code {
   // A node with one child evaluates it once for each of these chains of Point instructions, each from the caller's
   // point, and takes the least of the values.

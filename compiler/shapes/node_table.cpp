@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "compiler/shapes/rows.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::compiler {
 namespace {

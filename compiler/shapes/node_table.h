@@ -9,7 +9,7 @@
 //   - angles are in degrees;
 //   - `k` is the width of a smooth blend; the surface moves by at most k/4;
 //   - a `thickness` is measured to either side: a wall is 2 * thickness thick.
-// Tested by: tests/compiler/shapes_test.cpp
+// Tested by: tests/compiler/shapes/shapes_test.cpp
 #pragma once
 
 #include <string_view>

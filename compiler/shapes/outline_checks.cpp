@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/outline_facts.h"
 #include "compiler/shapes/vec2.h"
-#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {

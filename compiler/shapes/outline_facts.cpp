@@ -7,10 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/rows.h"
 #include "compiler/shapes/solid_facts.h"
 #include "compiler/shapes/vec2.h"
-#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "compiler/passes/rewrite.h"
+#include "compiler/graph/rewrite.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {

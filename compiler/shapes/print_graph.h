@@ -1,5 +1,5 @@
 // The graph as text, with the names of the node table.
-// Tested by: tests/compiler/graph_test.cpp
+// Tested by: tests/compiler/graph/graph_test.cpp
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/graph.h"
-#include "compiler/source.h"
+#include "compiler/graph/graph.h"
+#include "compiler/source/source.h"
 
 namespace fathom::compiler {
 

@@ -10,7 +10,7 @@
 
 #include "compiler/shapes/about_axis.h"
 #include "compiler/shapes/rows.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -144,7 +144,7 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
   return k;
 }
 
-// The six numbers of in_cell in vm/domain-inl.h for the copy nearest to a point.
+// The six numbers of in_cell in vm/interpret/domain-inl.h for the copy nearest to a point.
 std::vector<double> nearest_cell(const RepeatedAxis& a) {
   if (!a.repeated()) return {0, 0, 0, 0, 0, 0};
   return {1 / a.period, 0.5 - a.half(), a.first(), a.last(), a.half(), a.period};

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/affine.h"
+#include "compiler/geometry/affine.h"
+#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/rows.h"
 #include "compiler/shapes/vec2.h"
-#include "compiler/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {

@@ -1,8 +1,8 @@
 // Revolve over the outline that it turns (compiler/shapes/revolve.cpp).
-// Tested by: tests/compiler/outlines_test.cpp
+// Tested by: tests/compiler/shapes/outlines_test.cpp
 #pragma once
 
-#include "compiler/make_node.h"
+#include "compiler/shapes/make_node.h"
 
 namespace fathom::compiler {
 

@@ -10,8 +10,8 @@
 #include <limits>
 #include <numbers>
 
-#include "compiler/direction.h"
-#include "compiler/sine_cosine.h"
+#include "compiler/geometry/direction.h"
+#include "compiler/geometry/sine_cosine.h"
 
 namespace fathom::compiler {
 namespace {

@@ -22,14 +22,14 @@
 #include "runtime/chart/page.h"
 #include "runtime/cli/chart_request.h"
 #include "runtime/cli/chart_scenes.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/cli/version.h"
 #include "runtime/image/image_io.h"
 #include "runtime/measure/maps.h"
 #include "runtime/measure/measure_rays.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::cli {
 namespace {

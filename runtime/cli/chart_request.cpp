@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/arguments.h"
+#include "runtime/cli/options/arguments.h"
 
 namespace fathom::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <variant>
 
-#include "runtime/cli/scene_arguments.h"
-#include "runtime/cli/streams.h"
+#include "runtime/cli/input/scene_arguments.h"
+#include "runtime/cli/options/streams.h"
 #include "runtime/measure/measure_images.h"
 
 namespace fathom::cli {

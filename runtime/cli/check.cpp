@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "runtime/cli/check_report.h"
-#include "runtime/cli/frame_options.h"
-#include "runtime/cli/held_messages.h"
-#include "runtime/cli/picture_warning.h"
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/scene_frames.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/frames/scene_frames.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/frame_options.h"
+#include "runtime/cli/options/held_messages.h"
+#include "runtime/cli/picture/picture_warning.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/sampling/shutter.h"
 

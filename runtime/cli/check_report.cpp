@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runtime/cli/streams.h"
+#include "runtime/cli/options/streams.h"
 
 namespace fathom::cli {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
-#include "compiler/probe.h"
-#include "compiler/report.h"
+#include "compiler/analysis/probe.h"
+#include "compiler/analysis/report.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::cli {
 

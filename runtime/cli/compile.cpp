@@ -9,9 +9,9 @@
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/programs.h"
 #include "runtime/base/atomic_file.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
 

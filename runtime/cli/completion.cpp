@@ -1,11 +1,11 @@
 // fathom completion: scripts by which a shell completes verbs, options and values, made of the option tables.
-// Tested by: tests/runtime/cli/cli_completion_test.cpp
+// Tested by: tests/runtime/cli/options/cli_completion_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ostream>
 
-#include "runtime/cli/arguments.h"
+#include "runtime/cli/options/arguments.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

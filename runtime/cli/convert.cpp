@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <ostream>
 
+#include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/text/print.h"
-#include "compiler/frontend/write_json.h"
-#include "runtime/cli/import_files.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/input/import_files.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

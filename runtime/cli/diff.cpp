@@ -17,10 +17,10 @@
 #include <ostream>
 
 #include "runtime/chart/colormap.h"
-#include "runtime/cli/arguments.h"
-#include "runtime/cli/memory.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_arguments.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/scene_arguments.h"
+#include "runtime/cli/options/arguments.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/flip.h"
 #include "runtime/image/image_io.h"

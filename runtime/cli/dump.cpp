@@ -5,19 +5,19 @@
 #include <ostream>
 
 #include "compiler/artefact/listing.h"
+#include "compiler/frontend/formats/print_syntax.h"
 #include "compiler/graph_export.h"
 #include "compiler/pass_diff.h"
-#include "runtime/cli/operation_table.h"
-#include "runtime/cli/program_diff.h"
-#include "runtime/cli/program_json.h"
-#include "runtime/cli/region_listing.h"
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/text_file.h"
-#include "runtime/cli/trace_listing.h"
-#include "runtime/cli/verbs.h"
-#include "vm/disassemble.h"
 #include "compiler/shapes/print_graph.h"
-#include "compiler/frontend/print_syntax.h"
+#include "runtime/cli/dump/operation_table.h"
+#include "runtime/cli/dump/program_diff.h"
+#include "runtime/cli/dump/program_json.h"
+#include "runtime/cli/dump/region_listing.h"
+#include "runtime/cli/dump/trace_listing.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/verbs.h"
+#include "vm/encoding/disassemble.h"
 
 namespace fathom::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "compiler/frontend/text/lexer.h"
-#include "compiler/frontend/text/vocabulary.h"
+#include "compiler/frontend/text/parse/lexer.h"
+#include "compiler/frontend/text/parse/vocabulary.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,14 +1,14 @@
 // fathom emit: the scene's distance function as C++ or GLSL.
 // Tested by: tests/runtime/cli/cli_emit_test.cpp
-#include "compiler/emit.h"
+#include "compiler/emit/emit.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ostream>
 
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

@@ -9,11 +9,11 @@
 #include <glm/common.hpp>
 #include <ostream>
 
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/input/text_file.h"
 #include "runtime/cli/verbs.h"
-#include "vm/evaluate.h"
-#include "vm/printable.h"
+#include "vm/encoding/printable.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::cli {
 namespace {

@@ -5,12 +5,12 @@
 #include <ostream>
 
 #include "compiler/frontend/text/format.h"
-#include "compiler/frontend/text/parser.h"
+#include "compiler/frontend/text/parse/parser.h"
 #include "compiler/frontend/text/read_text.h"
-#include "runtime/cli/memory.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_arguments.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/scene_arguments.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

@@ -1,16 +1,16 @@
 // fathom import: models in formats from elsewhere as ordinary scene files.
-// Tested by: tests/runtime/cli/cli_import_test.cpp
+// Tested by: tests/runtime/cli/input/cli_import_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ostream>
 
+#include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/stage.h"
-#include "compiler/frontend/write_json.h"
-#include "runtime/cli/import_files.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/input/import_files.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

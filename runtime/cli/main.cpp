@@ -12,11 +12,11 @@
 #include <new>
 #include <set>
 
-#include "compiler/diagnostics.h"
-#include "compiler/limits.h"
-#include "runtime/cli/help_text.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
+#include "runtime/cli/options/help_text.h"
+#include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/cli/version.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,13 +1,13 @@
 // fathom man: the manual page, made of the option tables.
-// Tested by: tests/runtime/cli/cli_completion_test.cpp
+// Tested by: tests/runtime/cli/options/cli_completion_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
 
-#include "compiler/limits.h"
-#include "runtime/cli/arguments.h"
+#include "compiler/source/limits.h"
+#include "runtime/cli/options/arguments.h"
+#include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/cli/version.h"
 
 namespace fathom::cli {
 namespace {

@@ -7,11 +7,11 @@
 #include <array>
 #include <ostream>
 
-#include "runtime/cli/arguments.h"
-#include "runtime/cli/memory.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/plan_merge.h"
-#include "runtime/cli/scene_arguments.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/scene_arguments.h"
+#include "runtime/cli/options/arguments.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/plan/plan_merge.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/denoise/denoise.h"
 

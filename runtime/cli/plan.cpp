@@ -1,5 +1,5 @@
 // fathom plan: a render cut into units for many machines; and how far they are.
-// Tested by: tests/runtime/cli/cli_plan_test.cpp
+// Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <iterator>
 #include <ostream>
 
-#include "runtime/cli/plan_pilot.h"
-#include "runtime/cli/plan_status.h"
-#include "runtime/cli/render_identity.h"
-#include "runtime/cli/render_options.h"
-#include "runtime/cli/scene_frames.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/frames/scene_frames.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/picture/render_identity.h"
+#include "runtime/cli/plan/plan_pilot.h"
+#include "runtime/cli/plan/plan_status.h"
+#include "runtime/cli/request/render_options.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

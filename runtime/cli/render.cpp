@@ -7,11 +7,11 @@
 #include <ostream>
 #include <thread>
 
-#include "runtime/cli/picture_job.h"
-#include "runtime/cli/render_files.h"
-#include "runtime/cli/render_options.h"
-#include "runtime/cli/sequence.h"
-#include "runtime/cli/unit_run.h"
+#include "runtime/cli/frames/render_files.h"
+#include "runtime/cli/frames/sequence.h"
+#include "runtime/cli/picture/picture_job.h"
+#include "runtime/cli/plan/unit_run.h"
+#include "runtime/cli/request/render_options.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

@@ -1,6 +1,6 @@
 // fathom schema: what editors want to know of scene files: the JSON Schema, and the words of the notation.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp, tests/runtime/cli/cli_editor_test.cpp
-#include "compiler/frontend/schema.h"
+#include "compiler/frontend/records/schema.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <ostream>
 
-#include "runtime/cli/arguments.h"
 #include "runtime/cli/editor_files.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/text_file.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/arguments.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 
 namespace fathom::cli {

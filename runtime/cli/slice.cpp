@@ -13,11 +13,11 @@
 #include <ostream>
 #include <thread>
 
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/scene_file.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
-#include "vm/printable.h"
+#include "vm/encoding/printable.h"
 
 namespace fathom::cli {
 namespace {

@@ -1,15 +1,15 @@
 // fathom tonemap: numbers to a picture. Of the OpenEXR file of a render it makes, bit for bit, the picture that the
 // render would have written itself.
-// Tested by: tests/runtime/cli/cli_layers_test.cpp
+// Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #include <fmt/format.h>
 
 #include <ostream>
 
-#include "runtime/cli/arguments.h"
-#include "runtime/cli/memory.h"
-#include "runtime/cli/output_file.h"
-#include "runtime/cli/picture_attributes.h"
-#include "runtime/cli/scene_arguments.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/scene_arguments.h"
+#include "runtime/cli/options/arguments.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/picture/picture_attributes.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
 #include "runtime/image/image_read.h"

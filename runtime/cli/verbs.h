@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/cli/option_table.h"
-#include "runtime/cli/streams.h"
+#include "runtime/cli/options/option_table.h"
+#include "runtime/cli/options/streams.h"
 
 namespace fathom::cli {
 

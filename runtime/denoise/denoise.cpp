@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 #ifdef FATHOM_OIDN
 #include <OpenImageDenoise/oidn.hpp>
 #else

@@ -14,7 +14,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 

@@ -7,8 +7,8 @@
 
 #include "runtime/field/region_plan.h"
 #include "runtime/field/region_store.h"
-#include "vm/check.h"
-#include "vm/convexity.h"
+#include "vm/program/check.h"
+#include "vm/program/convexity.h"
 
 namespace fathom::runtime {
 namespace {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/far_levels.h"
 #include "runtime/field/regions.h"
-#include "vm/opcode.h"
+#include "vm/program/opcode.h"
 
 namespace fathom::runtime {
 
@@ -24,7 +24,7 @@ struct Field {
   double far;                          // rays end here, scene units; may be infinite when the bound is finite
   float band;                          // near the surface: distances at which a crossing is tried, scene units
   float inv_lipschitz;
-  float magnitude;  // scene units (compiler/bounds.h)
+  float magnitude;  // scene units (compiler/shapes/bounds.h)
   // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
   // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
   double longest_told;
@@ -86,7 +86,7 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
 
 // d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
 // magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6
-// (tests/compiler/shapes_test.cpp).
+// (tests/compiler/shapes/shapes_test.cpp).
 inline constexpr float kDistanceError = static_cast<float>(vm::kFloatError);
 
 inline float distance_error(const Field& field, float x, float y, float z, float distance) {

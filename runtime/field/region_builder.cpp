@@ -18,7 +18,7 @@ constexpr int kMostGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
 // What the whole program takes as a part and as rows of constants.
 constexpr std::size_t kBytesPerWord = 24;
-// What cutting a program takes for each choice and each instruction in it (vm/specialise.h), measured.
+// What cutting a program takes for each choice and each instruction in it (vm/prune/specialise.h), measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
 // Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
 // one.

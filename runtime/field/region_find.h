@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/expression.h"
-#include "vm/part.h"
+#include "vm/prune/expression.h"
+#include "vm/prune/part.h"
 
 namespace fathom::runtime {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kFlattest = 1.0 / 1024;
 // The highest distance outside the contents, in edges of the root.
 constexpr float kHighest = 0.1f;
 
-// Whether the operands of some function are both constants; the compiler folds those, and vm/skeleton.h takes it for
+// Whether the operands of some function are both constants; the compiler folds those, and vm/prune/skeleton.h takes it for
 // granted.
 bool is_unfolded(const vm::Code& code) {
   for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "compiler/box.h"
+#include "compiler/geometry/box.h"
 #include "runtime/field/far_levels.h"
-#include "vm/verify.h"
+#include "vm/program/verify.h"
 
 namespace fathom::runtime {
 

@@ -12,8 +12,8 @@
 #include "runtime/field/region_budget.h"
 #include "runtime/field/region_find.h"
 #include "runtime/field/regions.h"
-#include "vm/skeleton.h"
-#include "vm/specialise.h"
+#include "vm/prune/skeleton.h"
+#include "vm/prune/specialise.h"
 
 namespace fathom::runtime {
 

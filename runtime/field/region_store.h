@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "runtime/field/regions.h"
-#include "vm/verify.h"
+#include "vm/program/verify.h"
 
 namespace fathom::runtime {
 

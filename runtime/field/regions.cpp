@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 Regions::Found Regions::find(float x, float y, float z) const {

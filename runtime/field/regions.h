@@ -6,9 +6,9 @@
 // with regions, nor which. A leaf is one of two kinds:
 //
 //     far       all distances in the cell round to one value
-//     program   the part of the program that matters in the cell, up to the highest value there (vm/specialise.h)
+//     program   the part of the program that matters in the cell, up to the highest value there (vm/prune/specialise.h)
 //
-// Points in cells whose programs differ by their constants alone are evaluated together (vm/skeleton.h).
+// Points in cells whose programs differ by their constants alone are evaluated together (vm/prune/skeleton.h).
 //
 // A step may leave the cell; the next point finds its own. A cell is split until its part is short, or it is as small
 // as the scene's number of choices warrants. The top levels are a grid. Scenes of few choices have no regions: they
@@ -28,10 +28,10 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/box.h"
+#include "compiler/geometry/box.h"
 #include "runtime/field/far_levels.h"
 #include "runtime/field/region_find.h"
-#include "vm/skeleton.h"
+#include "vm/prune/skeleton.h"
 
 namespace fathom::runtime {
 
@@ -43,7 +43,7 @@ struct RegionOptions {
   double evaluations = std::numeric_limits<double>::infinity();
   bool always = false;  // of scenes that would be as fast whole, too
   int room = 0;         // the root is 2^room times as long as the scene's bounded parts
-  float magnitude = 0;  // of the numbers that cancel in the field, scene units (compiler/bounds.h)
+  float magnitude = 0;  // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   // Asked before each cell is split, by any thread. Once it is true there will be no regions.
   std::function<bool()> interrupted = {};
 };

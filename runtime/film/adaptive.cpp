@@ -8,7 +8,7 @@
 #include "runtime/base/color.h"
 #include "runtime/film/noise.h"
 #include "runtime/sampling/sampler.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

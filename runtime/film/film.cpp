@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

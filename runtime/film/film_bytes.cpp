@@ -1,7 +1,7 @@
 // The film's sums as bytes and back: what film files are made of (docs/FILM.md).
 // Tested by: tests/runtime/film/film_file_test.cpp
 #include "runtime/film/film.h"
-#include "vm/bytes.h"
+#include "vm/encoding/bytes.h"
 
 namespace fathom::runtime {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "runtime/base/tiles.h"
 #include "runtime/film/film_header_bytes.h"
-#include "vm/bytes.h"
-#include "vm/digest.h"
+#include "vm/encoding/bytes.h"
+#include "vm/encoding/digest.h"
 
 namespace fathom::runtime {
 namespace {

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/base/tiles.h"
 
 namespace fathom::runtime {

@@ -10,7 +10,7 @@
 
 #include "runtime/film/film_contents.h"
 #include "runtime/film/partial_render.h"
-#include "vm/bytes.h"
+#include "vm/encoding/bytes.h"
 
 namespace fathom::runtime {
 

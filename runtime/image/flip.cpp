@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/base/elementary.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

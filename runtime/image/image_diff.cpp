@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 

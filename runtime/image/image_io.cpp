@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "runtime/image/image_png.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

@@ -9,8 +9,8 @@
 #include "runtime/base/color.h"
 #include "runtime/base/elementary.h"
 #include "runtime/sampling/warp.h"
-#include "vm/check.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/light/environment_file.h"
 #include "runtime/light/light_query.h"
 #include "runtime/light/sky.h"

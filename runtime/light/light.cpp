@@ -9,7 +9,7 @@
 #include "runtime/base/angle.h"
 #include "runtime/base/color.h"
 #include "runtime/material/material.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {

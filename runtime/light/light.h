@@ -1,7 +1,7 @@
 // The lights of a scene, and what light to look for at a place: next-event estimation asks sample(), and rays that
 // find a light by themselves ask for the density with which it would have.
 //
-// Lights are the lamps of the graph (compiler/lamps.h), the scene's point, spot and directional lights, and all that
+// Lights are the lamps of the graph (compiler/analysis/lamps.h), the scene's point, spot and directional lights, and all that
 // lies beyond the scene (runtime/light/environment.h). Near ones and those beyond are sampled in proportion to
 // estimates of what they give, but each side at least one time in four when there are both; near ones by a tree
 // (runtime/light/light_tree.h).
@@ -22,7 +22,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/light/environment.h"
 #include "runtime/light/light_query.h"
 #include "runtime/light/light_shapes.h"

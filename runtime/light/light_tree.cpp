@@ -7,7 +7,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "compiler/box.h"
+#include "compiler/geometry/box.h"
 
 namespace fathom::runtime {
 namespace {

@@ -7,7 +7,7 @@
 #include "runtime/base/angle.h"
 #include "runtime/base/elementary.h"
 #include "runtime/light/lamp_parts.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {

@@ -8,7 +8,7 @@
 #include "runtime/base/angle.h"
 #include "runtime/base/elementary.h"
 #include "runtime/sampling/sphere_table.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {

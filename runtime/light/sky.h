@@ -11,7 +11,7 @@
 #include <array>
 #include <glm/vec3.hpp>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::runtime {
 

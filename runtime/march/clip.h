@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "compiler/box.h"
+#include "compiler/geometry/box.h"
 #include "runtime/march/ray.h"
 
 namespace fathom::runtime {

@@ -76,7 +76,7 @@ template <class S>
 struct LaneRules {
   S lipschitz, inv_lipschitz;
   S band;        // near the surface: distances at which a crossing is tried, scene units
-  S magnitude;   // scene units (compiler/bounds.h)
+  S magnitude;   // scene units (compiler/shapes/bounds.h)
   S unit;        // d_f at unit scale
   S resolution;  // relative width of a bracket that is done
   Method method;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

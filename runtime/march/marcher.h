@@ -15,7 +15,7 @@
 #include "runtime/march/clip.h"
 #include "runtime/march/ray.h"
 #include "runtime/march/search.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 

@@ -16,7 +16,7 @@
 
 #include "runtime/field/field.h"
 #include "runtime/march/ray.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 

@@ -10,8 +10,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
-#include "vm/evaluate.h"
+#include "compiler/scene/compiled_scene.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 
@@ -62,7 +62,7 @@ MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t);
 MaterialPoint to_principled(const MaterialPoint& m);
 
 // The materials of a scene. Of one that varies over space the parameters are clamped to their ranges; where a texture
-// is not a number its stand-in counts (compiler/material.h). Every method may be called from many threads; the scene
+// is not a number its stand-in counts (compiler/scene/material.h). Every method may be called from many threads; the scene
 // must outlive it.
 class Materials {
  public:

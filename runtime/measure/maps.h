@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 
 namespace fathom::runtime {

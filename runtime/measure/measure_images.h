@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/chart/measurements.h"
 #include "runtime/path/options.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 #include "runtime/march/ray.h"
 

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/base/stats.h"
 #include "runtime/field/field.h"
 #include "runtime/film/film.h"

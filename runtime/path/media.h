@@ -1,5 +1,5 @@
 // The insides of transparent bodies as fields of their own, and which of them a place lies in. A ray within one is
-// followed against that field alone, so it meets the drink in the glass (compiler/media.h).
+// followed against that field alone, so it meets the drink in the glass (compiler/analysis/media.h).
 // Tested by: tests/runtime/path/media_test.cpp
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 
 namespace fathom::runtime {

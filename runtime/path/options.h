@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/base/pixel_rect.h"
 #include "runtime/film/film.h"
 #include "runtime/film/partial_render.h"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/field/field.h"
-#include "vm/check.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

@@ -9,10 +9,10 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 #include "runtime/march/ray.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 

@@ -15,7 +15,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::runtime {
 

@@ -27,7 +27,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::runtime {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "runtime/base/elementary.h"
-#include "vm/check.h"
-#include "vm/real.h"
+#include "vm/number/real.h"
+#include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "vm/specialise.h"
+#include "vm/prune/specialise.h"
 
 namespace fathom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // Evaluating a slice by a quadtree: tiles that are solid or empty throughout are filled at once, and in the others
-// the program is cut down to what matters there (vm/specialise.h), twice, before its pixels are evaluated.
+// the program is cut down to what matters there (vm/prune/specialise.h), twice, before its pixels are evaluated.
 //
 // Source: Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid
 // geometry", 1992; Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces", 2020. Tested by:
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/slice/slice_frame.h"
-#include "vm/verify.h"
+#include "vm/program/verify.h"
 
 namespace fathom::runtime {
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "runtime/slice/quadtree.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 namespace {

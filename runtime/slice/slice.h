@@ -6,7 +6,7 @@
 
 #include "runtime/image/image.h"
 #include "runtime/slice/slice_frame.h"
-#include "vm/verify.h"
+#include "vm/program/verify.h"
 
 namespace fathom::runtime {
 

@@ -14,7 +14,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "compiler/box.h"
+#include "compiler/geometry/box.h"
 
 namespace fathom::runtime {
 

@@ -8,7 +8,7 @@
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/naive.h"
 #include "tests/support/compiled.h"
-#include "tests/vm/float_bits.h"
+#include "tests/vm/number/float_bits.h"
 
 namespace fathom::catalogue::combinators_test {
 namespace {
@@ -44,7 +44,7 @@ long double blended(long double a, long double b, long double k) {
 
 }  // namespace
 
-// The machine's opcodes by themselves: tests/vm/operators_test.cpp.
+// The machine's opcodes by themselves: tests/vm/number/operators_test.cpp.
 TEST_CASE("F5: a blend of width 0 is the hard operator, bit for bit", "[catalogue]") {
   vm::Workspace workspace;
   const test::Cloud cloud = cloud_around(5000);

@@ -11,7 +11,7 @@
 #include "tests/catalogue/solids.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/vm/float_bits.h"
+#include "tests/vm/number/float_bits.h"
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif

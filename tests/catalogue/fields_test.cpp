@@ -1,6 +1,6 @@
 // The adversarial catalogue, rows F1, F2 and F8 to F12: distances of solids by formulas that are often printed wrong,
 // and of parameters where formulas divide by zero. All primitives against brute force, and all constants against
-// random graphs: tests/compiler/shapes_test.cpp. docs/ACCURACY.md lists all rows.
+// random graphs: tests/compiler/shapes/shapes_test.cpp. docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

@@ -11,7 +11,7 @@
 #include "compiler/compile.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::catalogue {
 

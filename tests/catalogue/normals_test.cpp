@@ -1,5 +1,5 @@
 // The adversarial catalogue, rows N1 to N5: normals against exact gradients in long double; differences, and a cone's
-// usual formula, beside them. Random shapes and graphs: tests/compiler/normals_test.cpp. docs/ACCURACY.md lists all
+// usual formula, beside them. Random shapes and graphs: tests/compiler/shapes/normals_test.cpp. docs/ACCURACY.md lists all
 // rows.
 #include <catch2/catch.hpp>
 #include <cmath>

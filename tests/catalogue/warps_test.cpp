@@ -16,7 +16,7 @@
 
 #include "runtime/march/march.h"
 #include "tests/support/compiled.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::test::warps_test {
 namespace {

@@ -5,8 +5,8 @@
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/seed_programs.h"
 #include "tests/fuzz/target.h"
-#include "vm/assemble.h"
-#include "vm/disassemble.h"
+#include "vm/encoding/assemble.h"
+#include "vm/encoding/disassemble.h"
 
 namespace fathom::fuzz {
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "tests/fuzz/target.h"
-#include "tests/vm/float_bits.h"
-#include "vm/disassemble.h"
-#include "vm/slope.h"
-#include "vm/specialise.h"
-#include "vm/trace.h"
+#include "tests/vm/number/float_bits.h"
+#include "vm/encoding/disassemble.h"
+#include "vm/interpret/trace.h"
+#include "vm/prune/specialise.h"
+#include "vm/range/slope.h"
 
 namespace fathom::fuzz {
 namespace {

@@ -1,8 +1,8 @@
 // What must hold of every program that the machine runs, whatever scene it is of.
 #pragma once
 
-#include "tests/support/random_scene.h"
-#include "vm/verify.h"
+#include "tests/support/random/random_scene.h"
+#include "vm/program/verify.h"
 
 namespace fathom::fuzz {
 

@@ -4,14 +4,14 @@
 
 #include "compiler/artefact/load.h"
 #include "compiler/artefact/programs.h"
-#include "compiler/frontend/json.h"
+#include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/read_scene.h"
-#include "compiler/frontend/write_json.h"
+#include "compiler/frontend/syntax/json.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/draw_small.h"
-#include "vm/expression.h"
+#include "vm/prune/expression.h"
 
 namespace fathom::fuzz {
 namespace {

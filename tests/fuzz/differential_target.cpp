@@ -7,17 +7,17 @@
 #include <cmath>
 #include <limits>
 
-#include "compiler/bounds.h"
-#include "compiler/containment.h"
-#include "compiler/fuse.h"
-#include "compiler/lower.h"
+#include "compiler/lower/fuse.h"
+#include "compiler/lower/lower.h"
+#include "compiler/passes/containment.h"
 #include "compiler/passes/passes.h"
+#include "compiler/shapes/bounds.h"
 #include "runtime/field/regions.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
-#include "tests/support/judge.h"
+#include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::fuzz {
 namespace {

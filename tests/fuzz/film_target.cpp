@@ -7,8 +7,8 @@
 #include "runtime/film/film_file.h"
 #include "runtime/film/film_header_bytes.h"
 #include "tests/fuzz/target.h"
-#include "vm/bytes.h"
-#include "vm/digest.h"
+#include "vm/encoding/bytes.h"
+#include "vm/encoding/digest.h"
 
 namespace fathom::fuzz {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "compiler/frontend/formula_evaluate.h"
-#include "compiler/frontend/formula_nodes.h"
-#include "compiler/frontend/read_formula.h"
-#include "compiler/lower.h"
+#include "compiler/frontend/formula/formula_evaluate.h"
+#include "compiler/frontend/formula/formula_nodes.h"
+#include "compiler/frontend/formula/read_formula.h"
+#include "compiler/lower/lower.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/fuzz/target.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::fuzz::fuzz_test {
 namespace {

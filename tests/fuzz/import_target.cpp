@@ -1,4 +1,4 @@
-// Formats from elsewhere: expression lists and trees of nested nodes (compiler/frontend/expression_list.h,
+// Formats from elsewhere: expression lists and trees of nested nodes (compiler/frontend/formats/expression_list.h,
 // nested_nodes.h). What they are read as must be a scene that compiles, or else there is an error.
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/target.h"

@@ -1,5 +1,5 @@
 // Bytes as programs. What begins like a compiled file is one. Otherwise the first byte tells: even, and one program
-// follows as vm/binary.h lays it out; odd, and sections of a compiled file follow, which are sealed with the right
+// follows as vm/encoding/binary.h lays it out; odd, and sections of a compiled file follow, which are sealed with the right
 // digests here, for no run would find those: u32 size of the code, u32 size of the tables, u32 size of the debug
 // section, then these and the text. All is refused with a reason, or written as it was read, and can be run.
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include "tests/fuzz/seed_programs.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/sealed_file.h"
-#include "vm/binary.h"
+#include "vm/encoding/binary.h"
 
 namespace fathom::fuzz {
 namespace {

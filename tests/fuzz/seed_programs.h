@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "compiler/compile.h"
-#include "compiler/fuse.h"
+#include "compiler/lower/fuse.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::fuzz {
 

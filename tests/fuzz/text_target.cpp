@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "compiler/compile.h"
+#include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/text/format.h"
-#include "compiler/frontend/text/parser.h"
-#include "compiler/frontend/write_json.h"
+#include "compiler/frontend/text/parse/parser.h"
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/target.h"
 

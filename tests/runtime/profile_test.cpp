@@ -10,7 +10,7 @@
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
 #include "tests/support/program.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime::profile_test {
 namespace {

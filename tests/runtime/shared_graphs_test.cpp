@@ -17,7 +17,7 @@
 #include "compiler/shapes/node_table.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::shared_graphs_test {
 

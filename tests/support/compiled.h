@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "compiler/compile.h"
-#include "compiler/frontend/write_json.h"
+#include "compiler/frontend/formats/write_json.h"
 
 namespace fathom::tests {
 

@@ -1,7 +1,7 @@
 // A few pixels of any scene, and its regions: no matter what they look like, nothing may break.
 #pragma once
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 #include "runtime/render.h"
 

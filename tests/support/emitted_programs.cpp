@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "compiler/fuse.h"
-#include "compiler/lower.h"
+#include "compiler/lower/fuse.h"
+#include "compiler/lower/lower.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 
 namespace fathom::test {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "compiler/frontend/text/imports.h"
+#include "compiler/frontend/text/parse/imports.h"
 #include "tests/support/golden.h"
 
 namespace fathom::tests {

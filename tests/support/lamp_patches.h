@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-#include "compiler/compiled_scene.h"
+#include "compiler/scene/compiled_scene.h"
 #include "runtime/light/light_shapes.h"
 #include "tests/support/chi_square.h"
 

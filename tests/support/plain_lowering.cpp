@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "compiler/shapes/node_table.h"
-#include "tests/support/random_scene.h"
-#include "vm/check.h"
+#include "tests/support/random/random_scene.h"
+#include "vm/program/check.h"
 
 namespace fathom::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "compiler/graph.h"
-#include "vm/verify.h"
+#include "compiler/graph/graph.h"
+#include "vm/program/verify.h"
 
 namespace fathom::test {
 

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include "vm/program.h"
+#include "vm/program/program.h"
 
 namespace fathom::test {
 

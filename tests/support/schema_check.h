@@ -1,4 +1,4 @@
-// A validator for the keywords of JSON Schema (draft 2020-12) that compiler/frontend/schema.cpp writes, and no
+// A validator for the keywords of JSON Schema (draft 2020-12) that compiler/frontend/records/schema.cpp writes, and no
 // others: a keyword it does not know throws, so that no rule is passed over in silence.
 //
 // Source: Wright, Andrews, Hutton, "JSON Schema Validation", 2022.

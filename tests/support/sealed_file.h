@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "compiler/artefact/compiled_file.h"
-#include "vm/binary.h"
-#include "vm/bytes.h"
+#include "vm/encoding/binary.h"
+#include "vm/encoding/bytes.h"
 
 namespace fathom::test {
 

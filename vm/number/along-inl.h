@@ -6,7 +6,7 @@
 //     sqrt(t^2 + 1) - 2 over t in [0, 1]:    v [-1, -0.58]   d [0, 0.71]
 //
 // Holds, as Slope, for programs without undefined operations; where the value may jump the derivative has no bound.
-// Tested by: tests/vm/along_test.cpp
+// Tested by: tests/vm/number/along_test.cpp
 #if defined(FATHOM_VM_ALONG_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ALONG_INL
 #undef FATHOM_VM_ALONG_INL

@@ -12,7 +12,7 @@
 // |x| <= 1e4 (f32) or 1e6 (double); beyond, x is reduced with an error that grows like x, and from kNoAngle on there
 // is no angle left and x counts as 0. Never NaN for a finite x.
 //
-// Tested by: tests/vm/elementary_test.cpp
+// Tested by: tests/vm/number/elementary_test.cpp
 #if defined(FATHOM_VM_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ELEMENTARY_INL
 #undef FATHOM_VM_ELEMENTARY_INL

@@ -9,7 +9,7 @@
 //
 //     x * x - 1 over x in [-1, 2] as a product:    [-2, 4] - 1 = [-3, 3]      with sqr:    [0, 4] - 1 = [-1, 3]
 //
-// Tested by: tests/vm/enclosure_test.cpp
+// Tested by: tests/vm/range/enclosure_test.cpp
 #if defined(FATHOM_VM_ENCLOSURE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ENCLOSURE_INL
 #undef FATHOM_VM_ENCLOSURE_INL

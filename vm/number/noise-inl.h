@@ -9,7 +9,7 @@
 // it is NaN.
 //
 // Over Batch, RealBatch, Real, their Duals and Recorded; vm/number/noise_range-inl.h has the others.
-// Tested by: tests/vm/noise_test.cpp
+// Tested by: tests/vm/number/noise_test.cpp
 #if defined(FATHOM_VM_NOISE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_NOISE_INL
 #undef FATHOM_VM_NOISE_INL
@@ -17,8 +17,8 @@
 #define FATHOM_VM_NOISE_INL
 #endif
 
-#include "vm/noise_bounds.h"
 #include "vm/number/dual-inl.h"
+#include "vm/number/noise_bounds.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

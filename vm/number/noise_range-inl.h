@@ -3,7 +3,7 @@
 //
 // Within a cell of the lattice the corners' directions are known, and the noise is a polynomial; a box in two cells
 // or less along each axis has the hull over its cells. Of any larger one no more is known than what holds whatever
-// the hash is (vm/noise_bounds.h). Tested by: tests/vm/noise_test.cpp
+// the hash is (vm/number/noise_bounds.h). Tested by: tests/vm/number/noise_test.cpp
 #if defined(FATHOM_VM_NOISE_RANGE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_NOISE_RANGE_INL
 #undef FATHOM_VM_NOISE_RANGE_INL

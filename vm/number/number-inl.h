@@ -8,13 +8,13 @@
 //   atan2(y, x)  pow(x, y)  mod(a, b)     atan2(0, 0) = 0; mod(a, b) = a - b floor(a / b)
 //   noise(x, y, z)                        gradient noise, noise-inl.h
 //   divide(a, b)                          a / b, whose derivative is 0 where b is
-//   logical_not(a)  logical_and(a, b)  logical_or(a, b)  compare(a, b)  step(edge, x)    as in vm/opcodes.def
+//   logical_not(a)  logical_and(a, b)  logical_or(a, b)  compare(a, b)  step(edge, x)    as in vm/program/opcodes.def
 //   min(a, b) = a < b ? a : b             max(a, b) = a > b ? a : b        (one rule for ties and NaN: b)
 //   length(x, y)  length(x, y, z)         gradient zero where the length is zero
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
 // with either operand of + - * min max < > a constant. A Convex or Tagged needs of all these only what
-// vm/semantics-inl.h applies to values. The types: Batch and RealBatch (f32 and double lanes, batch-inl.h), Real
+// vm/interpret/semantics-inl.h applies to values. The types: Batch and RealBatch (f32 and double lanes, batch-inl.h), Real
 // (double, real-inl.h: bit for bit a lane of RealBatch), Interval (interval-inl.h), Along (value and derivative along
 // a line, along-inl.h), Slope (value, gradient and float error over a box, slope-inl.h), Enclosure (what f32 computes
 // over boxes, enclosure-inl.h), and over Batch and Real Dual (derivatives, dual-inl.h), Convex (how far the solid is

@@ -15,7 +15,7 @@
 // than exact arithmetic, and operands f32 may have outside the domain, count in full.
 //
 // Holds at points where every operation of the program is defined: a NaN can vanish in a min or a comparison.
-// Tested by: tests/vm/formula_test.cpp
+// Tested by: tests/vm/interpret/formula_test.cpp
 #if defined(FATHOM_VM_SLOPE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SLOPE_INL
 #undef FATHOM_VM_SLOPE_INL
@@ -27,7 +27,7 @@
 #include <array>
 
 #include "vm/number/interval_elementary-inl.h"
-#include "vm/opcode.h"
+#include "vm/program/opcode.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -225,7 +225,7 @@ inline Slope sqrt(const Slope& a) {
 inline Slope length(const Slope& x, const Slope& y) { return sqrt(sqr(x) + sqr(y)); }
 inline Slope length(const Slope& x, const Slope& y, const Slope& z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
 
-// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/opcodes.def promises. It changes
+// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/program/opcodes.def promises. It changes
 // as fast as p can move, whichever way that is: by the largest singular value of p's derivatives.
 inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
   const Slope squares = sqr(p.x) + sqr(p.y) + sqr(p.z);

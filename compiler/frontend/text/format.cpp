@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/frontend/text/lexer.h"
+#include "compiler/frontend/text/parse/lexer.h"
 
 namespace fathom::compiler::text {
 namespace {

@@ -1,10 +1,10 @@
 // One layout for all texts: blanks and indentation are the formatter's, lines the author's.
-// Tested by: tests/compiler/text_format_test.cpp
+// Tested by: tests/compiler/frontend/text/text_format_test.cpp
 #pragma once
 
 #include <string>
 
-#include "compiler/source.h"
+#include "compiler/source/source.h"
 
 namespace fathom::compiler::text {
 

@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/frontend/color_text.h"
-#include "compiler/frontend/formula.h"
-#include "compiler/frontend/formula_lexer.h"
-#include "compiler/frontend/formula_parser.h"
-#include "compiler/frontend/formula_text.h"
+#include "compiler/frontend/formula/formula.h"
+#include "compiler/frontend/formula/formula_lexer.h"
+#include "compiler/frontend/formula/formula_parser.h"
+#include "compiler/frontend/formula/formula_text.h"
+#include "compiler/frontend/records/color_text.h"
+#include "compiler/frontend/text/parse/token_cursor.h"
+#include "compiler/frontend/text/parse/vocabulary.h"
 #include "compiler/frontend/text/print_lines.h"
-#include "compiler/frontend/text/token_cursor.h"
-#include "compiler/frontend/text/vocabulary.h"
 #include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler::text {

@@ -1,10 +1,10 @@
 // A JSON scene as the text that says the same (docs/LANGUAGE.md): reading it gives an equal tree.
-// Tested by: tests/compiler/text_convert_test.cpp
+// Tested by: tests/compiler/frontend/text/text_convert_test.cpp
 #pragma once
 
 #include <string>
 
-#include "compiler/frontend/syntax.h"
+#include "compiler/frontend/syntax/syntax.h"
 
 namespace fathom::compiler::text {
 

@@ -1,12 +1,12 @@
 // The lines of a text that a JSON scene becomes: its statements in groups, no wider than a page, among its comments.
-// Tested by: tests/compiler/text_convert_test.cpp
+// Tested by: tests/compiler/frontend/text/text_convert_test.cpp
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "compiler/source.h"
+#include "compiler/source/source.h"
 
 namespace fathom::compiler::text {
 

@@ -4,12 +4,12 @@
 #include <iterator>
 #include <set>
 
-#include "compiler/frontend/json_error.h"
-#include "compiler/frontend/text/emit.h"
-#include "compiler/frontend/text/evaluate.h"
-#include "compiler/frontend/text/lexer.h"
-#include "compiler/frontend/text/names.h"
-#include "compiler/frontend/text/parser.h"
+#include "compiler/frontend/syntax/json_error.h"
+#include "compiler/frontend/text/evaluate/emit.h"
+#include "compiler/frontend/text/evaluate/evaluate.h"
+#include "compiler/frontend/text/parse/lexer.h"
+#include "compiler/frontend/text/parse/names.h"
+#include "compiler/frontend/text/parse/parser.h"
 
 namespace fathom::compiler {
 

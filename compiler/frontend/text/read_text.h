@@ -4,7 +4,7 @@
 //     def post(height) = cylinder(0.1, height/2).translate([0, height/2, 0])
 //     object "posts" [for i in 0..5: post(1 + i/4).translate([i, 0, 0])]
 //
-// Tested by: tests/compiler/text_evaluate_test.cpp, tests/golden/diagnostics (E08xx)
+// Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp, tests/golden/diagnostics (E08xx)
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "compiler/diagnostics.h"
-#include "compiler/frontend/parameters.h"
-#include "compiler/frontend/syntax.h"
-#include "compiler/frontend/text/imports.h"
-#include "compiler/frontend/write_json.h"
-#include "compiler/limits.h"
+#include "compiler/frontend/formats/write_json.h"
+#include "compiler/frontend/records/parameters.h"
+#include "compiler/frontend/syntax/syntax.h"
+#include "compiler/frontend/text/parse/imports.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
 
 namespace fathom::compiler {
 

@@ -4,7 +4,7 @@
 #include <regex>
 #include <sstream>
 
-#include "compiler/frontend/text/vocabulary.h"
+#include "compiler/frontend/text/parse/vocabulary.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_editor_test {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/bounds.h"
-#include "compiler/fuse.h"
+#include "compiler/lower/fuse.h"
+#include "compiler/shapes/bounds.h"
 #include "runtime/field/field.h"
 #include "runtime/march/march.h"
 #include "runtime/path/surface.h"
@@ -20,8 +20,8 @@
 #include "tests/support/compiled.h"
 #include "tests/support/effort.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random_scene.h"
-#include "vm/evaluate.h"
+#include "tests/support/random/random_scene.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::regions_test {
 

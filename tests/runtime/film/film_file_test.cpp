@@ -10,7 +10,7 @@
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/temporary_folder.h"
-#include "vm/digest.h"
+#include "vm/encoding/digest.h"
 
 namespace fathom::runtime::film_file_test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "runtime/image/image_exr.h"
 #include "tests/fuzz/target.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::image_exr_read_test {

@@ -7,7 +7,7 @@
 #include "runtime/march/march.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
-#include "tests/vm/float_bits.h"
+#include "tests/vm/number/float_bits.h"
 
 namespace fathom::runtime::certify_test {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <random>
 
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::clip_test {
 

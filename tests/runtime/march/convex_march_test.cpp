@@ -12,7 +12,7 @@
 #include "tests/catalogue/departures.h"
 #include "tests/support/compiled.h"
 #include "tests/support/effort.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::convex_march_test {
 

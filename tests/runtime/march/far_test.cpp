@@ -1,4 +1,4 @@
-// Scenes far from zero, and small things beside large ones: hits are where they are near zero (compiler/origin.h).
+// Scenes far from zero, and small things beside large ones: hits are where they are near zero (compiler/analysis/origin.h).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -14,7 +14,7 @@
 #include "runtime/sampling/camera.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
-#include "tests/vm/float_bits.h"
+#include "tests/vm/number/float_bits.h"
 
 namespace fathom::runtime::method_test {
 namespace {

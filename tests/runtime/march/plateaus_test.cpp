@@ -17,7 +17,7 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/effort.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random/random_scene.h"
 
 namespace fathom::runtime::plateaus_test {
 namespace {

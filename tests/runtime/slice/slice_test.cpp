@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "tests/runtime/scenes.h"
-#include "vm/evaluate.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::slice_test {
 

@@ -1,0 +1,207 @@
+#include "compiler/analysis/lamps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "compiler/geometry/affine.h"
+
+namespace fathom::compiler {
+namespace {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+
+bool is_shape(Kind kind) {
+  return kind == Kind::Sphere || kind == Kind::Box || kind == Kind::Cylinder || kind == Kind::Capsule ||
+         kind == Kind::Quad;
+}
+
+// What leaves the surfaces of its children where they are, but for moving them.
+bool is_way(Kind kind) {
+  return kind == Kind::Union || kind == Kind::Transform || kind == Kind::Scaled || kind == Kind::Paint;
+}
+
+// A map into a space turned, moved and scaled: q = R^T (p - t) / s.
+struct LampPlacement {
+  dmat3 rotation;
+  dvec3 translation;
+  double scale;
+};
+
+// nullopt when the map stretches directions differently.
+std::optional<LampPlacement> placement_of(const Affine& to_local) {
+  constexpr double kTolerance = 1e-9;
+  const std::array<dvec3, 3>& rows = to_local.rows;
+  const double length = glm::length(rows[0]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(std::abs(glm::length(rows[i]) - length) <= kTolerance * length)) return std::nullopt;
+    if (!(std::abs(glm::dot(rows[i], rows[(i + 1) % 3])) <= kTolerance * length * length)) return std::nullopt;
+  }
+  return LampPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
+                   1 / length};
+}
+
+// Its plane becomes the xy plane of the lamp's space, its middle the origin.
+void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place) {
+  std::array<dvec3, 4> v;
+  dvec3 middle(0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    v[i] = place.rotation * (place.scale * dvec3(p[3 * i], p[3 * i + 1], p[3 * i + 2])) + place.translation;
+    middle += 0.25 * v[i];
+  }
+  const dvec3 x = glm::normalize(v[1] - v[0]);
+  // Of a convex quad, twice the area along the normal: the diagonals' cross product.
+  const dvec3 z = glm::normalize(glm::cross(v[2] - v[0], v[3] - v[1]));
+  lamp.rotation = dmat3(x, glm::cross(z, x), z);
+  lamp.translation = middle;
+  lamp.radius = p[12] * place.scale;
+  for (std::size_t i = 0; i < 4; ++i) lamp.corners[i] = dvec2(glm::transpose(lamp.rotation) * (v[i] - middle));
+}
+
+std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& to_local) {
+  const std::optional<LampPlacement> place = placement_of(to_local);
+  if (!place) return std::nullopt;
+  Lamp lamp;
+  lamp.rotation = place->rotation;
+  lamp.translation = place->translation;
+  switch (kind) {
+    case Kind::Box:
+      lamp.shape = Lamp::Shape::Box;
+      lamp.half_size = place->scale * dvec3(p[0], p[1], p[2]);
+      break;
+    case Kind::Cylinder:
+    case Kind::Capsule:
+      lamp.shape = kind == Kind::Cylinder ? Lamp::Shape::Cylinder : Lamp::Shape::Capsule;
+      lamp.radius = place->scale * p[0];
+      lamp.half_height = place->scale * p[1];
+      break;
+    case Kind::Quad:
+      lamp.shape = Lamp::Shape::Quad;
+      set_quad(lamp, p, *place);
+      break;
+    default:
+      lamp.shape = Lamp::Shape::Sphere;
+      lamp.radius = place->scale * p[0];
+  }
+  return lamp;
+}
+
+// Visits beyond one of each node. Of a node under an uneven scale there can be any number and no lamp.
+constexpr std::size_t kMaxVisits = 8 * kMaxLamps;
+
+// Tells lamps in the same place apart from others; the same shape under another transform is rare enough to pass.
+using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
+
+class Finder {
+ public:
+  Finder(const Scene& scene, std::span<const Surface> surfaces, std::span<const Material> materials)
+      : graph_(scene.graph), surfaces_(surfaces), materials_(materials) {
+    mark();
+    count_uses(scene);
+    const Affine identity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
+    tasks_.push_back({scene.root, identity, std::nullopt});
+    const std::size_t most_visits = graph_.size() + kMaxVisits;
+    for (std::size_t i = 0; i < most_visits && !tasks_.empty() && lamps_.size() < kMaxLamps; ++i) {
+      const Task task = tasks_.back();
+      tasks_.pop_back();
+      visit(task);
+    }
+  }
+  std::vector<Lamp> take() { return std::move(lamps_); }
+
+ private:
+  struct Task {
+    NodeId node;
+    Affine to_local;
+    std::optional<std::uint32_t> surface;  // of what is not painted further in
+  };
+
+  // A node that several use is visited once under each map and surface.
+  using Visited = std::tuple<NodeId, std::optional<std::uint32_t>, std::array<double, 12>>;
+
+  bool glows(std::uint32_t surface) const {
+    const Material& material = materials_[surfaces_[surface].material];
+    return emits(material) && !transmits(material);
+  }
+  std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
+
+  // Which nodes hold lamps, painted from outside by a glowing surface or not: a DAG is walked to those only.
+  void mark() {
+    holds_.resize(graph_.size());
+    for (NodeId id = 0; id < graph_.size(); ++id) {
+      const Kind kind = graph_.kind(id);
+      if (is_shape(kind)) holds_[id] = {false, true};
+      if (!is_way(kind)) continue;
+      for (const NodeId child : graph_.children(id)) {
+        for (const bool lit : {false, true}) {
+          const bool inner = kind == Kind::Paint ? glows(painted(id)) : lit;
+          holds_[id][lit] = holds_[id][lit] || holds_[child][inner];
+        }
+      }
+    }
+  }
+
+  void count_uses(const Scene& scene) {
+    shared_.resize(graph_.size());
+    std::vector<bool> used(graph_.size());
+    for (NodeId id = 0; id <= scene.root; ++id) {
+      for (const NodeId child : graph_.children(id)) {
+        shared_[child] = shared_[child] || used[child];
+        used[child] = true;
+      }
+    }
+  }
+
+  void visit(const Task& task) {
+    const Kind kind = graph_.kind(task.node);
+    if (!holds_[task.node][task.surface && glows(*task.surface)]) return;
+    if (shared_[task.node] && !visited_.insert({task.node, task.surface, task.to_local.params()}).second) return;
+    if (is_shape(kind)) return add(task);
+    Task inner = task;
+    if (kind == Kind::Paint) inner.surface = painted(task.node);
+    if (kind == Kind::Transform)
+      inner.to_local = compose(Affine::from_params(graph_.params(task.node)), task.to_local);
+    const std::span<const NodeId> children = graph_.children(task.node);
+    for (std::size_t i = children.size(); i > 0; --i) {  // the first on top
+      inner.node = children[i - 1];
+      tasks_.push_back(inner);
+    }
+  }
+
+  void add(const Task& task) {
+    const std::span<const double> params = graph_.params(task.node);
+    std::optional<Lamp> lamp = lamp_of(graph_.kind(task.node), params, task.to_local);
+    if (!lamp) return;
+    LampPlace place{static_cast<int>(lamp->shape), task.to_local.params(), {params.begin(), params.end()}};
+    if (!taken_.insert(std::move(place)).second) return;
+    lamp->surface = *task.surface;
+    lamp->material = surfaces_[*task.surface].material;
+    lamps_.push_back(*lamp);
+  }
+
+  const Graph& graph_;
+  const std::span<const Surface> surfaces_;
+  const std::span<const Material> materials_;
+  std::vector<std::array<bool, 2>> holds_;  // [node][whether a glowing surface is around it]
+  std::vector<bool> shared_;                // [node] whether several nodes use it
+  std::vector<Task> tasks_;
+  std::set<Visited> visited_;
+  std::set<LampPlace> taken_;
+  std::vector<Lamp> lamps_;
+};
+
+}  // namespace
+
+std::vector<Lamp> find_lamps(const Scene& scene, std::span<const Surface> surfaces,
+                             std::span<const Material> materials) {
+  return Finder(scene, surfaces, materials).take();
+}
+
+}  // namespace fathom::compiler

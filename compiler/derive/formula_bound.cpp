@@ -1,0 +1,188 @@
+#include "compiler/derive/formula_bound.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
+#include <queue>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "compiler/lower/fuse.h"
+#include "compiler/lower/lower.h"
+#include "compiler/source/limits.h"
+#include "vm/interpret/evaluate.h"
+#include "vm/program/verify.h"
+#include "vm/prune/specialise.h"
+#include "vm/range/slope.h"
+
+namespace fathom::compiler {
+namespace {
+
+constexpr double kCloseEnough = 1.02;
+
+struct Cell {
+  Box box;
+  vm::SlopeBound bound;
+  std::shared_ptr<const vm::Part> part;  // what of the formula matters within the box
+  // The steepest on top of the queue. Among those that are as steep but for rounding the smaller, which is nearer to
+  // where that slope is met; among jumps the larger, that many places are seen before one is too small to be cut.
+  bool operator<(const Cell& other) const {
+    const auto slope = static_cast<float>(bound.lipschitz), other_slope = static_cast<float>(other.bound.lipschitz);
+    if (slope != other_slope) return slope < other_slope;
+    return std::isfinite(slope) ? longest_side() > other.longest_side() : longest_side() < other.longest_side();
+  }
+  double longest_side() const {
+    const glm::dvec3 size = box.hi - box.lo;
+    return std::max({size.x, size.y, size.z});
+  }
+};
+
+class Bisection {
+ public:
+  // `used`: which coordinates the formula has in it; along the others nothing changes.
+  Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
+      : length_(static_cast<int>(program.instructions())), cost_(program.cost()), whole_(box), used_(used) {
+    add(box, std::make_shared<const vm::Part>(vm::whole(program)));
+  }
+
+  FormulaBound run() {
+    // Of the formula's length: a tenth of a second at most, were no cell's part shorter. Of one that is so long that
+    // few cells would be left, a second by what its functions cost.
+    const int cells = 4'000'000 / (length_ + 1);
+    const int budget =
+        cells >= kFew ? std::min(cells, 8192) : std::clamp(static_cast<int>(8'000'000 / (cost_ + 1)), 4, kFew);
+    for (int i = 0; i < budget && !cells_.empty(); ++i) {
+      const Cell steepest = cells_.top();
+      if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
+    }
+    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
+    double smallest = kInfinity;
+    for (; !cells_.empty(); cells_.pop()) {
+      const vm::SlopeBound& b = cells_.top().bound;
+      result.least = std::min(result.least, b.value.lo);
+      result.most = std::max(result.most, b.value.hi);
+      result.lipschitz = std::max(result.lipschitz, b.lipschitz);
+      result.float_error = std::max(result.float_error, b.float_error);
+      if (std::isfinite(b.lipschitz) || cells_.top().longest_side() > smallest) continue;
+      smallest = cells_.top().longest_side();
+      result.unbounded = cells_.top().box;
+    }
+    return result;
+  }
+
+ private:
+  // `part`: of a cell that holds this one.
+  void add(const Box& box, std::shared_ptr<const vm::Part> part) {
+    Cell cell{box, specialiser_.look(*part, box.lo, box.hi, workspace_), part};
+    if (cell.bound.lipschitz > kCloseEnough * seen_) cell.part = cut(part);
+    if (cell.bound.lipschitz > seen_) see(cell);
+    cells_.push(std::move(cell));
+  }
+
+  // The slope in the middle of a cell, of the part that is cut for it.
+  void see(const Cell& cell) {
+    const Box& box = cell.box;
+    glm::dvec3 middle;
+    for (int i = 0; i < 3; ++i) {
+      middle[i] = std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]) ? (box.lo[i] + box.hi[i]) / 2
+                                                                       : std::clamp(0.0, box.lo[i], box.hi[i]);
+    }
+    const double slope = glm::length(vm::evaluate_surface(*cell.part, middle, workspace_).gradient);
+    if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
+  }
+
+  // What the cell that was looked at leaves of its part.
+  std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
+    if (part->choices == 0) return part;
+    specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+    if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;  // next to nothing would go
+    auto smaller = std::make_shared<vm::Part>();
+    specialiser_.part(0, *smaller);
+    return smaller;
+  }
+
+  // False when the cell has become too small for its slope to be anything but a jump.
+  bool split(const Cell& cell) {
+    const glm::dvec3 size = cell.box.hi - cell.box.lo, whole = whole_.hi - whole_.lo;
+    int axis = -1;
+    for (int i = 0; i < 3; ++i) {
+      if (!used_[static_cast<std::size_t>(i)]) continue;
+      if (std::isfinite(size[i]) && size[i] > 1e-4 * whole[i] && (axis < 0 || size[i] > size[axis])) axis = i;
+    }
+    if (axis < 0) return false;
+    cells_.pop();
+    const double middle = (cell.box.lo[axis] + cell.box.hi[axis]) / 2;
+    Box lower = cell.box, upper = cell.box;
+    lower.hi[axis] = upper.lo[axis] = middle;
+    add(lower, cell.part);
+    add(upper, cell.part);
+    return true;
+  }
+
+  static constexpr int kFew = 64;
+
+  const int length_;
+  const std::uint32_t cost_;
+  const Box whole_;
+  const std::array<bool, 3> used_;
+  vm::Workspace workspace_;
+  vm::Specialiser specialiser_;
+  std::priority_queue<Cell> cells_;
+  double seen_ = 0;
+};
+
+// nullopt when no machine runs it; the scene's program, of which it is a part, is refused later.
+std::optional<vm::VerifiedProgram> program_of(const Graph& graph, NodeId formula) {
+  const auto longest = static_cast<std::size_t>(limit_row(&Limits::instructions).largest);
+  std::optional<vm::Program> program = lower(graph, formula, Source("", ""), longest);
+  if (!program) return std::nullopt;
+  auto verified = vm::verify(fuse(std::move(*program)), largest_machine());
+  if (std::holds_alternative<vm::VerifyError>(verified)) return std::nullopt;
+  return std::get<vm::VerifiedProgram>(std::move(verified));
+}
+
+std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
+  std::array<bool, 3> used = {false, false, false};
+  std::vector<bool> reached(formula + 1, false);
+  reached[formula] = true;
+  for (NodeId id = formula + 1; id-- > 0;) {
+    if (!reached[id]) continue;
+    used[0] = used[0] || graph.kind(id) == Kind::X;
+    used[1] = used[1] || graph.kind(id) == Kind::Y;
+    used[2] = used[2] || graph.kind(id) == Kind::Z;
+    for (const NodeId child : graph.children(id)) reached[child] = true;
+  }
+  return used;
+}
+
+}  // namespace
+
+FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
+  const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
+  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity};
+  return Bisection(*program, box, coordinates_of(graph, formula)).run();
+}
+
+NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {
+  const Box cell = bound_formula(graph, formula, box).unbounded;
+  if (cell.empty()) return formula;
+  vm::Workspace workspace;
+  double left = 4e6;  // instructions that may still be evaluated: seconds
+  const auto unbounded = [&](NodeId id) {
+    const std::optional<vm::VerifiedProgram> program = program_of(graph, id);
+    if (!program || (left -= program->instructions()) < 0) return false;
+    return !std::isfinite(vm::evaluate_slope(*program, cell.lo, cell.hi, workspace).lipschitz);
+  };
+  for (NodeId at = formula;;) {
+    const std::span<const NodeId> operands = graph.children(at);
+    const auto next = std::find_if(operands.begin(), operands.end(), unbounded);
+    if (next == operands.end()) return at;
+    at = *next;
+  }
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,91 @@
+#include "compiler/derive/formula_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "compiler/derive/formula_bound.h"
+#include "vm/program/opcode.h"
+
+namespace fathom::compiler {
+namespace {
+
+constexpr double kInfiniteSide = 1e18;  // stands for an infinite side in the program
+
+double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
+
+NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double magnitude, bool certified,
+               const Origin& origin) {
+  std::vector<double> params;
+  for (const glm::dvec3& corner : {box.lo, box.hi}) {
+    for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kInfiniteSide, kInfiniteSide));
+  }
+  // A field that does not change at all has its box as its only surface.
+  constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
+  params.insert(params.end(),
+                {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0, certified ? 1.0 : 0.0});
+  const NodeId children[] = {field};
+  return maker.make(Kind::Bounded, params, children, origin);
+}
+
+// What stands for the constant of a formula that has none.
+double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.seen); }
+
+struct DisplacedBound {
+  Box box;
+  FormulaBound formula;  // over the box
+};
+
+// Where the displaced solid can be: the child's box grown by g, with g at least as much as the formula lowers the
+// distance within it. What is needed is followed along its slope to where it meets what is given; of a formula that
+// asks for more and more the solid can be anywhere.
+DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowledge& child) {
+  constexpr int kTries = 8;
+  double grown = 0, last_grown = 0, last_needed = 0;
+  for (int i = 0; i < kTries && child.reach_max > 0 && std::isfinite(grown); ++i) {
+    const Box box = child.box.grown(grown);
+    const FormulaBound bound = bound_formula(graph, formula, box);
+    const double needed = std::max(0.0, -bound.least) / child.reach_max;
+    if (needed <= grown) return {box, bound};
+    const double slope = i == 0 ? 0 : (needed - last_needed) / (grown - last_grown);
+    last_grown = std::exchange(grown, slope < 0.99 ? (needed - slope * grown) / (1 - slope) : 2 * needed);
+    last_needed = needed;
+    constexpr double kAbove = 1.0001;  // the bounds are rounded outwards
+    grown *= kAbove;
+  }
+  return {Box::everything(), bound_formula(graph, formula, Box::everything())};
+}
+
+NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const Origin& origin) {
+  const Knowledge child = maker.known(children[0]);
+  const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
+  const FormulaBound& bound = found.formula;
+  const bool proved = std::isfinite(bound.lipschitz);
+  const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
+  return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
+                 child.magnitude + magnitude_of(bound.float_error), proved && child.certified, origin);
+}
+
+}  // namespace
+
+NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {
+  const FormulaBound bound = bound_formula(maker.graph(), formula, box);
+  const bool proved = std::isfinite(bound.lipschitz);
+  return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound), magnitude_of(bound.float_error),
+                 proved, origin);
+}
+
+NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
+                  const Origin& origin) {
+  switch (kind) {
+    case Kind::Expression:
+      return make_bounded(maker, children[0], Box::centred({params[0], params[1], params[2]}), origin);
+    case Kind::Displacement:
+      return displacement(maker, children, origin);
+    default:
+      return maker.make(kind, params, children, origin);
+  }
+}
+
+}  // namespace fathom::compiler

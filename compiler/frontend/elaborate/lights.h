@@ -1,0 +1,19 @@
+// What shines without being a solid: lights, and what lies beyond the scene.
+// Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp, lamps_test.cpp, tests/golden/diagnostics (E0309, E0310)
+#pragma once
+
+#include <vector>
+
+#include "compiler/frontend/syntax/scope.h"
+#include "compiler/frontend/syntax/syntax.h"
+#include "compiler/scene/compiled_scene.h"
+#include "compiler/source/diagnostics.h"
+
+namespace fathom::compiler {
+
+// As those of settings.h.
+Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
+std::vector<Light> read_lights(const syntax::Value& value, const Scope& scope,
+                               Diagnostics& diagnostics);  // in file order
+
+}  // namespace fathom::compiler

@@ -1,0 +1,66 @@
+#include "compiler/frontend/records/color_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "vm/number/real.h"
+
+namespace fathom::compiler {
+namespace {
+
+constexpr std::string_view kHexDigits = "0123456789abcdef";
+
+// A channel of this much was meant as a byte; a smaller one above 1 may be a linear value that is too large.
+constexpr double kLeastByte = 16;
+
+// The value of a digit of either case; npos of other letters.
+std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
+
+double srgb_to_linear(double signal) {
+  return signal <= 0.04045 ? signal / 12.92 : vm::real::pow((signal + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace
+
+bool is_color_text(const syntax::Value& value, ValueType type) {
+  const auto* text = std::get_if<std::string>(&value.data);
+  return text != nullptr && text->starts_with('#') && (type == ValueType::Color || type == ValueType::Background);
+}
+
+std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics) {
+  const std::string_view digits = std::string_view(std::get<std::string>(value.data)).substr(1);
+  const bool all_hex =
+      std::all_of(digits.begin(), digits.end(), [](char c) { return hex_digit(c) != kHexDigits.npos; });
+  if (!all_hex || (digits.size() != 3 && digits.size() != 6)) {
+    diagnostics.error("E0101", value.span, "a colour in hexadecimal has three or six digits", "",
+                      {"write red, green and blue as \"#rrggbb\" or \"#rgb\": \"#c04020\", \"#c42\""});
+    return std::nullopt;
+  }
+  syntax::List channels;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t byte =
+        digits.size() == 3 ? 17 * hex_digit(digits[i]) : 16 * hex_digit(digits[2 * i]) + hex_digit(digits[2 * i + 1]);
+    channels.push_back({value.span, srgb_to_linear(static_cast<double>(byte) / 255)});
+  }
+  return syntax::Value{value.span, std::move(channels)};
+}
+
+std::string color_text_of(const syntax::Value& value) {
+  const auto channels = std::holds_alternative<syntax::List>(value.data) ? three_numbers(value) : std::nullopt;
+  if (!channels) return "";
+  bool bytes = false;
+  for (int i = 0; i < 3; ++i) {
+    const double channel = (*channels)[i];
+    if (!(channel >= 0 && channel <= 255) || channel != std::floor(channel)) return "";
+    bytes = bytes || channel >= kLeastByte;
+  }
+  if (!bytes) return "";
+  return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(channels->r), static_cast<int>(channels->g),
+                     static_cast<int>(channels->b));
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,16 @@
+// JSON scenes, with // and /* */ comments, to syntax.h. nlohmann/json tokenises; the spans are ours.
+// Tested by: tests/compiler/frontend/syntax/json_test.cpp
+#pragma once
+
+#include <optional>
+
+#include "compiler/frontend/syntax/syntax.h"
+#include "compiler/source/diagnostics.h"
+#include "compiler/source/limits.h"
+
+namespace fathom::compiler {
+
+// nullopt after a syntax error, which ends the reading; duplicate keys are errors too, and all of them are reported.
+std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics, const Limits& limits = {});
+
+}  // namespace fathom::compiler

@@ -1,0 +1,55 @@
+#include "compiler/frontend/syntax/syntax.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fathom::compiler {
+
+namespace syntax {
+
+const Property* Record::find(std::string_view name) const {
+  for (const Property& property : properties) {
+    if (property.name == name) return &property;
+  }
+  return nullptr;
+}
+
+}  // namespace syntax
+
+std::string describe(const syntax::Value& value) {
+  struct Describer {
+    std::string operator()(std::monostate) const { return "null"; }
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(double number) const {
+      return std::isnan(number) ? "not a number" : fmt::format("{}", number);
+    }
+    std::string operator()(const std::string&) const { return "a string"; }
+    std::string operator()(const syntax::List& list) const {
+      if (list.empty()) return "an empty list";
+      const auto number = [](const syntax::Value& item) { return std::holds_alternative<double>(item.data); };
+      const bool numbers = std::all_of(list.begin(), list.end(), number);
+      if (list.size() == 1) return numbers ? "a list of one number" : "a list";
+      return numbers ? fmt::format("a list of {} numbers", list.size()) : "a list";
+    }
+    std::string operator()(const syntax::Record&) const { return "an object"; }
+    std::string operator()(const syntax::ReadFormula&) const { return "a formula"; }
+  };
+  return std::visit(Describer{}, value.data);
+}
+
+std::optional<glm::dvec3> three_numbers(const syntax::Value& value) {
+  if (const double* number = std::get_if<double>(&value.data)) return glm::dvec3(*number);
+  const auto* list = std::get_if<syntax::List>(&value.data);
+  if (list == nullptr || list->size() != 3) return std::nullopt;
+  glm::dvec3 out;
+  for (int i = 0; i < 3; ++i) {
+    const double* number = std::get_if<double>(&(*list)[static_cast<std::size_t>(i)].data);
+    if (number == nullptr) return std::nullopt;
+    out[i] = *number;
+  }
+  return out;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,162 @@
+// How numbers came about, as formulas of a JSON scene: "2*r + 1" of a number that is 5 because the parameter r is 2.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "compiler/frontend/text/evaluate/evaluator.h"
+
+namespace fathom::compiler::text {
+namespace {
+
+constexpr int kSumLevel = 1, kProductLevel = 2, kSignLevel = 3, kPowerLevel = 4, kAtomLevel = 5;
+// Longer ones are given up: they are of loops, and numbers say as much.
+constexpr std::size_t kLongestSpelling = 4000;
+
+int level_of(char mark) {
+  return mark == '+' || mark == '-' ? kSumLevel : mark == '*' || mark == '/' ? kProductLevel : kPowerLevel;
+}
+
+// The operand of an operator that binds as tightly as `level`.
+std::string operand(const std::string& text, int precedence, int level) {
+  return precedence >= level ? text : "(" + text + ")";
+}
+
+// Adds what another spelling needs to a spelling.
+void merge(Spelling& into, const Spelling& from) {
+  into.is_parametric = into.is_parametric || from.is_parametric;
+  for (const Spelling::Line* line : from.lines) {
+    if (std::ranges::find(into.lines, line) == into.lines.end()) into.lines.push_back(line);
+  }
+  std::ranges::sort(into.lines, {}, &Spelling::Line::number);
+}
+
+// Two lines of one name are of two places: neither can be kept.
+bool is_ambiguous(const Spelling& spelling) {
+  for (std::size_t i = 0; i < spelling.lines.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (spelling.lines[i]->name == spelling.lines[j]->name) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+// As it is spelt, or as the number it is.
+const Spelling* Evaluator::spelling_of(const Value& value) {
+  if (value.spelling || !value.is(Type::Number)) return value.spelling;
+  Spelling made;
+  made.text = made.inlined = fmt::format("{}", value.number);
+  made.precedence = made.text[0] == '-' ? kSignLevel : kAtomLevel;
+  return &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_name(Value& value, std::string_view name, bool parametric) {
+  if (!keep_formulas_) return;
+  Spelling made;
+  made.text = made.inlined = name;
+  made.precedence = kAtomLevel, made.is_parametric = parametric;
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_number(Value& value, std::string_view text) {
+  if (!keep_formulas_) return;
+  Spelling made;
+  made.text = made.inlined = text;
+  made.precedence = kAtomLevel, made.is_literal = true;
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_sign(Value& value, const Value& of) {
+  if (!keep_formulas_ || of.spelling == nullptr) return;
+  Spelling made;
+  made.text = "-" + operand(of.spelling->text, of.spelling->precedence, kSignLevel);
+  made.inlined = "-" + operand(of.spelling->inlined, of.spelling->precedence, kSignLevel);
+  made.precedence = kSignLevel, made.is_literal = of.spelling->is_literal;
+  merge(made, *of.spelling);
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_pair(Value& value, char mark, const Value& a, const Value& b) {
+  const Value operands[] = {a, b};
+  if (!keep_formulas_) return;
+  const bool plain = a.spelling == nullptr || b.spelling == nullptr;
+  const Spelling *left = spelling_of(a), *right = spelling_of(b);
+  if (left == nullptr || right == nullptr) return;
+  if (plain && value.is(Type::Number) && !left->is_parametric && !right->is_parametric) return;
+  const int level = level_of(mark);
+  const std::string_view joint = mark == '+' ? " + " : mark == '-' ? " - " : mark == '*' ? "*" : mark == '/' ? "/" : "^";
+  // A power's base is an atom, its exponent may have a sign.
+  const int left_level = mark == '^' ? kAtomLevel : level, right_level = mark == '^' ? kSignLevel : level + 1;
+  Spelling made;
+  made.text = operand(left->text, left->precedence, left_level) + std::string(joint) +
+              operand(right->text, right->precedence, right_level);
+  made.inlined = operand(left->inlined, left->precedence, left_level) + std::string(joint) +
+                 operand(right->inlined, right->precedence, right_level);
+  made.precedence = level;
+  for (const Spelling* part : {left, right}) merge(made, *part);
+  if (made.inlined.size() > kLongestSpelling || is_ambiguous(made)) {
+    for (const Value& one : operands) freeze(one, value.span);
+    return;
+  }
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_call(Value& value, std::string_view function, Values arguments) {
+  if (!keep_formulas_) return;
+  Spelling made;
+  made.text = made.inlined = function;
+  bool plain = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    plain = plain || arguments[i].spelling == nullptr;
+    const Spelling* part = spelling_of(arguments[i]);
+    if (part == nullptr) return;
+    made.text += (i == 0 ? "(" : ", ") + part->text;
+    made.inlined += (i == 0 ? "(" : ", ") + part->inlined;
+    merge(made, *part);
+  }
+  made.text += ")", made.inlined += ")";
+  made.precedence = kAtomLevel;
+  if (plain && value.is(Type::Number) && !made.is_parametric) return;
+  if (made.inlined.size() > kLongestSpelling || is_ambiguous(made)) {
+    for (const Value& one : arguments) freeze(one, value.span);
+    return;
+  }
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::spell_group(Value& value) {
+  if (value.spelling == nullptr || !is_number(value)) return;
+  Spelling made = *value.spelling;
+  made.text = "(" + made.text + ")", made.inlined = "(" + made.inlined + ")";
+  made.precedence = kAtomLevel, made.is_literal = false;
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+// `let name = value in ...` is a line of its own in a JSON scene's formula.
+void Evaluator::spell_line(Value& value, std::string_view name) {
+  if (value.spelling == nullptr || !is_number(value)) return;
+  Spelling made = *value.spelling;
+  made.lines.push_back(&out_.store.lines.emplace_back(Spelling::Line{name, made.text, out_.store.lines.size()}));
+  made.text = name;
+  if (made.precedence < kAtomLevel) made.inlined = "(" + made.inlined + ")";
+  made.precedence = kAtomLevel;
+  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+// Those of a formula's `let` stay its lines where they are not used, too.
+void Evaluator::keep_lines(Value& value, Values bindings) {
+  if (value.spelling == nullptr || !value.is(Type::Formula)) return;
+  Spelling made = *value.spelling;
+  for (const Value& binding : bindings) {
+    if (binding.spelling) merge(made, *binding.spelling);
+  }
+  if (!is_ambiguous(made)) value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+}
+
+void Evaluator::freeze(const Value& value, Span span) {
+  if (value.spelling && value.spelling->is_parametric) out_.frozen.push_back(span);
+}
+
+}  // namespace fathom::compiler::text

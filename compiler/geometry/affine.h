@@ -1,0 +1,39 @@
+// Affine maps as a Transform node holds them: twelve numbers, the rows of the map from the parent's space to the
+// child's (3x3 part and translation).
+#pragma once
+
+#include <array>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "compiler/geometry/box.h"
+
+namespace fathom::compiler {
+
+struct Affine {
+  std::array<glm::dvec3, 3> rows;
+  glm::dvec3 translation;
+
+  static Affine from_params(std::span<const double> twelve);
+  std::array<double, 12> params() const;
+  glm::dvec3 operator()(glm::dvec3 p) const;
+  bool operator==(const Affine& other) const = default;
+};
+
+inline const Affine kIdentity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
+
+// a after b: p -> a(b(p)).
+Affine compose(const Affine& a, const Affine& b);
+// The linear part must be invertible.
+Affine inverse(const Affine& a);
+// The smallest axis-aligned box around the image of `box`; infinite sides stay infinite only along axes they reach.
+Box image(const Affine& a, const Box& box);
+// Smallest and largest stretch of the linear part (its extreme singular values).
+struct Stretch {
+  double least, most;
+};
+Stretch stretch(const Affine& a);
+// Whether every row has a single non-zero entry: boxes map to boxes.
+bool is_axis_aligned(const Affine& a);
+
+}  // namespace fathom::compiler

@@ -1,0 +1,219 @@
+// The scene's DAG: hash-consed nodes, each a kind, its parameters and its children.
+//
+// add() is the only way to make a node and returns the existing one when an equal one is there, so equal subtrees are
+// one node whatever names the scene gave them. Children are always made before their parents: a loop over ids in
+// ascending order sees every child first, and no pass needs recursion.
+//
+// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three); what
+// the compiler derives for the row follows them.
+// Tested by: tests/compiler/graph/graph_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/source/source.h"
+
+namespace fathom::compiler {
+
+enum class Kind : std::uint8_t {
+  // solids
+  Sphere,
+  Ellipsoid,
+  Box,
+  RoundBox,
+  BoxFrame,
+  Torus,
+  CappedTorus,
+  Link,
+  Plane,
+  Cylinder,
+  RoundedCylinder,
+  InfiniteCylinder,
+  Capsule,
+  Cone,
+  RoundCone,
+  InfiniteCone,
+  SolidAngle,
+  CutSphere,
+  CutHollowSphere,
+  DeathStar,
+  Vesica,
+  Rhombus,
+  HexagonalPrism,
+  TriangularPrism,
+  Tetrahedron,
+  Octahedron,
+  Dodecahedron,
+  Icosahedron,
+  Pyramid,
+  Triangle,
+  Quad,
+  Gyroid,
+  SchwarzP,
+  SchwarzD,
+  MengerSponge,
+  Mandelbulb,
+  Julia,
+  // outlines: shapes in the xy plane, for extrude and revolve
+  Circle,
+  Rectangle,
+  RoundedRectangle,
+  Segment,
+  Polygon,
+  RegularPolygon,
+  Star,
+  Trapezoid,
+  Parallelogram,
+  RhombusOutline,
+  IsoscelesTriangle,
+  UnevenCapsule,
+  Arc,
+  Ring,
+  Pie,
+  CutDisk,
+  Horseshoe,
+  VesicaOutline,
+  Moon,
+  Egg,
+  Heart,
+  Cross,
+  RoundedX,
+  Ellipse,
+  // alterations of one child
+  Round,
+  Onion,
+  Complement,
+  Elongate,
+  Extrude,
+  Revolve,
+  Mirror,
+  Repetition,
+  PolarRepetition,
+  Shear,
+  Twist,
+  Bend,
+  Taper,
+  Displacement,
+  Expression,
+  // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
+  // distance is multiplied by. Written in files as the properties scale, rotate and translate.
+  Transform,
+  // Displaced: a distance plus a formula. An Add whose operands keep their order, for the surface is the first's.
+  Displaced,
+  // Bounded: a formula as a distance, within a box (shapes/functions.cpp); what Displacement and Expression become.
+  Bounded,
+  // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes
+  // faster.
+  Scaled,
+  // combinators; n children, all but the hard ones fold from the left
+  Union,
+  Intersection,
+  Subtraction,
+  Xor,
+  SmoothUnion,
+  SmoothIntersection,
+  SmoothSubtraction,
+  ChamferUnion,
+  ChamferIntersection,
+  ChamferSubtraction,
+  RoundUnion,
+  RoundIntersection,
+  RoundSubtraction,
+  StairsUnion,
+  StairsIntersection,
+  StairsSubtraction,
+  Morph,
+  // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless painted further in.
+  Paint,
+  // functions of numbers, for formulas
+  X,
+  Y,
+  Z,
+  Constant,
+  Negate,
+  Abs,
+  Square,
+  Sqrt,
+  Sin,
+  Cos,
+  Tan,
+  Asin,
+  Acos,
+  Atan,
+  Exp,
+  Log,
+  Floor,
+  Ceil,
+  Nearest,
+  Sign,
+  Not,
+  Add,
+  Minus,
+  Multiply,
+  Divide,
+  Modulo,
+  ModuloEuclid,
+  Minimum,
+  Maximum,
+  Atan2,
+  Power,
+  Compare,
+  And,
+  Or,
+  Step,
+  Noise,
+};
+
+inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;
+
+// A blend narrower than this changes no float and counts as none.
+inline constexpr double kLeastBlend = 1e-30;
+
+using NodeId = std::uint32_t;
+
+// Where a node was first written, and the name the scene gave it ("" when none).
+struct Origin {
+  Span span;
+  std::string name;
+};
+
+class Graph {
+ public:
+  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const Origin& origin = {});
+
+  std::size_t size() const { return nodes_.size(); }
+  Kind kind(NodeId id) const { return nodes_[id].kind; }
+  std::span<const double> params(NodeId id) const;    // valid until the next add()
+  std::span<const NodeId> children(NodeId id) const;  // valid until the next add()
+  const Origin& origin(NodeId id) const { return nodes_[id].origin; }
+
+ private:
+  struct Node {
+    Kind kind;
+    std::uint32_t first_param, param_count, first_child, child_count;
+    std::uint64_t hash;
+    Origin origin;
+  };
+  bool equal(NodeId id, Kind kind, std::span<const double> params, std::span<const NodeId> children) const;
+  void grow_table();
+
+  std::vector<Node> nodes_;
+  std::vector<double> params_;
+  std::vector<NodeId> children_;
+  // By hash, twice as many places as nodes or more: a node is at the first free place from that of its hash.
+  std::vector<NodeId> table_;
+  std::vector<double> new_params_;  // of the node that add() is asked for
+  std::vector<NodeId> new_children_;
+};
+
+// A graph and the node that stands for the whole scene.
+struct Scene {
+  Graph graph;
+  NodeId root = 0;
+};
+
+}  // namespace fathom::compiler

@@ -1,0 +1,43 @@
+// The frame of every pass: rebuilds what the root reaches, children before parents, each node through one function.
+#pragma once
+
+#include <vector>
+
+#include "compiler/graph/graph.h"
+
+namespace fathom::compiler {
+
+// Which nodes the root reaches. [node]
+inline std::vector<bool> reachable(const Scene& scene) {
+  std::vector<bool> reached(scene.graph.size(), false);
+  reached[scene.root] = true;
+  for (NodeId id = scene.root + 1; id-- > 0;) {  // parents come after their children
+    if (!reached[id]) continue;
+    for (NodeId child : scene.graph.children(id)) reached[child] = true;
+  }
+  return reached;
+}
+
+// make(out, id, children) returns the node of `out` that takes the place of node `id` of `in`; `children` are those
+// of `id` as already rebuilt.
+template <class Make>
+Scene rewrite(const Scene& in, const Make& make) {
+  Scene out;
+  const std::vector<bool> reached = reachable(in);
+  std::vector<NodeId> rebuilt(in.graph.size(), 0), children;
+  for (NodeId id = 0; id <= in.root; ++id) {
+    if (!reached[id]) continue;
+    children.clear();
+    for (NodeId child : in.graph.children(id)) children.push_back(rebuilt[child]);
+    rebuilt[id] = make(out.graph, id, children);
+  }
+  out.root = rebuilt[in.root];
+  return out;
+}
+
+// The node as it was, with its rebuilt children.
+inline NodeId keep(const Scene& in, Graph& out, NodeId id, const std::vector<NodeId>& children) {
+  return out.add(in.graph.kind(id), in.graph.params(id), children, in.graph.origin(id));
+}
+
+}  // namespace fathom::compiler

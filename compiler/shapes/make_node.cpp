@@ -1,0 +1,31 @@
+#include "compiler/shapes/make_node.h"
+
+namespace fathom::compiler {
+
+NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin) {
+  const NodeSpec& row = spec(kind);
+  // What `build` of a row with code makes over other children has its derived numbers.
+  const bool is_built = row.code && params.size() > row.params.size();
+  if (row.build && !is_built) return row.build(*this, params, children, origin);
+  if (row.expand) return row.expand(graph_, params, origin);
+  if (!row.derive) return graph_.add(kind, params, children, origin);
+  return graph_.add(kind, row.with_derived(params, known_of(children)), children, origin);
+}
+
+Complaint NodeMaker::complaint(Kind kind, Params params, std::span<const NodeId> children) {
+  const NodeSpec& row = spec(kind);
+  return row.check_children ? row.check_children(params, known_of(children)) : std::nullopt;
+}
+
+const Knowledge& NodeMaker::known(NodeId id) {
+  while (known_.size() <= id) known_.push_back(know(graph_, static_cast<NodeId>(known_.size()), known_));
+  return known_[id];
+}
+
+std::vector<Knowledge> NodeMaker::known_of(std::span<const NodeId> children) {
+  std::vector<Knowledge> result;
+  for (const NodeId child : children) result.push_back(known(child));
+  return result;
+}
+
+}  // namespace fathom::compiler

@@ -1,0 +1,99 @@
+// What the user did wrong, and where: errors and warnings with a place in the source, collected over a whole file.
+//
+//     error[E0102]: unknown property `fvo` in `camera`
+//       --> toy.json:2:42
+//        |
+//      2 |   "camera": {"position": [0, 1.5,-4e0 ], "fvo": 45},
+//        |                                          ^^^^^ not a camera property
+//        = help: did you mean `fov`? known: aperture, fov, position, target, up
+//
+// Tested by: tests/golden (diagnostics)
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compiler/source/source.h"
+
+namespace fathom::compiler {
+
+enum class Severity { Error, Warning };
+
+struct Diagnostic {
+  Severity severity;
+  std::string code;     // e.g. E0102; each code has one meaning
+  std::string message;  // one line, no full stop
+  Span span;
+  std::string label;              // beside the carets; may be empty
+  std::vector<std::string> help;  // each a line after "= help:"
+  std::size_t again = 0;          // how often more it was met in calls and loops
+};
+
+// A call of a function, or a round of a loop, that led to a place.
+struct Trace {
+  std::uint32_t outside;  // the trace of the call itself; 0: none
+  Span at;                // the call or loop
+  Span name;              // the function's, or the loop's variable
+  bool loop;
+  double value;  // of the loop's variable; not a number when it is none
+};
+
+// Notation of the source; remedies are worded for it.
+enum class Notation { Json, Text };
+
+enum class ErrorFormat { Text, Short, Json };
+
+class Diagnostics {
+ public:
+  void error(std::string code, Span span, std::string message, std::string label = "",
+             std::vector<std::string> help = {});
+  void warning(std::string code, Span span, std::string message, std::string label = "",
+               std::vector<std::string> help = {});
+
+  void set_notation(Notation notation) { notation_ = notation; }
+  // The remedy in the source's notation.
+  std::string spelled(std::string json, std::string text) const {
+    return notation_ == Notation::Json ? std::move(json) : std::move(text);
+  }
+
+  // Adds the errors of a text that stands at `base` among the source's, without their calls.
+  void append(const Diagnostics& of_text, std::uint32_t base);
+
+  // The number by which spans name it.
+  std::uint32_t add_trace(const Trace& trace) {
+    traces_.push_back(trace);
+    return static_cast<std::uint32_t>(traces_.size());
+  }
+
+  bool has_errors() const { return errors_ > 0; }
+  std::size_t errors() const { return errors_; }
+  std::size_t warnings() const { return warnings_; }
+  // Whether there are so many errors that looking for more is of no use: a file can have millions.
+  bool full() const { return errors_ >= kMostKept; }
+  // The first kMostKept errors, and as many warnings.
+  const std::vector<Diagnostic>& all() const { return all_; }
+
+  // Every diagnostic in source order (the first 20 errors, then how many more there are).
+  std::string print(const Source& source, ErrorFormat format, bool color = false) const;
+
+ private:
+  void add(Diagnostic d);
+  bool count_known(const std::string& code, Span span);
+  std::vector<std::string> calls(const Diagnostic& d, const Source& source) const;
+
+  static constexpr std::size_t kMostKept = 100;
+
+  std::vector<Diagnostic> all_;
+  std::vector<Trace> traces_;
+  Notation notation_ = Notation::Json;
+  std::size_t errors_ = 0, warnings_ = 0;
+  std::size_t repeated_ = 0;  // errors that were met before at their place
+};
+
+// The candidate nearest to `word` by edit distance, or empty when none is near enough to be a typing error.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace fathom::compiler

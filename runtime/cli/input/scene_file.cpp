@@ -1,0 +1,208 @@
+#include "runtime/cli/input/scene_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <ostream>
+#include <span>
+
+#include "compiler/artefact/programs.h"
+#include "runtime/cli/input/import_files.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/text_file.h"
+#include "runtime/cli/input/verbosity.h"
+#include "vm/encoding/printable.h"
+
+namespace fathom::cli {
+namespace {
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// Whatever it is, with its name for messages.
+std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
+  const std::string& path = arguments.path;
+  auto text = read_text(path, arguments.limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
+    const Help help = unreadable->help.empty() ? Help{} : Help{unreadable->help};
+    return fail_about(arguments, unreadable->code,
+                      fmt::format("cannot read {}: {}", cli::quoted(path), unreadable->reason), help, streams);
+  }
+  return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
+}
+
+// Of which the folder counts: of standard input the one we are in.
+std::string folder_name(const std::string& path) { return path == "-" ? "" : path; }
+
+// Of a name the last counts.
+compiler::Definitions both(compiler::Definitions first, const compiler::Definitions& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+// Whether more is asked for than what is compiled in the end. (on_pass alone is for who likes to watch.)
+bool asks_for_graph(const compiler::CompileOptions& options) {
+  return options.stop_after || options.on_syntax || options.lint;
+}
+
+// Stored programs as they are to be run, unless they are too much.
+std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::CompiledScene stored,
+                                                              const SceneArguments& arguments,
+                                                              const Streams& streams) {
+  if (const auto excess = compiler::excess_of(stored, arguments.limits)) {
+    return fail_whole(arguments.path, excess->what, excess->remedy, arguments.error_format, streams);
+  }
+  return compiler::unproved(std::move(stored));
+}
+
+constexpr const char* kKeepText = "`fathom compile` without --no-text keeps the text";
+
+ExitCode fail_without_text(const SceneArguments& arguments, const Streams& streams) {
+  return fail(streams, kUsage,
+              fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
+                          cli::quoted(arguments.path)),
+              {kKeepText});
+}
+
+// Of a file without the scene's text.
+std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
+                                                            const SceneArguments& arguments, const Streams& streams,
+                                                            const compiler::CompileOptions& options) {
+  if (!arguments.definitions.empty()) return fail_without_text(arguments, streams);
+  if (asks_for_graph(options)) {
+    return fail(
+        streams, kUsage,
+        fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
+        {kKeepText});
+  }
+  note(streams,
+       fmt::format("{} holds programs without their scene: nothing is proved of them", cli::quoted(arguments.path)));
+  return within_limits(std::move(stored.scene), arguments, streams);
+}
+
+// The source as messages are to name it: the text in a compiled file by both their names.
+compiler::Source named(const compiler::Source& source, const std::string& path) {
+  const std::string name = source_name(path);
+  if (path.empty() || source.name() == name) return source;
+  return source.renamed(fmt::format("{} ({})", name, source.name()));
+}
+
+void print(const compiler::Diagnostics& diagnostics, const compiler::Source& source, const SceneArguments& arguments,
+           const Streams& streams) {
+  const auto format = static_cast<compiler::ErrorFormat>(arguments.error_format);
+  streams.err << diagnostics.print(source, format, streams.color);
+  const std::size_t errors = diagnostics.errors(), warnings = diagnostics.warnings();
+  if (format != compiler::ErrorFormat::Text || (errors == 0 && !arguments.count_warnings)) return;
+  std::vector<std::string> counts;
+  if (errors > 0) counts.push_back(count_of(errors, "error"));
+  if (warnings > 0) counts.push_back(count_of(warnings, "warning"));
+  streams.err << vm::printable(source.name()) << ": " << fmt::format("{}", fmt::join(counts, ", ")) << '\n';
+}
+
+// Whether anything is wrong with the command line's values for parameters (E05xx).
+bool about_definitions(const compiler::Diagnostics& diagnostics) {
+  const auto& all = diagnostics.all();
+  return std::any_of(all.begin(), all.end(), [](const auto& d) { return d.code.starts_with("E05"); });
+}
+
+}  // namespace
+
+std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams) {
+  auto read = read_any(arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  auto& source = std::get<compiler::Source>(read);
+  if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
+  auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path));
+  if (const auto* error = std::get_if<compiler::FileError>(&stored)) {
+    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams);
+  }
+  auto& scene = std::get<compiler::StoredScene>(stored);
+  return SceneInput{scene.scene.source, std::move(scene)};
+}
+
+std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams) {
+  auto read = read_any(arguments, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  auto& source = std::get<compiler::Source>(read);
+  if (!compiler::is_compiled_file(source.text())) return SceneText{std::move(source)};
+  auto text = compiler::read_stored_text(bytes_of(source.text()), folder_name(arguments.path));
+  if (const auto* error = std::get_if<compiler::FileError>(&text)) {
+    const ExitCode code = error->textless ? kUsage : kBadScene;
+    return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams, code);
+  }
+  auto& stored = std::get<compiler::StoredText>(text);
+  arguments.definitions = both(stored.definitions, arguments.definitions);
+  return SceneText{std::move(stored.source), true};
+}
+
+std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
+                                                              const Streams& streams,
+                                                              compiler::CompileOptions options) {
+  if (input.stored && !input.stored->contents.text) {
+    return take_stored(*std::move(input.stored), arguments, streams, options);
+  }
+  compiler::Diagnostics diagnostics;
+  options.definitions =
+      input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
+  options.limits = arguments.limits;
+  options.limits.memory = allowed_memory(arguments.limits);
+  // A file of compiled programs is what it is.
+  if (input.stored) options.stage = false;
+  Verbosity verbosity(streams.verbosity, streams);
+  if (const auto watch = verbosity.watch_compiler().on_pass) {
+    options.on_pass = [watch, own = options.on_pass](std::string_view pass, const compiler::Scene& graph) {
+      if (own) own(pass, graph);
+      watch(pass, graph);
+    };
+  }
+  if (!input.stored) options.imports = import_reader(arguments, streams);
+  options.on_source = [&](const compiler::Source& whole) {
+    if (!whole.imports().empty()) input.source = whole;
+  };
+  auto scene = compiler::compile(input.source, diagnostics, options);
+  if (scene && arguments.inspect) arguments.inspect(*scene, diagnostics);
+  if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);
+  if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
+  verbosity.describe(*scene);
+  const bool comparable = input.stored && arguments.definitions.empty() && !options.stop_after;
+  if (comparable && compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
+    if (asks_for_graph(options)) {
+      note(streams, fmt::format("{}: this program makes other programs of the scene in it than those in the file, of "
+                                "which nothing is said here. `fathom compile` makes it anew",
+                                cli::quoted(arguments.path)));
+      return std::move(*scene);
+    }
+    note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
+                              "and nothing is proved of them. `fathom compile` makes it anew",
+                              cli::quoted(arguments.path)));
+    return within_limits(std::move(input.stored->scene), arguments, streams);
+  }
+  return std::move(*scene);
+}
+
+std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
+                                                           const Streams& streams) {
+  if (input.stored && !input.stored->contents.text) return fail_without_text(arguments, streams);
+  compiler::Diagnostics diagnostics;
+  const compiler::Definitions definitions =
+      input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
+  const auto animation = compiler::read_animation(input.source, diagnostics, arguments.limits, definitions,
+                                                  import_reader(arguments, streams));
+  if (animation) return *animation;  // warnings are for who compiles it
+  print(diagnostics, named(input.source, arguments.path), arguments, streams);
+  return about_definitions(diagnostics) ? kUsage : kBadScene;
+}
+
+compiler::CompiledScene proved_or_claimed(const SceneInput& input) {
+  const compiler::StoredScene& stored = *input.stored;
+  compiler::Diagnostics ignored;
+  compiler::CompileOptions options;
+  options.definitions = stored.contents.definitions;
+  const auto compiled = stored.contents.text ? compiler::compile(input.source, ignored, options) : std::nullopt;
+  if (compiled && compiler::scene_digest(*compiled) == compiler::scene_digest(stored.scene)) return stored.scene;
+  return compiler::unproved(stored.scene);
+}
+
+}  // namespace fathom::cli

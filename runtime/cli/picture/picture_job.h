@@ -1,0 +1,72 @@
+// A render from its compiled scene to its files: what it goes on from, what is shown and kept meanwhile, and what is
+// written at its end.
+// Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/picture/cli_checkpoint_test.cpp
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/file_watch.h"
+#include "runtime/cli/picture/checkpoint.h"
+#include "runtime/cli/picture/interruption.h"
+#include "runtime/cli/picture/picture.h"
+#include "runtime/cli/picture/picture_files.h"
+#include "runtime/cli/picture/progress.h"
+#include "runtime/cli/request/render_request.h"
+#include "runtime/render.h"
+
+namespace fathom::cli {
+
+// For --watch: the scene's file and what it imports, and whether the render under way is no longer of it.
+struct Watching {
+  runtime::FileWatch files;
+  std::atomic<bool> changed = false;
+};
+
+PictureFiles pictures_of(const RenderRequest& request);
+
+// None with --watch, which begins again with every change, so there is nothing to keep.
+std::optional<Checkpoint> checkpoint_of(const RenderRequest& request);
+
+class PictureJob {
+ public:
+  PictureJob(Picture& picture, const Streams& streams, Watching* watching, std::optional<Interruption>& interruption);
+
+  const runtime::FilmHeader& header() const { return header_; }  // of its film files
+
+  // Once.
+  ExitCode run();
+  // Whether all samples are taken and everything is written; what was counted.
+  bool complete() const { return complete_; }
+  const runtime::Stats& stats() const { return stats_; }
+
+ private:
+  std::optional<ExitCode> begin();
+  runtime::RenderResult render();
+  void write_so_far(const runtime::RenderOptions::Look& look);
+  ExitCode end(runtime::RenderResult& result);
+  ExitCode end_undone(const runtime::RenderResult& result);
+  ExitCode fail_to_keep();
+  ExitCode fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept);
+  std::string earlier_state() const;
+  void warn_of_invalid(const runtime::Stats& stats);
+  void warn_of_picture(const runtime::RenderResult& result);
+  void warn_of_lost(const runtime::Stats& stats);
+  std::optional<std::string> write_all(runtime::RenderResult& result, bool pictures);
+  void print_closing(const runtime::RenderResult& result, const std::vector<std::string>& lines);
+
+  RenderRequest& request_;
+  const compiler::CompiledScene& scene_;
+  const Streams& streams_;
+  Watching* watching_;
+  std::optional<Interruption>& interruption_;
+  const runtime::FilmHeader header_;
+  std::optional<Checkpoint> checkpoint_;
+  ProgressLine line_;
+  bool complete_ = false;
+  runtime::Stats stats_;
+};
+
+}  // namespace fathom::cli

@@ -1,0 +1,130 @@
+#include "runtime/cli/picture/render_identity.h"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include "runtime/cli/options/version.h"
+#include "runtime/cli/picture/picture_attributes.h"
+#include "runtime/cli/picture/scene_hash.h"
+#include "vm/encoding/bytes.h"
+#include "vm/encoding/digest.h"
+
+namespace fathom::cli {
+namespace {
+
+std::string number(double value) { return fmt::format("{}", value); }
+
+template <typename T>
+std::string maybe(const std::optional<T>& value, const char* otherwise) {
+  return value ? fmt::format("{}", *value) : otherwise;
+}
+
+// What the camera sees may come from the command line.
+std::string view_of(const compiler::Camera& camera) {
+  if (camera.projection != compiler::Camera::Projection::Perspective) return "the scene's";
+  if (camera.vertical_fov || camera.focal_length) return "the scene's";
+  return number(camera.fov) + " rad";
+}
+
+// Where the camera is may come from the command line, too, or from the size of the picture.
+std::string place_of(const compiler::CompiledScene& scene) {
+  const glm::dvec3 from = scene.camera.position + scene.origin, to = scene.camera.target + scene.origin;
+  return fmt::format("{},{},{} to {},{},{}", from.x, from.y, from.z, to.x, to.y, to.z);
+}
+
+std::string environment_of(const runtime::RenderOptions& options) {
+  if (!options.environment) return "none";
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  const auto pixels = std::as_bytes(std::span(options.environment->pixels));
+  const vm::Digest digest = vm::digest({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()});
+  return fmt::format("{}x{} {}", options.environment->width, options.environment->height, digest.text());
+}
+
+std::string marching_of(const runtime::Marching& marching) {
+  const runtime::MethodInfo& method = runtime::info(marching.method);
+  std::string text(method.name);
+  text += marching.precision == runtime::Precision::Double ? " f64" : " f32";
+  if (method.uses_epsilon) text += fmt::format(" epsilon {} steps {}", marching.epsilon, marching.steps);
+  if (marching.method == runtime::Method::Relaxed) text += fmt::format(" relaxation {}", marching.relaxation);
+  return text;
+}
+
+// A digest of the scenes and of the camera's place in each, which may come from the command line.
+std::string moments_of(const std::vector<runtime::Moment>& moments) {
+  vm::ByteWriter bytes;
+  for (const runtime::Moment& moment : moments) {
+    for (const std::string& text :
+         {scene_hash(*moment.scene), place_of(*moment.scene), view_of(moment.scene->camera)})
+      bytes.text(text);
+    bytes.u32(moment.samples.last);
+  }
+  return vm::digest(bytes.bytes()).text();
+}
+
+std::string layers_of(const runtime::Settings& settings) {
+  const runtime::FilmLayers& kept = settings.layers;
+  std::string text = "radiance";
+  const auto add = [&](bool wanted, const char* name) {
+    if (wanted) text += fmt::format(" {}", name);
+  };
+  add(kept.first_hit, "albedo depth normal");
+  add(kept.position, "position");
+  add(kept.ids, "ids");
+  add(kept.variance, "variance");
+  add(kept.halves, "halves");
+  add(kept.cost, "cost");
+  // Regions change what rays cost, and nothing else: large scenes round distances alike without them.
+  if (kept.cost) text += settings.regions ? fmt::format(" (regions of {} MB)", settings.region_memory >> 20) : "";
+  return text;
+}
+
+}  // namespace
+
+runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                  const runtime::RenderOptions& options) {
+  const auto name = [](const auto& names, auto value) { return std::string(names[static_cast<std::size_t>(value)]); };
+  runtime::Identity identity = {
+      {"fathom", std::string(kVersion)},
+      {"renderer", std::to_string(kRendererBits)},
+      {"scene", scene_hash(scene)},
+      {"program", program_hash(scene)},
+      {"size", fmt::format("{}x{}", settings.width, settings.height)},
+      {"camera", place_of(scene)},
+      {"field of view", view_of(scene.camera)},
+      {"background picture", environment_of(options)},
+      {"spp", std::to_string(settings.spp)},
+      {"bounces", std::to_string(settings.bounces)},
+      {"seed", std::to_string(settings.seed)},
+      {"sampler", name(compiler::kSamplerNames, settings.sampler)},
+      {"filter", name(compiler::kFilterNames, settings.filter)},
+      {"filter width", maybe(settings.filter_width, "the filter's own")},
+      {"adaptive", settings.adaptive ? "yes" : "no"},
+      {"noise", maybe(settings.noise, "any")},
+      {"min spp", settings.noise ? std::to_string(settings.min_spp) : "none"},
+      {"far", maybe(settings.far, "the scene's size")},
+      {"cut after", maybe(settings.cut_after, "never")},
+      {"light sampling", name(runtime::kLightSamplingNames, settings.light_sampling)},
+      {"clamp", maybe(settings.clamp, "none")},
+      {"marching", marching_of(settings.marching)},
+      {"layers", layers_of(settings)},
+  };
+  // A render without them is what it was before there were any.
+  if (!options.moments.empty()) {
+    identity.emplace_back("shutter times", std::to_string(options.moments.size()));
+    identity.emplace_back("moments", moments_of(options.moments));
+  }
+  return identity;
+}
+
+runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
+                                const runtime::RenderOptions& options) {
+  return {render_identity(scene, settings, options),
+          picture_attributes(scene, settings),
+          settings.width,
+          settings.height,
+          settings.samples,
+          scene.origin};
+}
+
+}  // namespace fathom::cli

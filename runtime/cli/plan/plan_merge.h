@@ -1,0 +1,33 @@
+// `fathom merge --plan`: the units of a plan become its frames, one after the other.
+// Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/source/limits.h"
+#include "runtime/cli/options/frame_options.h"
+#include "runtime/cli/picture/picture_files.h"
+
+namespace fathom::cli {
+
+struct MergeRequest {
+  std::vector<std::string> inputs;
+  std::optional<std::string> plan;  // in place of inputs
+  FrameOptions frames;              // of the plan: those to merge, all unless given
+  PictureFiles pictures;
+  std::optional<double> exposure;
+  int tone = -1;  // a compiler::ToneCurve; -1: not given
+  int bits = 0;   // an index into 8, 16
+  bool denoise = false, quiet = false;
+  int format = -1;  // of -o -, see put_formats()
+  compiler::Limits limits;
+};
+
+// What the request says of the pictures' brightness, over what the films say.
+void put_tone(const MergeRequest& request, runtime::Attributes& attributes);
+
+ExitCode merge_plan(const MergeRequest& request, const Streams& streams);
+
+}  // namespace fathom::cli

@@ -1,0 +1,111 @@
+#include "runtime/cli/plan/plan_status.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/options/long_render.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr std::size_t kMostFaults = 10;
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+// Why the unit's film is not whole; nothing when it is, "" when there is none.
+std::optional<std::string> fault_in(const std::string& file, const PlanGrid& grid, const PlanUnit& unit, bool sums,
+                                    const runtime::ReadLimits& limits) {
+  if (!exists(file)) return "";
+  const auto read = sums ? runtime::read_film(file, limits) : runtime::read_film_header(file, limits);
+  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return unread->problem;
+  return fault_of(std::get<runtime::FilmFile>(read), grid, unit);
+}
+
+void add(std::vector<UnitRange>& ranges, std::uint64_t number) {
+  if (!ranges.empty() && ranges.back().last > number) return;
+  if (!ranges.empty() && ranges.back().last == number) {
+    ++ranges.back().last;
+  } else {
+    ranges.push_back({number, number + 1});
+  }
+}
+
+void print_json(const PlanStatus& status, const PlanGrid& grid, const Streams& streams) {
+  nlohmann::ordered_json json = {{"units", status.units}, {"done", status.done},     {"missing", status.missing()},
+                                 {"begun", status.begun}, {"broken", status.broken}, {"left", text_of(status.left)}};
+  if (grid.frames) json["frames"] = fmt::format("{}:{}:{}", grid.frames->first, grid.frames->last, grid.frames->step);
+  json["faults"] = nlohmann::ordered_json::array();
+  for (const auto& [unit, reason] : status.faults) json["faults"].push_back({{"unit", unit}, {"reason", reason}});
+  print(streams, json.dump(1) + "\n");
+}
+
+}  // namespace
+
+std::variant<PlanStatus, ExitCode> status_of(const RenderPlan& plan, const std::string& folder, UnitRange range,
+                                             std::uint64_t per_task, bool sums, const compiler::Limits& limits,
+                                             const Streams& streams) {
+  const auto found = find_folder(folder, plan, streams);
+  if (const auto* code = std::get_if<ExitCode>(&found)) return *code;
+  PlanStatus status;
+  status.units = range.last - range.first;
+  for (std::uint64_t number = range.first; number < range.last; ++number) {
+    const std::string file = unit_file(folder, number);
+    const auto fault = fault_in(file, plan.grid, unit_of(plan.grid, number), sums, read_limits(limits));
+    if (!fault) {
+      ++status.done;
+      continue;
+    }
+    add(status.left, number / per_task);
+    if (!fault->empty()) {
+      ++status.broken;
+      if (status.faults.size() < kMostFaults) status.faults.emplace_back(number, *fault);
+    } else {
+      status.begun += exists(file + kCheckpointEnding);
+    }
+  }
+  return status;
+}
+
+std::string text_of(const std::vector<UnitRange>& ranges) {
+  std::string text;
+  for (const UnitRange& range : ranges) {
+    if (!text.empty()) text += ',';
+    text += text_of(range);
+  }
+  return text;
+}
+
+int print_status(const StatusRequest& request, const compiler::Limits& limits, const Streams& streams) {
+  const auto read = read_plan(request.plan, limits, streams);
+  if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
+  const auto& plan = std::get<RenderPlan>(read);
+  const auto looked = status_of(plan, units_folder(request.plan), {0, plan.grid.units()}, request.per_task,
+                                request.sums, limits, streams);
+  if (const auto* code = std::get_if<ExitCode>(&looked)) return *code;
+  const auto& status = std::get<PlanStatus>(looked);
+  const bool complete = status.done == status.units;
+  if (request.json) {
+    print_json(status, plan.grid, streams);
+    return complete ? kDone : kFoundProblems;
+  }
+  print(streams, fmt::format("{} of {}: {} done, {} missing, {} begun, {} broken\n", count_of(status.units, "unit"),
+                             request.plan, status.done, status.missing(), status.begun, status.broken));
+  for (const auto& [unit, reason] : status.faults) print(streams, fmt::format("unit {}: {}\n", unit, reason));
+  if (status.broken > status.faults.size())
+    print(streams, fmt::format("and {} more\n", status.broken - status.faults.size()));
+  if (!complete) {
+    print(streams,
+          fmt::format("{} to be rendered: {}\n", request.per_task > 1 ? "tasks" : "units", text_of(status.left)));
+  }
+  return complete ? kDone : kFoundProblems;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,191 @@
+#include "runtime/cli/plan/render_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "compiler/artefact/compiled_file.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/plan/base64.h"
+#include "vm/encoding/digest.h"
+
+namespace fathom::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPlanFormat = 1;
+constexpr std::string_view kPlanEnding = ".json";
+constexpr std::uint64_t kUnitsPerFolder = 1000;
+constexpr const char* kClaimName = "plan";  // the file in the folder of units that has the plan's digest
+
+Json to_json(const compiler::Source& source) {
+  Json imports = Json::array();
+  for (const compiler::Import& import : compiler::files_of(source)) {
+    imports.push_back({{"path", import.path}, {"text", import.file->text()}});
+  }
+  return {{"name", source.name()}, {"text", source.text()}, {"imports", std::move(imports)}};
+}
+
+Json to_json(const RenderPlan& plan) {
+  const PlanGrid& grid = plan.grid;
+  Json json = {{"fathom plan", kPlanFormat}, {"units", grid.units()}};
+  if (grid.frames) json["frames"] = {grid.frames->first, grid.frames->last, grid.frames->step};
+  json["size"] = {grid.width, grid.height};
+  json["tiles"] = {grid.columns, grid.rows};
+  json["samples"] = grid.spp;
+  json["sample block"] = grid.block;
+  json["arguments"] = plan.arguments;
+  Json identity = Json::object();
+  for (const auto& [name, value] : plan.identity) identity[name] = value;
+  json["render"] = std::move(identity);
+  json["scene"] = to_json(plan.source);
+  if (!plan.background_name.empty()) {
+    json["background"] = {{"name", plan.background_name}, {"base64", to_base64(plan.background)}};
+  }
+  return json;
+}
+
+std::string digest_of(const Json& json) {
+  const std::string text = json.dump();
+  return vm::digest({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}).text();
+}
+
+// Throws what nlohmann's library throws of a value that is not there or of another kind.
+RenderPlan from_json(const Json& json) {
+  RenderPlan plan;
+  PlanGrid& grid = plan.grid;
+  if (json.contains("frames")) {
+    grid.frames = {json["frames"].at(0), json["frames"].at(1), json["frames"].at(2)};
+  }
+  grid.width = json.at("size").at(0), grid.height = json.at("size").at(1);
+  grid.columns = json.at("tiles").at(0), grid.rows = json.at("tiles").at(1);
+  grid.spp = json.at("samples"), grid.block = json.at("sample block");
+  plan.arguments = json.at("arguments").get<std::vector<std::string>>();
+  for (const auto& [name, value] : json.at("render").items()) plan.identity.emplace_back(name, value);
+  const Json& scene = json.at("scene");
+  plan.source = compiler::Source(scene.at("name"), scene.at("text"));
+  for (const Json& import : scene.at("imports")) {
+    if (!compiler::add_import(plan.source, import.at("path"), import.at("text"))) {
+      throw Json::other_error::create(501, "an import that cannot be", nullptr);
+    }
+  }
+  if (json.contains("background")) {
+    plan.background_name = json["background"].at("name");
+    plan.background = from_base64(json["background"].at("base64").get<std::string>()).value_or("");
+  }
+  return plan;
+}
+
+bool is_possible(const PlanGrid& grid) {
+  const auto within = [](int value, int most) { return value >= 1 && value <= most; };
+  if (grid.frames && !(grid.frames->step >= 1 && grid.frames->first >= 0 && grid.frames->first < grid.frames->last)) {
+    return false;
+  }
+  if (too_many_units(grid)) return false;
+  return within(grid.width, compiler::kMaxSide) && within(grid.height, compiler::kMaxSide) &&
+         within(grid.columns, grid.width) && within(grid.rows, grid.height) && grid.block >= 1 &&
+         grid.spp >= grid.block && grid.spp <= static_cast<std::uint32_t>(compiler::kMaxSpp);
+}
+
+ExitCode refuse_folder(const std::string& folder, const std::string& held, const RenderPlan& plan,
+                       const Streams& streams) {
+  return fail(
+      streams, kBadScene,
+      fmt::format("`{}` has units of another plan: its digest is {} there and {} here", folder, held, plan.digest),
+      {fmt::format("remove `{}`, or give one of the plans another name", folder)});
+}
+
+}  // namespace
+
+std::variant<std::string, Unreadable> write_plan(RenderPlan& plan) {
+  try {
+    Json json = to_json(plan);
+    plan.digest = digest_of(json);
+    json["digest"] = plan.digest;
+    return json.dump(1) + "\n";
+  } catch (const Json::exception&) {
+    return Unreadable{"the scene's text is no UTF-8, which a plan must be", "save it as UTF-8", kBadScene};
+  }
+}
+
+std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const compiler::Limits& limits,
+                                             const Streams& streams) {
+  const auto text = read_text(path, limits, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
+  const auto refuse = [&](std::string_view why) {
+    return fail(streams, kBadScene, fmt::format("{} is no plan that can be used: {}", quoted(path), why),
+                {"`fathom plan scene -o plan.json` makes one"});
+  };
+  Json json = Json::parse(std::get<std::string>(text), nullptr, false);
+  if (!json.is_object() || !json.contains("fathom plan")) return refuse("it does not begin as one");
+  try {
+    if (const int format = json["fathom plan"]; format != kPlanFormat) {
+      return refuse(fmt::format("it is of format {}, and this program reads {}", format, kPlanFormat));
+    }
+    const std::string digest = json.at("digest");
+    json.erase("digest");
+    if (digest != digest_of(json)) return refuse("it was changed since it was made: its digest does not fit");
+    RenderPlan plan = from_json(json);
+    if (!is_possible(plan.grid)) return refuse("its numbers do not go together");
+    plan.digest = digest;
+    return plan;
+  } catch (const Json::exception&) {
+    return refuse("something is missing in it");
+  }
+}
+
+bool is_of_frame(std::string_view row) {
+  constexpr std::array<std::string_view, 6> kRows = {"scene",         "program", "camera",
+                                                     "field of view", "seed",    "moments"};
+  return std::ranges::find(kRows, row) != kRows.end();
+}
+
+std::string units_folder(const std::string& plan) {
+  return (plan.ends_with(kPlanEnding) ? plan.substr(0, plan.size() - kPlanEnding.size()) : plan) + ".units";
+}
+
+std::string unit_file(const std::string& folder, std::uint64_t number) {
+  return fmt::format("{}/{:03}/{:06}.film", folder, number / kUnitsPerFolder, number);
+}
+
+std::variant<bool, ExitCode> find_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams) {
+  const std::string claim = folder + "/" + kClaimName;
+  std::error_code error;
+  if (!std::filesystem::exists(claim, error)) return false;
+  const auto held = read_text(claim, {}, streams);
+  if (const auto* unreadable = std::get_if<Unreadable>(&held)) return fail(streams, claim, *unreadable);
+  std::string digest = std::get<std::string>(held);
+  if (digest.ends_with('\n')) digest.pop_back();
+  if (digest != plan.digest) return refuse_folder(folder, digest, plan, streams);
+  return true;
+}
+
+std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams) {
+  const auto found = find_folder(folder, plan, streams);
+  if (const auto* code = std::get_if<ExitCode>(&found)) return *code;
+  if (std::get<bool>(found)) return std::nullopt;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return fail(streams, kIo, fmt::format("cannot make the folder `{}`: {}", folder, error.message()));
+  if (const auto problem = write_text(plan.digest + "\n", folder + "/" + kClaimName))
+    return fail(streams, kIo, *problem);
+  // Another plan's worker may have been as fast.
+  const auto claimed = find_folder(folder, plan, streams);
+  if (const auto* code = std::get_if<ExitCode>(&claimed)) return *code;
+  return std::nullopt;
+}
+
+std::optional<std::string> fault_of(const runtime::FilmFile& file, const PlanGrid& grid, const PlanUnit& unit) {
+  const bool fits = file.header.width == grid.width && file.header.height == grid.height &&
+                    file.shape.area == unit.area && file.shape.stages == 1;
+  if (!fits || !(file.header.samples == unit.samples)) return "it is of another unit";
+  if (!file.render.covered.front().covers({unit.area, unit.samples})) return "it has not all samples";
+  return std::nullopt;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,222 @@
+#include "runtime/cli/request/render_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/film/adaptive.h"
+
+namespace fathom::cli {
+namespace {
+
+// --preview divides each side by this.
+constexpr int kPreviewShrink = 4;
+constexpr int kPreviewSpp = 4;
+
+// The marching asked for, or the exit code after a message about options that do not go together.
+std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& request, const Streams& streams) {
+  runtime::Marching marching;
+  if (request.method >= 0) marching.method = runtime::kMethods[request.method].method;
+  if (request.reference) {
+    if (request.method >= 0 && marching.method != runtime::Method::Certified) {
+      return fail(streams, kUsage, "--reference is --march certified; it does not go with another method");
+    }
+    marching.method = runtime::Method::Certified;
+  }
+  const runtime::MethodInfo& method = runtime::info(marching.method);
+  if ((request.epsilon || request.steps) && !method.uses_epsilon) {
+    return fail(streams, kUsage, fmt::format("--epsilon and --max-steps: the method `{}` has neither", method.name),
+                {"they go with --march sphere, relaxed or automatic"});
+  }
+  if (request.relaxation && marching.method != runtime::Method::Relaxed) {
+    return fail(streams, kUsage, "--relaxation goes with --march relaxed only");
+  }
+  if (request.precision >= 0) {
+    if (marching.method == runtime::Method::Certified) {
+      return fail(streams, kUsage, "--precision does not go with --march certified, which is always in double");
+    }
+    marching.precision = static_cast<runtime::Precision>(request.precision);
+  }
+  marching.epsilon = request.epsilon.value_or(marching.epsilon);
+  marching.steps = request.steps.value_or(marching.steps);
+  marching.relaxation = request.relaxation.value_or(marching.relaxation);
+  return marching;
+}
+
+int pixel_of(const CropSides::Side& side, int length) {
+  return static_cast<int>(std::min(side.percent ? std::round(side.value * length / 100) : side.value, 1e9));
+}
+
+// The crop's pixels, or the exit code after a message.
+std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int width, int height,
+                                                   const Streams& streams) {
+  const runtime::PixelRect area{pixel_of(crop.x0, width), pixel_of(crop.y0, height), pixel_of(crop.x1, width),
+                                pixel_of(crop.y1, height)};
+  const std::string pixels = fmt::format("{},{},{},{}", area.x0, area.y0, area.x1, area.y1);
+  if (area.width() < 1 || area.height() < 1) {
+    return fail(streams, kUsage, fmt::format("--crop: there are no pixels in {}", pixels),
+                {"give the corner with the smaller coordinates first; the second is not part of it"});
+  }
+  if (area.x1 > width || area.y1 > height) {
+    return fail(streams, kUsage, fmt::format("--crop: {} reaches beyond the picture", pixels),
+                {fmt::format("the whole picture is 0,0,{},{}", width, height)});
+  }
+  return area;
+}
+
+// Of what shares samples out; a scene that asks for it and has too few samples goes without.
+std::optional<ExitCode> check_adaptive(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                       const Streams& streams) {
+  const int spp = request.options.spp.value_or(scene.settings.spp);
+  if (request.adaptive && spp < runtime::kLeastAdaptiveSpp) {
+    return fail(streams, kUsage,
+                fmt::format("--adaptive: {} a pixel are too few to share out",
+                            count_of(static_cast<std::size_t>(spp), "sample")),
+                {fmt::format("ask for --spp {} or more", runtime::kLeastAdaptiveSpp)});
+  }
+  if (!request.crop || !request.options.adaptive.value_or(scene.settings.adaptive)) return std::nullopt;
+  return fail(
+      streams, kUsage,
+      request.adaptive ? "--crop does not go with --adaptive: a pixel's samples depend on the whole picture"
+                       : "--crop: the scene's `adaptive` makes a pixel's samples depend on the whole picture",
+      {request.adaptive ? "leave out --adaptive, or render the whole" : "add --no-adaptive, or render the whole"});
+}
+
+std::optional<ExitCode> check_watch(const RenderRequest& request, const Streams& streams) {
+  if (!request.watch) return std::nullopt;
+  if (request.scene.path == "-") {
+    return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
+  }
+  const LongRender& asked = request.long_render;
+  if (asked.checkpoint || asked.interval || asked.resume) {
+    return fail(streams, kUsage, "--watch begins again with every change: it goes with no checkpoint",
+                {"leave out --checkpoint, --checkpoint-interval and --resume"});
+  }
+  return std::nullopt;
+}
+
+// Of options that do not go together, whatever the scene.
+std::optional<ExitCode> check_together(const RenderRequest& request, const Streams& streams) {
+  if (request.size && (request.resolution || request.aspect)) {
+    return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
+  }
+  if (request.quiet && request.verbosity > 0) return fail(streams, kUsage, "--quiet does not go with --verbose");
+  if (request.quiet && request.options.profile && !request.stats_json) {
+    return fail(streams, kUsage, "--quiet leaves out the numbers that --profile adds to",
+                {"leave out --quiet, or ask for --stats-json FILE"});
+  }
+  if (const auto code = check_watch(request, streams)) return code;
+  if (request.denoise && request.no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
+  if (request.adaptive && request.no_adaptive) {
+    return fail(streams, kUsage, "--adaptive does not go with --no-adaptive");
+  }
+  return std::nullopt;
+}
+
+// What the flags mean for the renderer.
+void put_flags(RenderRequest& request) {
+  runtime::RenderOptions& options = request.options;
+  if (request.preview) {
+    request.denoise = !request.no_denoise;
+    if (!options.spp) options.spp = kPreviewSpp;
+  }
+  options.layers = {.first_hit = request.albedo || request.depth || request.normal,
+                    .cost = request.cost_map.has_value()};
+  if (std::any_of(request.outputs.begin(), request.outputs.end(), [](const Output& o) { return o.layers(); })) {
+    options.layers = runtime::kAllLayers;
+  }
+  if (request.denoise) options.layers.first_hit = options.layers.halves = true;
+  options.threads = request.threads.value_or(0);
+  if (request.adaptive || request.no_adaptive) options.adaptive = request.adaptive;
+  if (request.light_sampling >= 0) {
+    options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
+  }
+  if (request.sampler >= 0) options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
+  if (request.filter >= 0) options.filter = static_cast<compiler::FilterKind>(request.filter);
+  options.regions = !request.no_regions;
+  if (request.region_memory) options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
+}
+
+std::optional<ExitCode> override_fov(const RenderRequest& request, compiler::Camera& camera, const Streams& streams) {
+  if (!request.fov) return std::nullopt;
+  if (camera.projection == compiler::Camera::Projection::Orthographic) {
+    return fail(streams, kUsage, "--fov: the scene's camera is orthographic and has no field of view",
+                {"its `width` in the scene file says how much it sees"});
+  }
+  if (camera.projection == compiler::Camera::Projection::Panorama) {
+    return fail(streams, kUsage, "--fov: the scene's camera is a panorama, which shows all directions");
+  }
+  camera.fov = *request.fov;
+  camera.vertical_fov.reset();
+  camera.focal_length.reset();
+  return std::nullopt;
+}
+
+std::optional<ExitCode> override_size(const RenderRequest& request, compiler::Film& film, const Streams& streams) {
+  double width = request.resolution.value_or(film.width), height = film.height;
+  if (request.aspect || request.resolution) {
+    const double aspect = request.aspect.value_or(static_cast<double>(film.width) / film.height);
+    height = std::max(1.0, std::round(width / aspect));
+  }
+  if (request.size) {
+    width = request.size->width;
+    height = request.size->height;
+  }
+  if (request.preview) {
+    width = std::max(1.0, std::round(width / kPreviewShrink));
+    height = std::max(1.0, std::round(height / kPreviewShrink));
+  }
+  if (const auto code = check_picture_size(width, height, request.scene.limits, streams)) return code;
+  film.width = static_cast<int>(width);
+  film.height = static_cast<int>(height);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> default_checkpoint(const RenderRequest& request) {
+  const std::vector<std::string> files = paths_of(request.outputs);
+  if (files.empty()) return std::nullopt;
+  return files.front() + kCheckpointEnding;
+}
+
+std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams) {
+  if (const auto code = check_together(request, streams)) return code;
+  const auto marching = marching_of(request, streams);
+  if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;
+  request.options.marching = std::get<runtime::Marching>(marching);
+  put_flags(request);
+  return std::nullopt;
+}
+
+std::optional<ExitCode> override_camera(const RenderRequest& request, compiler::CompiledScene& scene,
+                                        const Streams& streams) {
+  if (const auto code = override_fov(request, scene.camera, streams)) return code;
+  return place_camera(request.camera, scene, streams);
+}
+
+std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
+                                       const Streams& streams) {
+  if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
+    return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
+                {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
+  }
+  if (const auto code = override_size(request, scene.film, streams)) return code;
+  if (const auto code = override_camera(request, scene, streams)) return code;
+  scene.film.exposure = request.exposure.value_or(scene.film.exposure);
+  if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
+  if (const auto code = check_adaptive(request, scene, streams)) return code;
+  if (const auto code = apply(request.long_render, scene, request.options, streams)) return code;
+  if (!request.crop) return std::nullopt;
+  if (request.options.noise) {
+    return fail(streams, kUsage, "--crop does not go with --noise, which judges tiles of the whole picture",
+                {"leave out --noise, or render the whole"});
+  }
+  const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
+  if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;
+  request.options.crop = std::get<runtime::PixelRect>(crop);
+  return std::nullopt;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,146 @@
+// Which parts of a graph are lamps, where they stand and how large they are.
+#include "compiler/analysis/lamps.h"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "tests/support/compiled.h"
+
+namespace fathom::compiler::lamps_test {
+namespace {
+
+CompiledScene lit(const std::string& objects) {
+  return tests::compiled(R"({"version": 1, "materials": {"dull": {"type": "diffuse"},
+      "glow": {"type": "emissive", "emission": [1, 2, 3]}, "dark": {"type": "emissive", "emission": [0, 0, 0]}},
+      "objects": [)" + objects +
+                         "]}");
+}
+std::size_t lamps_in(const std::string& objects) { return lit(objects).lamps.size(); }
+
+glm::dvec3 place(const Lamp& lamp, glm::dvec3 q) { return lamp.rotation * q + lamp.translation; }
+
+TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
+  const CompiledScene scene = lit(R"(
+      {"type": "sphere", "radius": 0.5, "scale": 2, "translate": [1, 2, 3], "material": "glow"},
+      {"type": "box", "half_size": [1, 2, 3], "rotate": [0, 90, 0], "material": "glow"},
+      {"type": "cylinder", "radius": 1, "half_height": 0.01, "material": "glow"},
+      {"type": "capsule", "radius": 1, "half_height": 2, "material": "glow", "scale": 0.5},
+      {"type": "sphere", "radius": 9, "translate": [0, -10, 0], "material": "dull"})");
+  REQUIRE(scene.lamps.size() == 4);
+  const Lamp &ball = scene.lamps[0], &box = scene.lamps[1], &disc = scene.lamps[2], &pill = scene.lamps[3];
+  CHECK(ball.shape == Lamp::Shape::Sphere);
+  CHECK(ball.radius == Approx(1));
+  CHECK(glm::length(ball.translation - glm::dvec3(1, 2, 3)) < 1e-12);
+  CHECK(scene.surfaces[ball.surface].material == ball.material);
+  CHECK(scene.materials[ball.material].name == "glow");
+  CHECK(box.shape == Lamp::Shape::Box);
+  // Its z goes to x: counter-clockwise about y.
+  CHECK(glm::length(place(box, {0, 0, 3}) - glm::dvec3(3, 0, 0)) < 1e-12);
+  CHECK(box.half_size == glm::dvec3(1, 2, 3));
+  CHECK((disc.shape == Lamp::Shape::Cylinder && disc.radius == 1 && disc.half_height == 0.01));
+  CHECK((pill.shape == Lamp::Shape::Capsule && pill.radius == 0.5 && pill.half_height == 1));
+}
+
+TEST_CASE("lamps: a quad stands in a plane of its own", "[lamps]") {
+  const CompiledScene scene =
+      lit(R"({"type": "quad", "a": [1, 5, 1], "b": [-1, 5, 1], "c": [-1, 5, -2], "d": [1, 5, -1],
+      "thickness": 0.01, "material": "glow", "scale": 2, "rotate": [20, 30, 40], "translate": [0, 1, 0]})");
+  REQUIRE(scene.lamps.size() == 1);
+  const Lamp& quad = scene.lamps[0];
+  CHECK(quad.shape == Lamp::Shape::Quad);
+  CHECK(quad.radius == Approx(0.02));
+  double area = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::dvec2 p = quad.corners[i], q = quad.corners[(i + 1) % 4];
+    area += 0.5 * (p.x * q.y - p.y * q.x);
+  }
+  CHECK(area == Approx(4 * 5));
+  // Lengths and the distance from the transform's fixed point stay.
+  CHECK(glm::length(place(quad, {quad.corners[0], 0}) - glm::dvec3(0, 1, 0)) == Approx(2 * std::sqrt(27.0)));
+  CHECK(std::abs(glm::determinant(quad.rotation) - 1) < 1e-12);
+}
+
+TEST_CASE("lamps: what is altered, cut, blended or dark is none", "[lamps]") {
+  const std::string ball = R"({"type": "sphere", "radius": 1, "material": "glow"})";
+  CHECK(lamps_in(ball) == 1);
+  CHECK(lamps_in(R"({"type": "sphere", "radius": 1, "material": "dark"})") == 0);
+  CHECK(lamps_in(R"({"type": "sphere", "radius": 1, "scale": [1, 2, 1], "material": "glow"})") == 0);
+  CHECK(lamps_in(R"({"type": "torus", "major_radius": 1, "minor_radius": 0.2, "material": "glow"})") == 0);
+  for (const char* altered :
+       {R"({"type": "round", "radius": 0.1, "of": )", R"({"type": "onion", "thickness": 0.1, "of": )",
+        R"({"type": "twist", "turn": 10, "of": )",
+        R"({"type": "repetition", "period": [3, 0, 0], "count": [2, 1, 1], "of": )"}) {
+    CHECK(lamps_in(altered + ball + "}") == 0);
+  }
+  for (const char* combined : {R"({"type": "subtraction", "of": [)", R"({"type": "intersection", "of": [)",
+                               R"({"type": "smooth_union", "k": 0.1, "of": [)", R"({"type": "xor", "of": [)"}) {
+    CHECK(lamps_in(combined + ball + R"(, {"type": "box", "half_size": [1, 1, 0.5]}]})") == 0);
+  }
+  CHECK(lamps_in(R"({"type": "union", "of": [)" + ball + R"(, {"type": "box", "half_size": [1, 1, 0.5]}]})") == 1);
+}
+
+TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]") {
+  CHECK(lamps_in(R"({"type": "union", "material": "glow", "of": [
+      {"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "dull"},
+      {"type": "sphere", "radius": 1, "translate": [6, 0, 0]}]})") == 2);
+  const std::string twice = R"({"type": "sphere", "radius": 1, "material": "glow"})";
+  CHECK(lamps_in(twice + "," + twice) == 1);
+  // The levelling of unions, which divides steep operands by their constants, hides no lamp.
+  CHECK(lamps_in(twice + R"(, {"type": "shear", "shift": [2, 0], "of": {"type": "box", "half_size": [1, 1, 1]}})") ==
+        1);
+}
+
+TEST_CASE("lamps: what light may pass is none", "[lamps]") {
+  const auto count = [](const std::string& material) {
+    const Source source("scene.json",
+                        R"({"version": 1, "materials": {"m": {"type": "principled", "emission": [1, 1, 1], )" +
+                            material + R"(}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
+    Diagnostics diagnostics;
+    const auto scene = compile(source, diagnostics);
+    REQUIRE(scene);
+    return scene->lamps.size();
+  };
+  CHECK(count(R"("roughness": 0.5)") == 1);
+  CHECK(count(R"("transmission": 1)") == 0);
+  CHECK(count(R"("opacity": 0.5)") == 0);
+  CHECK(count(R"("opacity": "0.5 + x")") == 0);
+}
+
+TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[lamps]") {
+  const CompiledScene scene = lit(R"({"type": "sphere", "radius": 1, "translate": [1e5, 0, 0], "material": "glow"},
+      {"type": "quad", "a": [99999, 3, 0], "b": [100001, 3, 0], "c": [100001, 3, 2], "d": [99999, 3, 2],
+       "thickness": 0.1, "material": "glow"})");
+  REQUIRE(scene.lamps.size() == 2);
+  REQUIRE(scene.origin != glm::dvec3(0));
+  CHECK(glm::length(scene.lamps[0].translation + scene.origin - glm::dvec3(1e5, 0, 0)) < 1e-9);
+  CHECK(glm::length(scene.lamps[1].translation + scene.origin - glm::dvec3(1e5, 3, 1)) < 1e-9);
+}
+
+TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]") {
+  std::string nodes = R"("n0": {"type": "sphere", "radius": 0.1})";
+  for (int i = 1; i <= 17; ++i) {
+    nodes += fmt::format(
+        R"(, "n{0}": {{"type": "union", "of": [{{"use": "n{1}"}}, {{"use": "n{1}", "translate": [{2}, 0, 0]}}]}})", i,
+        i - 1, 1 << (i - 1));
+  }
+  CompileOptions options;
+  std::size_t found = 0;
+  options.on_pass = [&](std::string_view pass, const Scene& scene) {
+    if (pass != "graph") return;
+    Material glow;
+    glow.type = Material::Type::Emissive;
+    glow.emission = glm::dvec3(1);
+    const Surface surface{"all", 0};
+    found = find_lamps(scene, std::span(&surface, 1), std::span(&glow, 1)).size();
+  };
+  const Source source("scene.json", R"({"version": 1, "nodes": {)" + nodes + R"(}, "objects": [{"use": "n17"}]})");
+  Diagnostics diagnostics;
+  compile(source, diagnostics, options);  // it needs too many instructions
+  CHECK(found == kMaxLamps);
+}
+
+}  // namespace
+}  // namespace fathom::compiler::lamps_test

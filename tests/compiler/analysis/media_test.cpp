@@ -1,0 +1,82 @@
+// The insides of transparent bodies, as the compiler sees them.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "tests/support/compiled.h"
+#include "vm/interpret/evaluate.h"
+
+namespace fathom::compiler::media_test {
+namespace {
+
+CompiledScene with(const std::string& materials, const std::string& objects) {
+  return tests::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
+}
+
+double value(const Medium& medium, glm::dvec3 place) {
+  vm::Workspace workspace;
+  return vm::evaluate_distance(medium.distance, place, workspace);
+}
+
+const char* const kGlassAndWater = R"("table": {"type": "diffuse"}, "glass": {"type": "transparent"},
+    "water": {"type": "transparent", "ior": 1.33})";
+
+TEST_CASE("media: one for each transparent material, opaque ones have none", "[compiler]") {
+  const CompiledScene scene = with(kGlassAndWater, R"({"type": "sphere", "radius": 1, "material": "glass"},
+        {"type": "sphere", "radius": 1, "translate": [5, 0, 0], "material": "glass"},
+        {"type": "sphere", "radius": 1, "translate": [9, 0, 0], "material": "water"},
+        {"type": "plane", "normal": [0, 1, 0], "offset": -3, "material": "table"})");
+  REQUIRE(scene.media.size() == 2);
+  CHECK(scene.materials[scene.media[0].material].name == "glass");
+  CHECK(value(scene.media[0], {0, 0, 0}) < 0);
+  CHECK(value(scene.media[0], {5, 0, 0}) < 0);
+  CHECK(value(scene.media[0], {9, 0, 0}) > 0);
+  CHECK(value(scene.media[1], {9, 0, 0}) < 0);
+  // What is far away is not evaluated: two spheres, one sphere.
+  CHECK(scene.media[0].distance.instructions() < scene.distance.instructions());
+  CHECK(scene.media[1].distance.instructions() == 1);
+  CHECK(with(R"("m": {"type": "diffuse"})", R"({"type": "sphere", "radius": 1, "material": "m"})").media.empty());
+}
+
+TEST_CASE("media: what is opaque takes its place from glass, and the first glass from the second", "[compiler]") {
+  const std::string bodies = R"({"type": "sphere", "radius": 1, "material": "glass"},
+      {"type": "sphere", "radius": 1, "translate": [1, 0, 0], "material": "water"},
+      {"type": "plane", "normal": [0, 1, 0], "offset": -0.5, "material": "table"})";
+  const CompiledScene scene = with(kGlassAndWater, bodies);
+  REQUIRE(scene.media.size() == 2);
+  const Medium &glass = scene.media[0], &water = scene.media[1];
+  CHECK(value(glass, {0.5, 0, 0}) < 0);
+  CHECK(value(water, {0.5, 0, 0}) > 0);
+  CHECK(value(water, {1.5, 0, 0}) < 0);
+  CHECK(value(glass, {0, -0.7, 0}) > 0);
+  CHECK(value(water, {1.5, -0.7, 0}) > 0);
+
+  const CompiledScene turned = with(
+      R"("table": {"type": "diffuse"}, "glass": {"type": "transparent"},
+         "water": {"type": "transparent", "ior": 1.33, "priority": 1})",
+      bodies);
+  CHECK(value(turned.media[0], {0.5, 0, 0}) > 0);
+  CHECK(value(turned.media[1], {0.5, 0, 0}) < 0);
+}
+
+TEST_CASE("media: bodies are told apart within moved groups", "[compiler]") {
+  const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "translate": [3, 0, 0], "of": [
+      {"type": "sphere", "radius": 1, "material": "glass"},
+      {"type": "box", "half_size": [2, 0.2, 2], "material": "table"}]})");
+  REQUIRE(scene.media.size() == 1);
+  CHECK(value(scene.media[0], {3, 0.5, 0}) < 0);
+  CHECK(value(scene.media[0], {3, 0, 0}) > 0);
+  CHECK(value(scene.media[0], {0, 0.5, 0}) > 0);
+}
+
+// Once, the part without a material of its own was taken for its neighbour's.
+TEST_CASE("media: a body that has its material from above", "[compiler]") {
+  const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "material": "glass", "of": [
+      {"type": "sphere", "radius": 1},
+      {"type": "sphere", "radius": 1, "translate": [5, 0, 0], "material": "table"}]})");
+  REQUIRE(scene.media.size() == 1);
+  CHECK(value(scene.media[0], {0, 0, 0}) < 0);
+  CHECK(value(scene.media[0], {5, 0, 0}) > 0);
+}
+
+}  // namespace
+}  // namespace fathom::compiler::media_test

@@ -1,0 +1,88 @@
+// What `fathom emit glsl` writes: that it is GLSL, by the reference compiler, and what it computes, compiled with
+// these tests as C++ over GLM, whose names are GLSL's.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <glm/glm.hpp>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "compiler/emit/emit.h"
+#include "emitted_programs_glsl.h"
+#include "tests/support/compiled.h"
+#include "tests/support/emitted_programs.h"
+#include "tests/support/random/random_scene.h"
+#include "tests/support/temporary_folder.h"
+#include "vm/interpret/evaluate.h"
+
+namespace fathom::test::emitted_glsl_test {
+namespace {
+
+// Whether the text calls a function whose accuracy GLSL leaves open.
+bool has_elementary(const std::string& text) {
+  static const std::regex kCall("[^_a-z](sin|cos|tan|exp|log|atan)\\(");
+  return std::regex_search(text, kCall);
+}
+
+// A fragment shader that calls every function, so that none is left unlinked.
+std::string shader(const std::string& version) {
+  std::string text = "#version " + version + "\nprecision highp float;\nout vec4 colour;\n", sum;
+  for (const EmittedProgram& program : emitted_programs()) {
+    text += compiler::emit_glsl(program.scene, program.name);
+    sum += "  d += " + program.name + "_distance(colour.xyz);\n";
+  }
+  for (const char* path : {"scenes/showcase.json", "scenes/bench/b-csg.json", "scenes/bench/e-gyroid.json",
+                           "scenes/bench/h-composite.json", "scenes/mandelbulb.json", "tests/data/molecule.json"}) {
+    std::stringstream file;
+    file << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
+    const std::string name = std::filesystem::path(path).stem().string().substr(2);
+    text += compiler::emit_glsl(tests::compiled(file.str()), name);
+    sum += "  d += " + name + "_distance(colour.xyz);\n";
+  }
+  return text + "void main() {\n  colour = gl_FragCoord;\n  float d = 0.0;\n" + sum + "  colour = vec4(d);\n}\n";
+}
+
+}  // namespace
+
+TEST_CASE("emitted GLSL is GLSL ES 3.00 and GLSL 3.30", "[emit]") {
+  const tests::TemporaryFolder folder;
+  for (const char* version : {"300 es", "330"}) {
+    std::ofstream(folder.path() / "scene.frag") << shader(version);
+    const std::string command = "cd '" + folder.path().string() + "' && '" FATHOM_GLSLANG "' scene.frag > log";
+    CAPTURE(version);
+    CHECK(std::system(command.c_str()) == 0);
+    std::string line;
+    for (std::ifstream log(folder.path() / "log"); std::getline(log, line);) UNSCOPED_INFO(line);
+    std::ofstream(folder.path() / "scene.frag") << shader(version) + "float broken = true;\n";
+    CHECK(std::system(command.c_str()) != 0);  // it does look
+  }
+}
+
+TEST_CASE("emitted GLSL computes what the machine does", "[emit]") {
+  const auto programs = emitted_programs();
+  REQUIRE(programs.size() == std::size(kEmittedGlsl));
+  vm::Workspace workspace;
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    const compiler::CompiledScene& scene = programs[i].scene;
+    CAPTURE(programs[i].name);
+    REQUIRE(programs[i].name == kEmittedGlsl[i].name);
+    const bool exact = !has_elementary(compiler::emit_glsl(scene, "scene"));
+    Random random(i);
+    std::size_t wrong = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const glm::vec3 p(random.in_box(2)), q = p - glm::vec3(scene.origin);
+      float machine;
+      vm::evaluate_distance(scene.distance, {&q.x, &q.y, &q.z}, 1, &machine, workspace);
+      const float glsl = kEmittedGlsl[i].distance(p);
+      const float allowed = exact ? 0 : 2e-5f * std::max(1.f, std::fabs(machine));
+      const bool both_nan = std::isnan(glsl) && std::isnan(machine);
+      wrong += !both_nan && !(glsl == machine) && !(std::fabs(glsl - machine) <= allowed);
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+}  // namespace fathom::test::emitted_glsl_test

@@ -1,0 +1,199 @@
+// What the front end makes of materials: OpenPBR's names and defaults, presets, textures.
+#include "compiler/frontend/elaborate/materials.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+#include <set>
+
+#include "compiler/frontend/records/material_presets.h"
+#include "compiler/frontend/records/records.h"
+#include "tests/compiler/frontend/elaborate/elaborated.h"
+
+namespace fathom::materials_test {
+
+namespace {
+
+using namespace fathom::compiler;
+using fathom::test::of_objects;
+
+Elaborated scene_of(const std::string& material, const std::string& params = "{}") {
+  return of_objects(R"({"type": "sphere", "radius": 1, "material": "m"})",
+                    R"(, "params": )" + params + R"(, "materials": {"m": )" + material + "}");
+}
+Material material_of(const std::string& material) {
+  const Elaborated scene = scene_of(material);
+  CHECK(scene.textures.empty());
+  return scene.materials[0];
+}
+
+void check_same_numbers(const MaterialNumbers& a, const MaterialNumbers& b) {
+  CHECK(a.base_weight == b.base_weight);
+  CHECK(a.color == b.color);
+  CHECK(a.diffuse_roughness == b.diffuse_roughness);
+  CHECK(a.metalness == b.metalness);
+  CHECK(a.specular_weight == b.specular_weight);
+  CHECK(a.specular_color == b.specular_color);
+  CHECK(a.roughness == b.roughness);
+  CHECK(a.ior == b.ior);
+  CHECK(a.transmission == b.transmission);
+  CHECK(a.transmission_color == b.transmission_color);
+  CHECK(a.transmission_depth == b.transmission_depth);
+  CHECK(a.coat_weight == b.coat_weight);
+  CHECK(a.coat_color == b.coat_color);
+  CHECK(a.coat_roughness == b.coat_roughness);
+  CHECK(a.coat_ior == b.coat_ior);
+  CHECK(a.emission * a.emission_luminance == b.emission * b.emission_luminance);
+  CHECK(a.absorption == b.absorption);
+  CHECK(a.opacity == b.opacity);
+}
+
+TEST_CASE("materials: without properties a principled one has OpenPBR's defaults", "[materials]") {
+  const Material m = material_of(R"({"type": "principled"})");
+  CHECK(m.type == Material::Type::Principled);
+  check_same_numbers(m, MaterialNumbers());
+  CHECK(m.color == glm::dvec3(0.8));
+  CHECK(m.roughness == 0.3);
+  CHECK(m.coat_ior == 1.6);
+  CHECK(!m.thin_walled);
+  CHECK(m.priority == 0);
+  CHECK(!emits(m));
+}
+
+TEST_CASE("materials: full names and short ones are the same", "[materials]") {
+  const Material full = material_of(R"({"type": "principled", "base_color": [0.1, 0.2, 0.3], "base_metalness": 0.4,
+    "base_diffuse_roughness": 0.5, "specular_roughness": 0.6, "specular_ior": 1.7, "transmission_weight": 0.8,
+    "coat_weight": 0.9, "emission_color": [1, 2, 3], "geometry_opacity": 0.25, "geometry_thin_walled": true})");
+  const Material brief = material_of(R"({"type": "principled", "color": [0.1, 0.2, 0.3], "metalness": 0.4,
+    "diffuse_roughness": 0.5, "roughness": 0.6, "ior": 1.7, "transmission": 0.8, "coat": 0.9, "emission": [1, 2, 3],
+    "opacity": 0.25, "thin_walled": true})");
+  check_same_numbers(full, brief);
+  CHECK(full.color == glm::dvec3(0.1, 0.2, 0.3));
+  CHECK(full.opacity == 0.25);
+  CHECK(full.thin_walled);
+  CHECK(brief.thin_walled);
+}
+
+TEST_CASE("materials: light is emission_color times emission_luminance", "[materials]") {
+  const auto radiance = [](const std::string& properties) {
+    const Material m = material_of(R"({"type": "principled")" + properties + "}");
+    CHECK(emits(m) == (m.emission * m.emission_luminance != glm::dvec3(0)));
+    return m.emission * m.emission_luminance;
+  };
+  CHECK(radiance("") == glm::dvec3(0));
+  CHECK(radiance(R"(, "emission": [1, 2, 3])") == glm::dvec3(1, 2, 3));
+  CHECK(radiance(R"(, "emission_luminance": 5)") == glm::dvec3(5));
+  CHECK(radiance(R"(, "emission": [1, 2, 3], "emission_luminance": 2)") == glm::dvec3(2, 4, 6));
+  CHECK(radiance(R"(, "emission": [1, 2, 3], "emission_luminance": 0)") == glm::dvec3(0));
+}
+
+TEST_CASE("materials: gold reflects as its refractive index says, and what is given goes first", "[materials]") {
+  const Material gold = material_of(R"({"type": "principled", "preset": "gold"})");
+  CHECK(gold.metalness == 1);
+  CHECK(gold.roughness == 0.3);
+  // ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)
+  CHECK(gold.color.x == Approx(0.945).margin(2e-3));
+  CHECK(gold.color.y == Approx(0.776).margin(2e-3));
+  CHECK(gold.color.z == Approx(0.373).margin(2e-3));
+  CHECK(gold.specular_color.x == Approx(0.9831).margin(1e-3));  // Fresnel's 0.954 over Schlick's 0.971
+  const Material chromium = material_of(R"({"type": "principled", "preset": "chrome"})");
+  CHECK(chromium.specular_color.x == Approx(0.7288).margin(1e-3));
+  const Material painted = material_of(R"({"type": "principled", "preset": "gold", "color": 0.5, "roughness": 0.1})");
+  CHECK(painted.color == glm::dvec3(0.5));
+  CHECK(painted.roughness == 0.1);
+  CHECK(painted.metalness == 1);
+  CHECK(painted.specular_color == gold.specular_color);
+  const Material water = material_of(R"({"type": "principled", "preset": "water", "priority": 3})");
+  CHECK(water.ior == 1.333);
+  CHECK(water.transmission == 1);
+  CHECK(water.roughness == 0);
+  CHECK(water.priority == 3);
+}
+
+TEST_CASE("materials: presets are known properties within their ranges", "[materials]") {
+  std::set<std::string_view> names;
+  const RecordSpec& row = material_records().back();
+  for (const MaterialPreset& preset : material_presets()) {
+    CAPTURE(std::string(preset.name));
+    CHECK(names.insert(preset.name).second);
+    for (const auto& [property, value] : preset.values) {
+      const PropertySpec* spec = row.find(property);
+      REQUIRE(spec != nullptr);
+      CHECK(spec->alias_of.empty());
+      CHECK(glm::all(glm::greaterThanEqual(value, glm::dvec3(std::max(0.0, spec->range.least)))));
+      CHECK(glm::all(glm::lessThanEqual(value, glm::dvec3(spec->range.most))));
+    }
+  }
+}
+
+TEST_CASE("materials: a conductor's reflectance is Fresnel's", "[materials]") {
+  // Without absorption a dielectric's: 4 % of glass head-on, all of it at grazing.
+  CHECK(conductor_reflectance(1, 1.5, 0) == Approx(0.04));
+  CHECK(conductor_reflectance(0, 1.5, 0) == Approx(1));
+  // At Brewster's angle, tan = n, half of the perpendicular part: ((n^2 - 1) / (n^2 + 1))^2.
+  CHECK(conductor_reflectance(1 / std::sqrt(1 + 1.5 * 1.5), 1.5, 0) ==
+        Approx(0.5 * std::pow((1.5 * 1.5 - 1) / (1.5 * 1.5 + 1), 2)));
+  CHECK(conductor_reflectance(1, 0.2, 3) == Approx((0.64 + 9) / (1.44 + 9)));
+}
+
+TEST_CASE("materials: the four plain types read as before", "[materials]") {
+  CHECK(material_of(R"({"type": "diffuse", "color": [0.1, 0.2, 0.3]})").color == glm::dvec3(0.1, 0.2, 0.3));
+  const Material lamp = material_of(R"({"type": "emissive"})");
+  CHECK(lamp.emission == glm::dvec3(1));
+  CHECK(lamp.color == glm::dvec3(0));
+  CHECK(emits(lamp));
+  CHECK(material_of(R"({"type": "specular"})").color == glm::dvec3(1));
+  const Material glass = material_of(R"({"type": "transparent", "absorption": 0.5, "priority": -2})");
+  CHECK(glass.type == Material::Type::Transparent);
+  CHECK(glass.absorption == glm::dvec3(0.5));
+  CHECK(glass.priority == -2);
+}
+
+TEST_CASE("materials: what does not vary is a number", "[materials]") {
+  CHECK(
+      material_of(R"({"type": "diffuse", "color": {"pattern": "checker", "a": 0.5, "b": [0.5, 0.5, 0.5]}})").color ==
+      glm::dvec3(0.5));
+  CHECK(material_of(R"({"type": "principled", "roughness": "1/4"})").roughness == 0.25);
+  const Elaborated scene = scene_of(R"({"type": "diffuse", "color": ["r", 0.5, "2*r"]})", R"({"r": 0.25})");
+  CHECK(scene.textures.empty());
+  CHECK(scene.materials[0].color == glm::dvec3(0.25, 0.5, 0.5));
+}
+
+TEST_CASE("materials: patterns become textures, ends first", "[materials]") {
+  const Elaborated scene = scene_of(R"({"type": "principled", "roughness":
+      {"pattern": "stripes", "axis": [0, 0, 3], "width": 0.25, "scale": 2, "a": 0.2,
+       "b": {"pattern": "noise", "seed": 7, "a": 0.4, "b": "x*x"}},
+    "ior": {"pattern": "checker", "a": 1.25, "b": 1.75}})");
+  const Material& m = scene.materials[0];
+  REQUIRE(m.textured.size() == 2);
+  const TexturedParameter& row = m.textured[0];
+  CHECK(std::get<MaterialNumber>(row.parameter) == &MaterialNumbers::roughness);
+  CHECK(row.least == 0);
+  CHECK(row.most == 1);
+  CHECK(m.textured[1].least > 0);
+  CHECK(m.ior == 1.5);
+  const auto& stripes = std::get<Pattern>(scene.textures[row.texture]);
+  CHECK(std::get<Pattern::Stripes>(stripes.kind).axis == glm::dvec3(0, 0, 1));
+  CHECK(std::get<Pattern::Stripes>(stripes.kind).width == 0.25);
+  CHECK(stripes.to_pattern({2, 4, 6}) == glm::dvec3(1, 2, 3));
+  CHECK(std::get<glm::dvec3>(scene.textures[stripes.a]).x == 0.2);
+  const auto& noise = std::get<Pattern>(scene.textures[stripes.b]);
+  CHECK(std::get<Pattern::Noise>(noise.kind).seed == 7);
+  CHECK(std::get<Pattern::Noise>(noise.kind).octaves == 4);
+  CHECK(std::holds_alternative<TextureFormula>(scene.textures[noise.b]));
+  CHECK(scene.formulas.size() == 1);
+  CHECK(stripes.a < row.texture);
+  CHECK(stripes.b < row.texture);
+  CHECK(noise.b < stripes.b);
+}
+
+TEST_CASE("materials: light that varies counts as light", "[materials]") {
+  CHECK(emits(scene_of(R"~({"type": "emissive", "emission": "max(x, 0)"})~").materials[0]));
+  CHECK(emits(scene_of(R"~({"type": "principled", "emission_luminance": "max(x, 0)"})~").materials[0]));
+  CHECK(emits(scene_of(R"({"type": "principled", "emission": ["x", 0, 0]})").materials[0]));
+}
+
+}  // namespace
+
+}  // namespace fathom::materials_test

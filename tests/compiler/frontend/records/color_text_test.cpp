@@ -1,0 +1,42 @@
+// Colours written as screens show them, and places of outlines written with two numbers.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "compiler/compile.h"
+#include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/compiled.h"
+
+namespace fathom::test::color_text_test {
+namespace {
+
+glm::dvec3 color_of(const std::string& color) {
+  const compiler::CompiledScene scene = tests::compiled(
+      R"({"version": 1, "background": )" + color + R"(, "materials": {"m": {"type": "diffuse", "color": )" + color +
+      R"(}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
+  CHECK(scene.background.top == scene.materials.at(0).color);
+  return scene.materials.at(0).color;
+}
+
+std::string extruded(const std::string& translate) {
+  return listing(of_objects(
+      R"({"type": "extrude", "half_depth": 1, "of": {"type": "circle", "radius": 1, "translate": )" + translate + "}}"));
+}
+
+}  // namespace
+
+TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[elaborate]") {
+  CHECK(color_of(R"("#000000")") == glm::dvec3(0));
+  CHECK(color_of(R"("#ffffff")") == glm::dvec3(1));
+  CHECK(color_of(R"("#FFF")") == glm::dvec3(1));
+  CHECK(color_of(R"("#c42")") == color_of(R"("#cc4422")"));
+  const glm::dvec3 color = color_of(R"("#800a40")");
+  CHECK(color.r == Approx(0.21586050011389926).epsilon(1e-12));  // ((128/255 + 0.055) / 1.055)^2.4
+  CHECK(color.g == Approx(10 / 255.0 / 12.92).epsilon(1e-12));   // on the straight piece
+  CHECK(color.b == Approx(0.05126945837404324).epsilon(1e-12));
+}
+
+TEST_CASE("an outline is moved by two numbers as by three of which the last is 0", "[elaborate]") {
+  CHECK(extruded(R"([1, "2 + 1"])") == extruded("[1, 3, 0]"));
+}
+
+}  // namespace fathom::test::color_text_test

@@ -1,0 +1,174 @@
+// The schema against the compiler, which has the last word: what the schema rejects the compiler rejects, and the
+// other way round for everything a schema can say.
+#include "compiler/frontend/records/schema.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "compiler/compile.h"
+#include "compiler/frontend/text/read_text.h"
+#include "tests/support/golden.h"
+#include "tests/support/schema_check.h"
+
+namespace fathom::schema_test {
+
+namespace {
+
+using namespace fathom::compiler;
+using fathom::tests::golden_files;
+using fathom::tests::read_file;
+using fathom::tests::schema_problem;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+// Codes the schema speaks for: types, names and number of properties, ranges of single numbers.
+const std::set<std::string> kStructural = {"E0101", "E0102", "E0103", "E0104", "E0105",
+                                           "E0106", "E0107", "E0108", "E0201", "E0301"};
+// The others, by the first letters of the code, and why a schema cannot say what they say.
+const std::map<std::string, std::string> kBeyond = {
+    {"E00", "the text is not JSON at all, or names a property twice"},
+    {"E0109", "how deep patterns nest"},
+    {"E0202", "a name must occur elsewhere in the file"},
+    {"E0203", "a name must occur elsewhere in the file"},
+    {"E0204", "a walk along names"},
+    {"E0302", "arithmetic over several parameters"},
+    {"E0303", "arithmetic over several vectors"},
+    {"E0304", "arithmetic over several vectors"},
+    {"E0305", "the size of the program"},
+    {"E0306", "what a node below, or one used by name, is"},
+    {"E0307", "what a node below, or one used by name, is"},
+    {"E0308", "what numbers a node comes to"},
+    {"E0309", "which way a vector points"},
+    {"E0310", "arithmetic over several vectors"},
+    {"E0311", "what files there are"},
+    {"E0312", "what limits are set"},
+    {"E04", "the grammar of formulas, and the names in them"},
+    {"E05", "what the command line says"},
+    {"E06", "files of another format"},
+    {"W0", "a warning; the scene is valid"},
+};
+
+json parse(const std::string& text) { return json::parse(text, nullptr, false, true); }
+
+const json& schema() {
+  static const json parsed = json::parse(scene_schema());
+  return parsed;
+}
+
+// The codes of the errors that the compiler finds; the front end alone, as far as may be.
+std::set<std::string> compiler_errors(const std::string& text) {
+  Diagnostics diagnostics;
+  compile(Source("scene.json", text), diagnostics);
+  std::set<std::string> codes;
+  for (const Diagnostic& diagnostic : diagnostics.all()) {
+    if (diagnostic.code[0] == 'E') codes.insert(std::string(diagnostic.code));
+  }
+  return codes;
+}
+
+bool beyond(const std::string& code) {
+  return std::any_of(kBeyond.begin(), kBeyond.end(), [&](const auto& row) { return code.starts_with(row.first); });
+}
+
+// Calls `use` with every value of a tree, the tree's own included; `use` may change the value and must put it back.
+template <typename Use>
+void for_each_value(json& value, const Use& use) {
+  use(value);
+  if (!value.is_structured()) return;
+  for (auto& item : value) for_each_value(item, use);
+}
+
+// The schema and the compiler must agree on `scene`, as far as the schema can tell.
+void compare(const json& scene) {
+  const std::string text = scene.dump();
+  const std::set<std::string> errors = compiler_errors(text);
+  const std::string problem = schema_problem(json::parse(text), schema());
+  const bool structural =
+      std::any_of(errors.begin(), errors.end(), [](const std::string& code) { return kStructural.count(code) > 0; });
+  CAPTURE(text, problem, errors);
+  CHECK((problem.empty() || !errors.empty()));
+  CHECK((!structural || !problem.empty()));
+}
+
+}  // namespace
+
+TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][schema]") {
+  int scenes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".json") continue;
+    CAPTURE(entry.path().string());
+    CHECK(schema_problem(parse(read_file(entry.path())), schema()) == "");
+    ++scenes;
+  }
+  CHECK(scenes > 5);
+}
+
+TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyond a schema", "[schema]") {
+  for (const fs::path& path : golden_files("diagnostics")) {
+    const std::string name = path.filename().string(), whole = read_file(path);
+    if (name.starts_with("layout") || name.starts_with("E07")) continue;  // E07xx are of listings
+    const std::string text = whole.substr(0, whole.find("----- expected\n")), code = name.substr(0, 5);
+    if (is_text_scene(text)) continue;
+    CAPTURE(name);
+    CHECK((kStructural.count(code) > 0) != beyond(code));
+    const bool computed = name.ends_with("_formula.txt");  // whose value the schema does not know
+    if (computed || name.starts_with("E06")) continue;
+    if (kStructural.count(code) > 0) {
+      CHECK(schema_problem(parse(text), schema()) != "");
+    } else if (!name.starts_with("E00") && code != "E0408") {  // a number of E0408 may be too large for any property
+      CHECK(schema_problem(parse(text), schema()) == "");
+    }
+  }
+}
+
+// Every property of every record of two scenes, in turn: gone, misnamed, and with values of other types and sizes.
+TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[heavy][schema]") {
+  json scene = parse(read_file(fs::path(FATHOM_SOURCE_DIR) / "scenes/primitives.json"));
+  scene["camera"]["type"] = "perspective";
+  scene["render"] = {{"spp", 1}, {"bounces", 0}, {"tile", 8}, {"seed", 3}, {"far", 100}, {"adaptive", true}};
+  scene["objects"][0]["rotate"] = {{"axis", {0, 1, 0}}, {"angle", 30}};
+  scene["nodes"] = {{"ball", {{"type", "sphere"}, {"radius", 1}}}};
+  const json ball = {{"use", "ball"}, {"scale", 2}, {"name", "b"}};
+  scene["objects"].push_back({{"type", "onion"}, {"thickness", 0.1}, {"of", ball}});
+  scene["objects"].push_back({{"type", "smooth_union"}, {"k", 0.1}, {"of", {ball, ball}}, {"scale", {1, 2, 1}}});
+  const json others[] = {nullptr,       true,           0,         -1,         0.5,   2, 1e19, "diffuse", "sphere",
+                         json::array(), json::object(), {0, 0, 0}, {1, -1, 1}, {1, 2}};
+  int changes = 0;
+  for_each_value(scene, [&](json& value) {
+    if (!value.is_object()) return;
+    const json kept = value;
+    for (const auto& [name, old] : kept.items()) {
+      value.erase(name);
+      compare(scene);
+      value[name + "x"] = old;
+      compare(scene);
+      value = kept;
+      for (const json& other : others) {
+        value[name] = other;
+        compare(scene);
+        ++changes;
+      }
+      value = kept;
+    }
+  });
+  CHECK(changes > 1000);
+}
+
+TEST_CASE("schema: every property of the tables is described", "[schema]") {
+  json copy = schema();
+  for_each_value(copy, [](json& value) {
+    if (!value.is_object() || !value.contains("properties") || !value["properties"].is_object()) return;
+    for (const auto& [name, property] : value["properties"].items()) {
+      CAPTURE(name);
+      CHECK_FALSE(property.value("description", "").empty());
+    }
+  });
+  CHECK(schema()["$defs"]["material"]["oneOf"][3]["properties"]["ior"]["default"] == 1.5);
+  CHECK(schema()["properties"]["version"]["const"] == 1);
+}
+
+}  // namespace fathom::schema_test

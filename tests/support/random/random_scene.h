@@ -1,0 +1,68 @@
+// Seeded random shapes, graphs and points: every kind of node, with the extremes that formulas trip over (tips of
+// cones, fat and thin rings, balls of nearly equal reach, blends of width 0, squashed spaces).
+//
+// Parameters of shapes are exact in float, so that a float evaluator is judged on the same solid. One seed gives the
+// same scene everywhere: no distribution of the standard library is used.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "compiler/shapes/make_node.h"
+#include "compiler/shapes/node_table.h"
+
+namespace fathom::test {
+
+// SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  // The first draws are functions of two bytes each, in order: who changes a byte changes one draw.
+  explicit Random(std::span<const std::uint8_t> draws) : state_(draws.size()), draws_(draws) {}
+  std::uint64_t bits();
+  double uniform(double lo, double hi);  // [lo, hi)
+  double length(double lo, double hi);   // log-uniform, exact in float
+  int below(int n);                      // 0 .. n-1
+  bool chance(double probability) { return uniform(0, 1) < probability; }
+  glm::dvec3 in_box(double half);  // uniform, exact in float
+  glm::dvec3 direction();          // uniform on the unit sphere
+
+ private:
+  std::uint64_t state_;
+  std::span<const std::uint8_t> draws_;
+};
+
+// The primitives that are nodes of a graph, of one sort; estimates (Mandelbulbs and their like) only when asked for.
+std::vector<compiler::Kind> primitive_kinds(compiler::Sort sort, bool estimates);
+
+// Valid parameters of a primitive of size about 1.
+std::vector<double> random_params(compiler::Kind kind, Random& random);
+
+struct GraphOptions {
+  int depth = 4;
+  bool mandelbulbs = false;
+  bool planes = true;    // unbounded parts
+  bool paints = true;    // surface numbers 1 .. 6
+  bool squash = true;    // three different scales
+  bool outlines = true;  // drawn out and turned
+  bool formulas = true;  // formulas as solids and as displacements
+  bool bends = true;     // what folds, repeats or bends space, and joins at an edge
+};
+compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
+
+// A formula in x, y and z, of slopes from a thousandth to about twenty near the origin.
+compiler::NodeId random_formula(compiler::NodeMaker& maker, Random& random);
+
+// One of what folds, repeats or bends space, over `child`; `child` itself where that is not possible.
+compiler::NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, compiler::NodeId child);
+
+// Rows of a Transform: the child is scaled, turned by `angle` (radians) about `axis`, then moved.
+std::vector<double> transform_params(glm::dvec3 scale, glm::dvec3 axis, double angle, glm::dvec3 translate);
+
+// A graph of one primitive.
+compiler::Scene single(compiler::Kind kind, const std::vector<double>& params);
+
+}  // namespace fathom::test

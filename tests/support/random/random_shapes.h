@@ -1,0 +1,17 @@
+// Seeded random primitives, with the extremes that formulas trip over: tips of cones, fat and thin rings, half turns,
+// touching circles, needles, roundings of nothing and of everything. Parameters are exact in float.
+#pragma once
+
+#include <vector>
+
+#include "compiler/graph/graph.h"
+#include "tests/support/random/random_scene.h"
+
+namespace fathom::test {
+
+std::vector<double> random_solid_params(compiler::Kind kind, Random& random);
+std::vector<double> random_outline_params(compiler::Kind kind, Random& random);
+
+inline double rounded(double x) { return static_cast<double>(static_cast<float>(x)); }
+
+}  // namespace fathom::test

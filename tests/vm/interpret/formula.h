@@ -1,0 +1,107 @@
+// Formulas for the tests of scalar mathematics: programs of leaves, functions of one, two and three numbers, at
+// random or by hand.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/plain_lowering.h"
+#include "tests/support/random/random_scene.h"
+#include "vm/interpret/evaluate.h"
+
+namespace fathom::test {
+
+struct Step {
+  vm::Opcode opcode;
+  std::vector<double> immediates = {};
+};
+
+inline vm::VerifiedProgram formula(const std::vector<Step>& steps) {
+  vm::Program code;
+  for (const Step& step : steps) code.append(step.opcode, 0, step.immediates, {});
+  return verified(std::move(code));
+}
+
+// A random tree with about `size` operations over x, y, z and constants, in the order of evaluation.
+inline void append_random_formula(Random& random, int size, std::vector<Step>& steps) {
+  using vm::Opcode;
+  static const Opcode kUnary[] = {Opcode::Abs,  Opcode::Square, Opcode::Sqrt, Opcode::Sin,    Opcode::Cos,
+                                  Opcode::Tan,  Opcode::Asin,   Opcode::Acos, Opcode::Atan,   Opcode::Exp,
+                                  Opcode::Log,  Opcode::Floor,  Opcode::Ceil, Opcode::Sign,   Opcode::Not,
+                                  Opcode::Sqrt, Opcode::Abs,    Opcode::Sin,  Opcode::Negate, Opcode::Nearest};
+  static const Opcode kBinary[] = {
+      Opcode::Add,   Opcode::Minus,   Opcode::Multiply, Opcode::Divide, Opcode::Modulo,      Opcode::Atan2,
+      Opcode::Power, Opcode::Compare, Opcode::And,      Opcode::Or,     Opcode::Step,        Opcode::Min,
+      Opcode::Max,   Opcode::Add,     Opcode::Multiply, Opcode::Minus,  Opcode::ModuloEuclid};
+  if (size <= 0) {
+    const int leaf = random.below(5);
+    if (leaf < 3) {
+      steps.push_back({leaf == 0 ? Opcode::X : leaf == 1 ? Opcode::Y : Opcode::Z});
+    } else {
+      steps.push_back({Opcode::Constant, {leaf == 3 ? random.below(7) - 3 : random.uniform(-2, 2)}});
+    }
+  } else if (random.chance(0.06)) {
+    const int first = random.below(size), second = random.below(size - first);
+    append_random_formula(random, first, steps);
+    append_random_formula(random, second, steps);
+    append_random_formula(random, size - 1 - first - second, steps);
+    steps.push_back({Opcode::Noise});
+  } else if (random.chance(0.5)) {
+    append_random_formula(random, size - 1, steps);
+    steps.push_back({kUnary[random.below(20)]});
+  } else {
+    const int left = random.below(size);
+    append_random_formula(random, left, steps);
+    append_random_formula(random, size - 1 - left, steps);
+    steps.push_back({kBinary[random.below(17)]});
+  }
+}
+
+inline std::vector<Step> random_formula(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Step> steps;
+  append_random_formula(random, 1 + random.below(6), steps);
+  return steps;
+}
+
+inline std::string text_of(const std::vector<Step>& steps) {
+  std::string text;
+  for (const Step& step : steps) {
+    text += std::string(vm::info(step.opcode).mnemonic) + ' ';
+    for (double k : step.immediates) text += std::to_string(k) + ' ';
+  }
+  return text;
+}
+
+// The programs of all subexpressions, leaves aside: a formula is defined where each of them is finite.
+inline std::vector<vm::VerifiedProgram> subexpressions(const std::vector<Step>& steps) {
+  std::vector<vm::VerifiedProgram> programs;
+  std::vector<std::size_t> starts;  // of the operands on the stack
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const vm::Form form = vm::info(steps[i].opcode).form;
+    if (form == vm::Form::Shape) {
+      starts.push_back(i);
+      continue;
+    }
+    for (int n = 1; n < vm::info(steps[i].opcode).effect.values_needed; ++n) starts.pop_back();
+    const auto first = steps.begin() + static_cast<std::ptrdiff_t>(starts.back());
+    programs.push_back(formula({first, steps.begin() + static_cast<std::ptrdiff_t>(i) + 1}));
+  }
+  return programs;
+}
+inline bool defined_at(const std::vector<vm::VerifiedProgram>& parts, glm::dvec3 p, vm::Workspace& workspace) {
+  for (const auto& part : parts) {
+    if (!std::isfinite(vm::evaluate_distance(part, p, workspace))) return false;
+  }
+  return true;
+}
+
+inline float evaluate_float(const vm::VerifiedProgram& program, glm::vec3 p, vm::Workspace& workspace) {
+  float value;
+  vm::evaluate_distance(program, {&p.x, &p.y, &p.z}, 1, &value, workspace);
+  return value;
+}
+
+}  // namespace fathom::test

@@ -1,0 +1,206 @@
+// Random formulas on every evaluator: the same bits on every instruction set, ranges that contain, gradients that
+// match differences, bounds of slope and float error that hold.
+#include "tests/vm/interpret/formula.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "tests/support/effort.h"
+#include "tests/vm/number/float_bits.h"
+#include "vm/range/slope.h"
+
+namespace fathom::test::formula_test {
+namespace {
+
+using glm::dvec3;
+using vm::Opcode;
+
+glm::vec3 float_point(Random& random, dvec3 lo, dvec3 hi) {
+  glm::vec3 p;
+  for (int axis = 0; axis < 3; ++axis) {
+    p[axis] = std::clamp(static_cast<float>(random.uniform(lo[axis], hi[axis])), static_cast<float>(lo[axis]),
+                         static_cast<float>(hi[axis]));
+  }
+  return p;
+}
+
+// A box with corners at floats, sides from 0 to 4.
+void random_box(Random& random, dvec3& lo, dvec3& hi) {
+  static const double kSides[] = {0, 1e-3, 0.05, 0.3, 1, 4};
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = random.chance(0.2) ? random.below(5) - 2 : static_cast<float>(random.uniform(-3, 3));
+    hi[axis] = static_cast<float>(lo[axis] + kSides[random.below(6)]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa]") {
+  const IsaGuard guard;
+  vm::Workspace workspace;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const auto steps = random_formula(seed);
+    const vm::VerifiedProgram program = formula(steps);
+    Random random(seed);
+    constexpr std::size_t kCount = 67;
+    std::vector<float> x(kCount), y(kCount), z(kCount), d(kCount), g[3], e(kCount);
+    for (auto& axis : g) axis.resize(kCount);
+    std::vector<std::uint32_t> surface(kCount), first;
+    const float spice[] = {0.f,          -0.f, 1e-40f, 1e20f, -1e5f, 3e38f, std::numeric_limits<float>::infinity(),
+                           std::nanf("")};
+    for (std::size_t i = 0; i < kCount; ++i) {
+      for (auto* axis : {&x, &y, &z}) {
+        (*axis)[i] = random.chance(0.1) ? spice[random.below(8)] : static_cast<float>(random.uniform(-4, 4));
+      }
+    }
+    for (std::string_view isa : vm::available_isas()) {
+      REQUIRE(vm::force_isa(isa));
+      vm::evaluate_distance(program, {x.data(), y.data(), z.data()}, kCount, e.data(), workspace);
+      vm::evaluate_surface(program, {x.data(), y.data(), z.data()}, kCount,
+                           {d.data(), g[0].data(), g[1].data(), g[2].data(), surface.data()}, workspace);
+      std::vector<std::uint32_t> bits;
+      for (const auto* values : {&e, &d, &g[0], &g[1], &g[2]}) {
+        std::transform(values->begin(), values->end(), std::back_inserter(bits), bits_of);
+      }
+      if (first.empty()) first = bits;
+      INFO("seed " << seed << " on " << isa << ": " << text_of(steps));
+      CHECK(bits == first);
+      CHECK(std::equal(bits.begin(), bits.begin() + kCount, bits.begin() + kCount));
+    }
+  }
+}
+
+TEST_CASE("ranges of formulas contain their values", "[formula][range]") {
+  vm::Workspace workspace;
+  int finite = 0, boxes = 0;
+  for (int seed = 0; seed < few(20000); ++seed) {
+    const auto steps = random_formula(seed);
+    const vm::VerifiedProgram program = formula(steps);
+    Random random(seed);
+    dvec3 lo, hi;
+    random_box(random, lo, hi);
+    const auto parts = subexpressions(steps);
+    const vm::Range range = vm::evaluate_range(program, lo, hi, workspace);
+    INFO("seed " << seed << ": " << text_of(steps));
+    REQUIRE(range.lo <= range.hi);
+    ++boxes;
+    finite += std::isfinite(range.hi - range.lo);
+    for (int i = 0; i < 20; ++i) {
+      const dvec3 p(float_point(random, lo, hi));
+      const double value = vm::evaluate_distance(program, p, workspace);
+      if (!defined_at(parts, p, workspace)) continue;
+      if (!(value >= range.lo && value <= range.hi)) {
+        FAIL_CHECK(value << " not in " << range.lo << " .. " << range.hi << " at " << p.x << ' ' << p.y << ' '
+                         << p.z);
+      }
+    }
+  }
+  CHECK(finite > boxes / 2);
+}
+
+TEST_CASE("gradients of formulas match differences", "[formula][gradient]") {
+  vm::Workspace workspace;
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 6000; ++seed) {
+    const auto steps = random_formula(seed);
+    const vm::VerifiedProgram program = formula(steps);
+    Random random(seed);
+    const dvec3 p = random.in_box(3);
+    const vm::SlopeBound near = vm::evaluate_slope(program, p - 1e-4, p + 1e-4, workspace);
+    const vm::SurfaceValue surface = vm::evaluate_surface(program, p, workspace);
+    for (int axis = 0; axis < 3; ++axis) CHECK(std::isfinite(surface.gradient[axis]));
+    if (!(near.lipschitz < 1e3)) continue;  // jumps and poles have no difference quotient to compare with
+    for (int axis = 0; axis < 3; ++axis) {
+      double d[3];
+      for (int i = 0; i < 3; ++i) {
+        dvec3 q = p;
+        q[axis] += (i - 1) * 1e-5;
+        d[i] = vm::evaluate_distance(program, q, workspace);
+      }
+      const double left = (d[1] - d[0]) / 1e-5, right = (d[2] - d[1]) / 1e-5;
+      if (!(std::abs(left - right) < 1e-2 * (1 + std::abs(left)))) continue;  // a kink
+      ++compared;
+      INFO("seed " << seed << ", axis " << axis << ": " << text_of(steps));
+      CHECK(std::abs(surface.gradient[axis] - (left + right) / 2) <= 2e-2 * (1 + std::abs(left)));
+    }
+  }
+  CHECK(compared > 5000);
+}
+
+TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]") {
+  vm::Workspace workspace;
+  int boxes = 0, lipschitz = 0, error = 0;
+  for (int seed = 0; seed < few(20000); ++seed) {
+    const auto steps = random_formula(seed);
+    const vm::VerifiedProgram program = formula(steps);
+    Random random(seed + 7);
+    dvec3 lo, hi;
+    random_box(random, lo, hi);
+    const auto parts = subexpressions(steps);
+    const vm::SlopeBound bound = vm::evaluate_slope(program, lo, hi, workspace);
+    INFO("seed " << seed << ": " << text_of(steps) << " box " << lo.x << ' ' << lo.y << ' ' << lo.z << " to " << hi.x
+                 << ' ' << hi.y << ' ' << hi.z << ": lipschitz " << bound.lipschitz << ", error "
+                 << bound.float_error);
+    REQUIRE(bound.lipschitz >= 0);
+    REQUIRE(bound.float_error >= 0);
+    ++boxes, lipschitz += std::isfinite(bound.lipschitz), error += std::isfinite(bound.float_error);
+    for (int i = 0; i < 12; ++i) {
+      const glm::vec3 p = float_point(random, lo, hi), q = float_point(random, lo, hi);
+      if (!defined_at(parts, dvec3(p), workspace) || !defined_at(parts, dvec3(q), workspace)) continue;
+      const vm::SurfaceValue at = vm::evaluate_surface(program, dvec3(p), workspace);
+      const double there = vm::evaluate_distance(program, dvec3(q), workspace);
+      const float narrow = evaluate_float(program, p, workspace);
+      INFO("at " << p.x << ' ' << p.y << ' ' << p.z << " value " << at.distance << ", in float " << narrow);
+      CHECK((at.distance >= bound.value.lo && at.distance <= bound.value.hi));
+      const double length = glm::length(at.gradient);
+      CHECK(length <= bound.lipschitz * (1 + 1e-9) + 1e-12);
+      const double change = std::abs(at.distance - there);
+      if (std::isfinite(bound.lipschitz)) {
+        CHECK(!(change > bound.lipschitz * glm::length(dvec3(p) - dvec3(q)) * (1 + 1e-9) + 1e-12));
+      }
+      if (std::isfinite(bound.float_error)) CHECK(std::abs(narrow - at.distance) <= bound.float_error);
+    }
+  }
+  WARN(lipschitz << " and " << error << " of " << boxes << " boxes have a finite slope and float error");
+  CHECK(lipschitz > boxes / 4);
+}
+
+TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") {
+  vm::Workspace workspace;
+  const auto program = formula({{Opcode::X},
+                                {Opcode::Square},
+                                {Opcode::Y},
+                                {Opcode::Square},
+                                {Opcode::Add},
+                                {Opcode::Z},
+                                {Opcode::Square},
+                                {Opcode::Add},
+                                {Opcode::Sqrt},
+                                {Opcode::Offset, {1}}});
+  const vm::SlopeBound bound = vm::evaluate_slope(program, dvec3(-2), dvec3(2), workspace);
+  CHECK(bound.lipschitz <= 1 + 1e-9);
+  CHECK(bound.float_error <= 1e-2);  // at the origin the root turns 2^-24 into 2^-12
+  const vm::SlopeBound away = vm::evaluate_slope(program, dvec3(0.5), dvec3(2), workspace);
+  CHECK(away.float_error <= 64 * 0x1p-24);
+}
+
+TEST_CASE("a blend of what is not below 0 may be", "[formula][slope]") {
+  vm::Workspace workspace;
+  const double k = 0.5;
+  // Of |x| and |y| at 0 the blend is -k / 4, below the constant it is then joined with.
+  const auto program = formula({{Opcode::X},
+                                {Opcode::Abs},
+                                {Opcode::Y},
+                                {Opcode::Abs},
+                                {Opcode::SmoothMin, {k, 1 / (4 * k)}},
+                                {Opcode::Constant, {-0.015625}},
+                                {Opcode::Min}});
+  REQUIRE(vm::evaluate_distance(program, dvec3(0), workspace) == -k / 4);
+  const vm::SlopeBound bound = vm::evaluate_slope(program, dvec3(-1e-3), dvec3(1e-3), workspace);
+  CHECK(bound.value.lo <= -k / 4);
+  CHECK(bound.lipschitz >= 1);
+}
+
+}  // namespace fathom::test::formula_test

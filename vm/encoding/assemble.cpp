@@ -1,0 +1,273 @@
+#include "vm/encoding/assemble.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "vm/encoding/escape.h"
+#include "vm/program/verify.h"
+
+namespace fathom::vm {
+namespace {
+
+using Token = std::string_view;
+
+const OpcodeInfo* find_mnemonic(Token word) {
+  static const auto* const rows = [] {
+    auto* table = new std::unordered_map<std::string_view, const OpcodeInfo*>;
+    for (std::uint32_t i = 0; i < kOpcodeCount; ++i) (*table)[find_opcode(i)->mnemonic] = find_opcode(i);
+    return table;
+  }();
+  const auto found = rows->find(word);
+  return found == rows->end() ? nullptr : found->second;
+}
+
+template <typename Number>
+std::optional<Number> to_number(Token token) {
+  Number value{};
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
+  return value;
+}
+
+// The listing's: offset, length, two heights, cost.
+constexpr int kColumns = 5;
+
+// "12" or "0->1".
+bool is_column(Token token) {
+  const auto is_number = [](Token part) {
+    return !part.empty() && part.find_first_not_of("0123456789") == Token::npos;
+  };
+  const std::size_t arrow = std::min(token.find("->"), token.size());
+  return is_number(token.substr(0, arrow)) && (arrow == token.size() || is_number(token.substr(arrow + 2)));
+}
+
+// One line's instruction while it is read.
+struct Draft {
+  std::uint32_t operand = 0;
+  std::vector<double> immediates;
+};
+
+class Assembler {
+ public:
+  explicit Assembler(std::string_view text) : text_(text) {}
+
+  std::variant<Program, AssembleError> run() {
+    for (std::size_t at = 0; at < text_.size() && !error_;) {
+      const std::size_t end = std::min(text_.find('\n', at), text_.size());
+      read_line(text_.substr(at, end - at));
+      at = end + 1;
+    }
+    if (error_) return *std::move(error_);
+    if (!placed_) program_.debug.clear();
+    return std::move(program_);
+  }
+
+ private:
+  void read_line(std::string_view line) {
+    DebugEntry place{};
+    split(line, place);
+    if (error_ || tokens_.empty()) return;
+    if (tokens_[0] == "locals" && program_.words.empty()) return read_locals();
+    const OpcodeInfo* row = find_mnemonic(tokens_[0]);
+    if (row == nullptr) {
+      fail(tokens_[0], fmt::format("no instruction is called `{}`", tokens_[0]));
+      error_->unknown_instruction = true;
+      return;
+    }
+    Draft draft;
+    read_operands(*row, draft);
+    if (error_) return;
+    program_.append(row->opcode, draft.operand, draft.immediates, std::move(place));
+  }
+
+  // The line's tokens, without the listing's columns, comment and place.
+  void split(std::string_view line, DebugEntry& place) {
+    tokens_.clear();
+    int columns = 0;
+    for (std::size_t at = 0; !error_;) {
+      at = line.find_first_not_of(" \t\r", at);
+      if (at == line.npos || line[at] == ';') break;
+      if (line[at] == '@') return read_place(line.substr(at), place);
+      if (line[at] == '"') {
+        at += read_source(line.substr(at));
+        continue;
+      }
+      const std::size_t end = std::min(line.find_first_of(" \t\r;", at), line.size());
+      const Token token = line.substr(at, end - at);
+      at = end;
+      if (!tokens_.empty() || !is_column(token)) {
+        tokens_.push_back(token);
+      } else if (++columns > kColumns) {
+        fail(token, "an instruction begins with its name");
+      }
+    }
+    if (columns > 0 && tokens_.empty()) fail(line, "a line of columns without an instruction");
+  }
+
+  // "@6:5 symbol" or "@ symbol"; the symbol goes to the end of the line.
+  void read_place(std::string_view text, DebugEntry& place) {
+    const std::size_t end = std::min(text.find_first_of(" \r"), text.size());
+    const Token where = text.substr(1, end - 1);
+    if (!where.empty()) {
+      const std::size_t colon = std::min(where.find(':'), where.size());
+      const auto line = to_number<std::uint32_t>(where.substr(0, colon));
+      const auto column = to_number<std::uint32_t>(where.substr(std::min(colon + 1, where.size())));
+      if (!line || !column || *line == 0) return fail(text.substr(0, end), "a place is @line:column, or @ alone");
+      place.line = *line;
+      place.column = *column;
+    }
+    placed_ = true;
+    Token symbol = text.substr(std::min(end + 1, text.size()));
+    if (symbol.ends_with('\r')) symbol.remove_suffix(1);
+    if (!unescape(symbol, place.symbol))
+      fail(symbol, "a backslash here must be followed by n, r, t, \\, \" or u00XX");
+  }
+
+  // Returns how long the text in quotes is.
+  std::size_t read_source(std::string_view line) {
+    const bool alone = tokens_.size() == 1 && tokens_[0] == "source" && program_.words.empty();
+    const std::size_t length = quoted_length(line);
+    if (!alone || named_) {
+      fail(line.substr(0, 1), "a text in quotes stands after `source`, once, before the code");
+    } else if (length == 0 || !unescape(line.substr(1, length - 2), program_.source_name)) {
+      fail(line, "the text in quotes is not whole");
+    }
+    named_ = true;
+    tokens_.clear();
+    return length;
+  }
+
+  void read_locals() {
+    const auto count = tokens_.size() == 2 ? to_number<std::uint32_t>(tokens_[1]) : std::nullopt;
+    if (!count || counted_) return fail(tokens_[0], "`locals` stands once, with how many there are");
+    program_.locals = *count;
+    counted_ = true;
+  }
+
+  void read_operands(const OpcodeInfo& row, Draft& draft) {
+    std::size_t first = 1, last = tokens_.size();
+    if (row.form == Form::Unary || row.form == Form::Binary) first = read_sources(row, draft);
+    if (row.form == Form::Shape) last = read_modes(row, draft);
+    if (row.has_operand) first = read_count(row, draft);
+    if (error_) return;
+    const std::size_t own = static_cast<std::size_t>(row.immediates), given = last - first;
+    const std::size_t expected = row.form == Form::Outline ? own * draft.operand : own;
+    if (given != expected) {
+      return fail(tokens_[0],
+                  fmt::format("`{}` takes {} numbers{}{}, not {}", row.mnemonic, expected,
+                              own == 0 ? "" : fmt::format(" ({})", names(row)),
+                              row.form == Form::Outline ? " after the first, which says how often" : "", given));
+    }
+    for (std::size_t i = 0; i < given && !error_; ++i) {
+      const Token token = tokens_[first + i];
+      const bool integer = is_integer_immediate(row, static_cast<int>(i % own));
+      draft.immediates.push_back(integer ? whole(token) : number(token));
+    }
+    if (row.form == Form::Outline) draft.operand = 0;  // append() counts the groups itself
+  }
+
+  static std::string names(const OpcodeInfo& row) {
+    std::string text;
+    for (int i = 0; i < row.immediates; ++i) {
+      text += (i == 0 ? "" : " ") + std::string(immediate_name(row, i));
+    }
+    return row.form == Form::Outline ? text + ", again and again" : text;
+  }
+
+  // Of tee, load, tag and outlines: the number after the mnemonic. Returns where the immediates begin.
+  std::size_t read_count(const OpcodeInfo& row, Draft& draft) {
+    if (tokens_.size() < 2) {
+      fail(tokens_[0], fmt::format("`{}` takes a number", row.mnemonic));
+      return 1;
+    }
+    const double value = whole(tokens_[1]);
+    if (!error_ && value > kMaxOperand) fail(tokens_[1], fmt::format("at most {}", kMaxOperand));
+    draft.operand = error_ ? 0 : static_cast<std::uint32_t>(value);
+    return 2;
+  }
+
+  // "at 0 1 0 min" behind a shape's own numbers. Returns where these end.
+  std::size_t read_modes(const OpcodeInfo& row, Draft& draft) {
+    std::size_t last = tokens_.size();
+    if (last > 1 && tokens_[last - 1] == "min") {
+      draft.operand |= kJoined;
+      --last;
+    }
+    if (last >= 5 && tokens_[last - 4] == "at") {
+      draft.operand |= kMoved;
+      for (std::size_t i = last - 3; i < last && !error_; ++i) draft.immediates.push_back(number(tokens_[i]));
+      last -= 4;
+    } else {
+      for (std::size_t i = 1; i < last; ++i) {
+        if (tokens_[i] == "at") fail(tokens_[i], fmt::format("`{}` is moved `at` three numbers", row.mnemonic));
+      }
+    }
+    return last;
+  }
+
+  // "_ x" before a function's own numbers. Returns where these begin.
+  std::size_t read_sources(const OpcodeInfo& row, Draft& draft) {
+    const std::size_t arity = row.form == Form::Binary ? 2 : 1;
+    if (tokens_.size() != 1 + arity + static_cast<std::size_t>(row.immediates)) return 1;  // none, or wrong anyway
+    Sources sources;
+    std::optional<std::uint32_t> local;
+    for (std::size_t i = 0; i < arity && !error_; ++i) {
+      (i == 0 ? sources.a : sources.b) = read_source_of(tokens_[1 + i], local, draft);
+    }
+    sources.local = local.value_or(0);
+    draft.operand = operand_of(sources);
+    return 1 + arity;
+  }
+
+  Source read_source_of(Token token, std::optional<std::uint32_t>& local, Draft& draft) {
+    if (token == "_") return Source::Stack;
+    if (token == "x") return Source::X;
+    if (token == "y") return Source::Y;
+    if (token == "z") return Source::Z;
+    if (token[0] != '%') {
+      draft.immediates.push_back(number(token));
+      return Source::Constant;
+    }
+    const double index = whole(token.substr(1));
+    if (!error_ && index > kMaxLocalSource) fail(token, fmt::format("at most %{}", kMaxLocalSource));
+    if (error_) return Source::Local;
+    if (local && *local != index) fail(token, "both operands can be a local only when it is the same");
+    local = static_cast<std::uint32_t>(index);
+    return Source::Local;
+  }
+
+  double number(Token token) {
+    const auto value = to_number<double>(token);
+    if (!value || !std::isfinite(*value)) fail(token, fmt::format("`{}` is not a number that a double holds", token));
+    return value.value_or(0);
+  }
+  double whole(Token token) {
+    const auto value = to_number<std::uint32_t>(token);
+    if (!value) fail(token, fmt::format("`{}` is not a whole number", token));
+    return value.value_or(0);
+  }
+
+  void fail(Token at, std::string reason) {
+    if (error_) return;
+    const auto begin = static_cast<std::size_t>(at.data() - text_.data());
+    error_ = AssembleError{begin, begin + at.size(), std::move(reason)};
+  }
+
+  std::string_view text_;
+  Program program_;
+  bool placed_ = false, named_ = false, counted_ = false;  // whether a place, `source`, `locals` was read
+  std::vector<Token> tokens_;                              // of the line
+  std::optional<AssembleError> error_;
+};
+
+}  // namespace
+
+std::variant<Program, AssembleError> assemble(std::string_view text) { return Assembler(text).run(); }
+
+}  // namespace fathom::vm

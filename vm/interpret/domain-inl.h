@@ -1,0 +1,188 @@
+// Meanings of the opcodes that fold, repeat or bend space, and of the distances that keep them honest: where a map is
+// only followed near its solid, the way to what was left out bounds the result (compiler/shapes/domain.cpp derives
+// the constants). Over any number type of vm/number/. Tested by: tests/compiler/shapes/domain_test.cpp
+#if defined(FATHOM_VM_DOMAIN_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_DOMAIN_INL
+#undef FATHOM_VM_DOMAIN_INL
+#else
+#define FATHOM_VM_DOMAIN_INL
+#endif
+
+#include "vm/number/along-inl.h"
+#include "vm/number/interval_elementary-inl.h"
+#include "vm/number/number-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// Takes out the middle: what lies within x, y, z of the origin's planes goes to the plane.
+template <class T>
+HWY_INLINE T pull(const T& a, Constant<T> by) {
+  return a - max(-by, min(by, a));
+}
+// It rises, so the ends of a stretch have its ends. The difference alone would be as wide as `a` where it is 0.
+HWY_INLINE Along pull(const Along& a, const Along& by) {
+  const auto at = [&](double end) { return pull(Interval{end, end}, by.v); };
+  return {{at(a.v.lo).lo, at(a.v.hi).hi}, pull<Along>(a, by).d};
+}
+template <class T>
+HWY_INLINE Vec3<T> elongate(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
+  return {pull(p.x, x), pull(p.y, y), pull(p.z, z)};
+}
+
+// k: unit normal, offset. What lies behind the plane is seen in front of it.
+template <class T>
+HWY_INLINE Vec3<T> mirror(const Vec3<T>& p, const Constant<T>* k) {
+  const T behind = min(constant<T>(0.0), p.x * k[0] + p.y * k[1] + p.z * k[2] - k[3]);
+  const T twice = behind + behind;
+  return {p.x - twice * k[0], p.y - twice * k[1], p.z - twice * k[2]};
+}
+
+// The half-plane about the y axis that p lies in, as an outline's plane.
+template <class T>
+HWY_INLINE Vec3<T> revolve(const Vec3<T>& p, Constant<T> offset) {
+  return {length(p.x, p.z) - offset, p.y, p.z};
+}
+
+// The number of the cell along one axis. k: cells per unit, shift, first and last number.
+template <class T>
+HWY_INLINE T cell_number(const T& a, const Constant<T>* k) {
+  return max(k[2], min(k[3], floor(a * k[0] + k[1])));
+}
+// k: as cell_number, then offset and period: cell j's copy stands at (j + offset) * period. All copies evaluated at a
+// point number the cells alike and differ in the offset: numbered each in its own way, one could be left out where
+// rounding moves a cell's side.
+template <class T>
+HWY_INLINE T in_cell(const T& a, const T& number, const Constant<T>* k) {
+  return a - (number + k[4]) * k[5];
+}
+template <class T>
+HWY_INLINE Vec3<T> cell(const Vec3<T>& p, const Constant<T>* k) {
+  return {in_cell(p.x, cell_number(p.x, k), k), in_cell(p.y, cell_number(p.y, k + 6), k + 6),
+          in_cell(p.z, cell_number(p.z, k + 12), k + 12)};
+}
+
+// One of the whole numbers 0..288 for each whole number: (34 n + 1) n mod 289, a permutation, exact in float (Stefan
+// Gustavson and Ian McEwan, "Psrdnoise", JCGT 2022, section 2.1, use it for the same reason).
+template <class T>
+HWY_INLINE T permute(const T& n) {
+  const T m = n - floor(n * constant<T>(1.0 / 289) + constant<T>(0.5 / 289)) * constant<T>(289.0);
+  const T mixed = (m * constant<T>(34.0) + constant<T>(1.0)) * m;
+  return mixed - floor(mixed * constant<T>(1.0 / 289) + constant<T>(0.5 / 289)) * constant<T>(289.0);
+}
+// A range of cells can hold any of them.
+HWY_INLINE Interval permute(Interval n) {
+  const double nearest = std::floor(n.lo + 0.5);
+  if (!(n.hi - n.lo < 0.5 && n.lo >= nearest - 0.25 && n.hi <= nearest + 0.25)) return {0, 288};
+  const double m = nearest - 289 * std::floor(nearest / 289), mixed = (34 * m + 1) * m;
+  const double result = mixed - 289 * std::floor(mixed / 289);
+  return {result, result};
+}
+
+HWY_INLINE Along permute(const Along& n) { return steps(n, permute(n.v)); }
+
+// As cell, with copy (i, j, l) moved by up to k[18], k[19], k[20] along the axes, differently for each; k[21..23]:
+// how far the copy's numbers are from the cell's.
+template <class T>
+HWY_INLINE Vec3<T> cell_jitter(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> inverse = constant<T>(1.0 / 144), one = constant<T>(1.0);
+  const T i = cell_number(p.x, k), j = cell_number(p.y, k + 6), l = cell_number(p.z, k + 12);
+  const T x = permute(permute(permute(i + k[21]) + j + k[22]) + l + k[23]), y = permute(x + one),
+          z = permute(y + one);
+  return {in_cell(p.x, i, k) - (x * inverse - one) * k[18], in_cell(p.y, j, k + 6) - (y * inverse - one) * k[19],
+          in_cell(p.z, l, k + 12) - (z * inverse - one) * k[20]};
+}
+
+// How far `a` is beyond [lo, hi], at least 0.
+template <class T>
+HWY_INLINE T beyond(const T& a, Constant<T> lo, Constant<T> hi) {
+  return max(constant<T>(0.0), max(lo - a, a - hi));
+}
+
+// The way to the copies of a repetition that are not evaluated. k: for each axis the six of in_cell, then how far
+// those copies keep from the plane through the middle of the nearest evaluated one, then the lowest and the highest
+// coordinate of any copy.
+template <class T>
+HWY_INLINE T cell_limit(const Vec3<T>& p, const Constant<T>* k) {
+  const auto near2 = [k](const T& a, int axis) HWY_ATTR {
+    const Constant<T>* of = k + 9 * axis;
+    return sqr(abs(in_cell(a, cell_number(a, of), of)) + of[6]);
+  };
+  const auto out2 = [k](const T& a, int axis) HWY_ATTR { return sqr(beyond(a, k[9 * axis + 7], k[9 * axis + 8])); };
+  const T x = out2(p.x, 0), y = out2(p.y, 1), z = out2(p.z, 2);
+  return sqrt(min(near2(p.x, 0) + y + z, min(x + near2(p.y, 1) + z, x + y + near2(p.z, 2))));
+}
+
+template <class T>
+HWY_INLINE Vec3<T> turn_about_y(const Vec3<T>& p, const T& angle) {
+  const T c = cos(angle), s = sin(angle);
+  return {p.x * c + p.z * s, p.y, p.z * c - p.x * s};
+}
+
+// k: sectors per radian, shift, radians per sector, which copy. Copy n of sector j is sector j + n turned back onto
+// sector 0; as with cells, all copies number the sectors alike.
+template <class T>
+HWY_INLINE Vec3<T> sector(const Vec3<T>& p, const Constant<T>* k) {
+  return turn_about_y(p, (floor(atan2(p.z, p.x) * k[0] + k[1]) + k[3]) * k[2]);
+}
+// The way to the sectors' copies that are not evaluated. k: as sector, where shift rounds to the nearest copy's
+// middle at angle k[3]; k[4]: the angle those copies keep from the half-plane through that middle; k[5]: how far they
+// keep from the axis; lowest and highest y of a copy. A half-plane at an angle of a from p is rho sin a away, and rho
+// beyond a right angle.
+template <class T>
+HWY_INLINE T sector_limit(const Vec3<T>& p, const Constant<T>* k) {
+  const T angle = atan2(p.z, p.x), rho = length(p.x, p.z);
+  const T aside = abs(angle - k[3] - floor(angle * k[0] + k[1]) * k[2]) + k[4];
+  const T across = rho * sin(min(constant<T>(1.5707963267948966), aside));
+  return length(max(across, k[5] - rho), beyond(p.y, k[6], k[7]));
+}
+
+// Onto the cylinder of radius k about the y axis, if outside.
+template <class T>
+HWY_INLINE Vec3<T> clamp_tube(const Vec3<T>& p, Constant<T> radius) {
+  const T inside = min(constant<T>(1.0), radius / max(constant<T>(1e-30), length(p.x, p.z)));
+  return {p.x * inside, p.y, p.z * inside};
+}
+// Into the box from k[0..2] to k[3..5].
+template <class T>
+HWY_INLINE Vec3<T> clamp_box(const Vec3<T>& p, const Constant<T>* k) {
+  return {max(k[0], min(k[3], p.x)), max(k[1], min(k[4], p.y)), max(k[2], min(k[5], p.z))};
+}
+// The distance of the box from k[0..2] to k[3..5], exact inside and outside.
+template <class T>
+HWY_INLINE T box_between(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T x = max(k[0] - p.x, p.x - k[3]), y = max(k[1] - p.y, p.y - k[4]), z = max(k[2] - p.z, p.z - k[5]);
+  return length(max(zero, x), max(zero, y), max(zero, z)) + min(zero, max(x, max(y, z)));
+}
+
+// k: scale at y = 0, its change per unit, least and greatest scale.
+template <class T>
+HWY_INLINE Vec3<T> taper(const Vec3<T>& p, const Constant<T>* k) {
+  const T scale = max(k[2], min(k[3], p.y * k[1] + k[0]));
+  return {p.x / scale, p.y, p.z / scale};
+}
+
+// A circular bend: the x axis goes round the centre (0, k[0]); arc length along it is kept (Alan Barr, "Global and
+// Local Deformations of Solid Primitives", 1984, section 4.4). k: radius > 0, +1 to bend towards +y and -1 towards
+// -y, and the radius within which nothing is followed.
+template <class T>
+HWY_INLINE Vec3<T> bend(const Vec3<T>& p, const Constant<T>* k) {
+  const T below = k[0] - p.y * k[1];
+  const T rho = max(k[2], length(p.x, below));
+  return {atan2(p.x, below) * k[0], (k[0] - rho) * k[1], p.z};
+}
+// The way to what bend does not follow: the middle, and the seam opposite the origin. k: the three of
+// bend, how far the solid keeps from the inner circle and from the seam, lowest and highest z, reach.
+template <class T>
+HWY_INLINE T bend_limit(const Vec3<T>& p, const Constant<T>* k) {
+  const Constant<T> zero = constant<T>(0.0);
+  const T below = k[0] - p.y * k[1], rho = length(p.x, below);
+  const T to_middle = max(zero, rho - k[2]) + k[3];
+  const T to_seam = select(below < zero, abs(p.x), rho) + k[4];
+  return length(min(to_middle, to_seam), beyond(p.z, k[5], k[6]) * k[7]);
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,163 @@
+// The f32 evaluators.
+// Compiled once for each instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for what chooses
+// among them at run time.
+#include "vm/interpret/evaluate.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vm/interpret/evaluate.cpp"
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+void distance_batch(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
+void convex_batch(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                  Workspace& workspace);
+void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace);
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == FATHOM_TARGET
+#include "vm/interpret/blocks-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// An overflowing derivative has no direction.
+HWY_INLINE Batch finite_or_zero(Batch a) {
+  return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
+}
+
+void distance_batch(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace) {
+  for_each_block<Batch>(program, points, count, workspace,
+                        [&](std::size_t begin, std::size_t size, std::size_t used, const Batch* result) HWY_ATTR {
+                          store(size, used, distance + begin, [&](std::size_t i) HWY_ATTR { return result[i]; });
+                        });
+}
+
+void convex_batch(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                  Workspace& workspace) {
+  using T = Convex<Batch>;
+  for_each_block<T>(program, points, count, workspace,
+                    [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
+                      store(size, used, distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v; });
+                      store(size, used, convex + begin, [&](std::size_t i) HWY_ATTR { return result[i].convex; });
+                    });
+}
+
+void surface_batch(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace) {
+  using T = Tagged<Convex<Dual<Batch>>>;
+  for_each_block<T>(
+      program, points, count, workspace,
+      [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
+        store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v.v; });
+        store(size, used, out.gradient_x + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dx); });
+        store(size, used, out.gradient_y + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dy); });
+        store(size, used, out.gradient_z + begin,
+              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dz); });
+        if (out.convex != nullptr) {
+          store(size, used, out.convex + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.convex; });
+        }
+        float surfaces[kSlot<T> * kLanes];
+        store(size, used, surfaces, [&](std::size_t i) HWY_ATTR { return result[i].surface; });
+        std::transform(surfaces, surfaces + size, out.surface + begin,
+                       [](float s) { return s < 0 ? 0 : static_cast<std::uint32_t>(s); });
+      });
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE && FATHOM_TARGET == 0
+namespace fathom::vm {
+
+HWY_EXPORT(distance_batch);
+HWY_EXPORT(convex_batch);
+HWY_EXPORT(surface_batch);
+
+void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(distance_batch)(program, points, count, distance, workspace);
+}
+
+void evaluate_convex(const Code& program, Points points, std::size_t count, float* distance, float* convex,
+                     Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(convex_batch)(program, points, count, distance, convex, workspace);
+}
+
+void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out,
+                      Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(surface_batch)(program, points, count, out, workspace);
+}
+
+namespace {
+
+struct Isa {
+  std::string_view name;
+  std::int64_t target;
+};
+
+// Best first.
+constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
+
+// Highway's choice without any mock.
+std::int64_t supported_targets() {
+  hwy::SetSupportedTargetsForTest(0);
+  return (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
+}
+
+// FATHOM_ISA takes effect before main(): no evaluation can have begun.
+const bool kEnvironmentApplied = [] {
+  const char* wanted = std::getenv("FATHOM_ISA");
+  if (wanted == nullptr || *wanted == 0 || force_isa(wanted)) return true;
+  std::fprintf(stderr, "warning: FATHOM_ISA=%s: this machine cannot run that; using %.*s\n", wanted,
+               static_cast<int>(isa_name().size()), isa_name().data());
+  return false;
+}();
+
+}  // namespace
+
+std::vector<std::string_view> available_isas() {
+  const std::string_view in_use = isa_name();
+  const std::int64_t supported = supported_targets();
+  force_isa(in_use);
+  std::vector<std::string_view> names;
+  for (const Isa& isa : kIsas) {
+    if (supported & isa.target) names.push_back(isa.name);
+  }
+  return names;
+}
+
+bool force_isa(std::string_view name) {
+  const std::string_view before = isa_name();
+  const std::int64_t supported = supported_targets();
+  bool found = false;
+  for (const Isa& isa : kIsas) found = found || (isa.name == name && (supported & isa.target) != 0);
+  // The instruction set and all below it: what is not compiled for this one runs on the next, not on the portable
+  // code.
+  std::int64_t targets = 0;
+  for (const Isa& isa : kIsas) {
+    if (targets != 0 || isa.name == (found ? name : before)) targets |= isa.target;
+  }
+  hwy::SetSupportedTargetsForTest(targets & supported);
+  hwy::GetChosenTarget().DeInit();
+  return found;
+}
+
+std::string_view isa_name() {
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  for (const Isa& isa : kIsas) {
+    if (supported & isa.target) return isa.name;
+  }
+  return "scalar";
+}
+
+}  // namespace fathom::vm
+#endif

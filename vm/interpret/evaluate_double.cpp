@@ -1,0 +1,108 @@
+// The evaluators in double: one point, its gradient and surface, or a box. Slopes: vm/range/slope.cpp.
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "vm/interpret/evaluate.h"
+#include "vm/interpret/interpret-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// Each execution of a tag has a number of its own: the surface's in units of kTags, plus how many came before. So the
+// winner is found again, and ties are decided by the surface first, as everywhere.
+template <>
+struct TagObserver<Tagged<Real>> {
+  static constexpr double kTags = 0x1p28;  // more than a verified program has instructions; with 24 bits still exact
+  std::vector<glm::dvec3> seen;
+  double see(std::uint32_t surface, const Vec3<Real>& p) {
+    seen.emplace_back(p.x.v, p.y.v, p.z.v);
+    return surface * kTags + static_cast<double>(seen.size() - 1);
+  }
+};
+
+namespace {
+
+template <class T, class P>
+T run_once(const Code& program, const Vec3<P>& point, Workspace& workspace) {
+  Machine<T> machine(program, workspace, 1);
+  *machine.first_point() = point;
+  machine.interpret();
+  return *machine.result();
+}
+
+double distance(const Code& program, glm::dvec3 p, Workspace& workspace) {
+  return run_once<Real>(program, Vec3<Real>{{p.x}, {p.y}, {p.z}}, workspace).v;
+}
+
+SurfaceValue surface(const Code& program, glm::dvec3 p, Workspace& workspace) {
+  using D = Dual<Real>;
+  const Real zero{0}, one{1};
+  const Vec3<D> point{{{p.x}, one, zero, zero}, {{p.y}, zero, one, zero}, {{p.z}, zero, zero, one}};
+  const auto result = run_once<Tagged<Convex<D>>>(program, point, workspace);
+  const D& d = result.v.v;
+  const auto finite_or_zero = [](Real a) { return std::isfinite(a.v) ? a.v : 0; };
+  return {d.v.v,
+          {finite_or_zero(d.dx), finite_or_zero(d.dy), finite_or_zero(d.dz)},
+          result.surface.v < 0 ? 0 : static_cast<std::uint32_t>(result.surface.v),
+          result.v.convex.v};
+}
+
+SurfacePlace place(const Code& program, glm::dvec3 p, Workspace& workspace) {
+  using T = Tagged<Real>;
+  Machine<T> machine(program, workspace, 1);
+  *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
+  machine.interpret();
+  const double tag = machine.result()->surface.v;
+  if (tag < 0) return {0, p};
+  const double surface = std::floor(tag / TagObserver<T>::kTags);
+  const auto number = static_cast<std::size_t>(tag - surface * TagObserver<T>::kTags);
+  return {static_cast<std::uint32_t>(surface), machine.tags().seen[number]};
+}
+
+Range range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  const Vec3<Interval> box{{lo.x, hi.x}, {lo.y, hi.y}, {lo.z, hi.z}};
+  const Interval result = run_once<Interval>(program, box, workspace);
+  return {result.lo, result.hi};
+}
+
+AlongLine along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
+                Workspace& workspace) {
+  const auto coordinate = [&](int axis) {
+    const double a = origin[axis] + begin * direction[axis], b = origin[axis] + end * direction[axis];
+    // Grown by far more than the rounding of the end points.
+    const double slack = 0x1p-48 * (std::fabs(a) + std::fabs(b));
+    return Along{{std::min(a, b) - slack, std::max(a, b) + slack}, {direction[axis], direction[axis]}};
+  };
+  const Along result = run_once<Along>(program, Vec3<Along>{coordinate(0), coordinate(1), coordinate(2)}, workspace);
+  return {{result.v.lo, result.v.hi}, {result.d.lo, result.d.hi}};
+}
+
+}  // namespace
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+namespace fathom::vm {
+
+double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::distance(program, point, workspace);
+}
+
+SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::surface(program, point, workspace);
+}
+
+SurfacePlace evaluate_place(const Code& program, glm::dvec3 point, Workspace& workspace) {
+  return HWY_NAMESPACE::place(program, point, workspace);
+}
+
+Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+  return HWY_NAMESPACE::range(program, lo, hi, workspace);
+}
+
+AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin,
+                         double end, Workspace& workspace) {
+  return HWY_NAMESPACE::along(program, origin, direction, begin, end, workspace);
+}
+
+}  // namespace fathom::vm

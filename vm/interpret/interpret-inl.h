@@ -1,0 +1,365 @@
+// The interpreter: one loop, a template over the number type.
+//
+// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (256 with 16 f32 lanes); all
+// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is
+// verified: nothing is checked here.
+#if defined(FATHOM_VM_INTERPRET_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_INTERPRET_INL
+#undef FATHOM_VM_INTERPRET_INL
+#else
+#define FATHOM_VM_INTERPRET_INL
+#endif
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "vm/interpret/meanings-inl.h"
+#include "vm/interpret/workspace.h"
+#include "vm/program/convexity.h"
+#include "vm/program/verify.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+// Who is told what is chosen from: the i-th numbers of a choice's operands, then that the choice is over. No one.
+template <class T>
+struct ChoiceObserver {
+  HWY_INLINE void see(std::size_t, const T&, const T&) {}
+  HWY_INLINE void next() {}
+};
+
+// Numbers the tags: by the surface that the instruction names, wherever the top point is.
+template <class T>
+struct TagObserver {
+  template <class Place>
+  HWY_INLINE std::uint32_t see(std::uint32_t surface, const Place&) {
+    return surface;
+  }
+};
+
+// Numbers per stack slot. Sixteen registers a block measured best or equal: with fewer, an instruction waits for the
+// one before it, with more, the cache is too small. Types that are many registers wide take shorter blocks.
+template <class T>
+inline constexpr std::size_t kSlot = 1;
+template <>
+inline constexpr std::size_t kSlot<Batch> = 16;
+template <>
+inline constexpr std::size_t kSlot<RealBatch> = 8;
+template <>
+inline constexpr std::size_t kSlot<Convex<Batch>> = 16;
+template <>
+inline constexpr std::size_t kSlot<Tagged<Convex<Dual<Batch>>>> = 4;
+
+// Whether the loop holds the code of every opcode. A call for each instruction is felt where a block of one register
+// each is all its work; elsewhere it is not, and the loop compiles in half of the time.
+template <class T>
+inline constexpr bool kInLoop = HWY_TARGET != HWY_SCALAR && std::is_same_v<T, Batch>;
+template <>
+inline constexpr bool kInLoop<Real> = true;
+template <>
+inline constexpr bool kInLoop<RealBatch> = true;
+
+// Whether all numbers of a slot always matter.
+template <class T>
+inline constexpr bool kAlwaysFull = kSlot<T> == 1;
+
+HWY_INLINE Batch immediate(const Code& program, std::size_t word, Batch*) {
+  return Batch::broadcast(std::bit_cast<float>(program.words[word]));
+}
+template <class C>
+HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
+  return C::broadcast(program.wide[word]);
+}
+
+// The groups of immediates of an Outline instruction whose first one is at `word`, made into constants when asked
+// for: there is no bound to how many there are.
+template <class C, int kSize>
+class Outline {
+ public:
+  Outline(const Code& program, std::size_t word, std::size_t count) : Outline(program.wide + word, count) {}
+  Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
+
+  std::size_t count() const { return count_; }
+  // Immediate j of group i, unrounded. Its f32 value is what it rounds to (vm/program/verify.h), and so is broadcast's.
+  double operator()(std::size_t i, std::size_t j) const { return wide_[i * kSize + j]; }
+  Outline<Real, kSize> real() const { return Outline<Real, kSize>(wide_, count_); }
+  HWY_INLINE C constant(std::size_t i, std::size_t j) const { return C::broadcast((*this)(i, j)); }
+
+ private:
+  const double* wide_;
+  std::size_t count_;
+};
+
+// Where float immediates come from: the program, the same for all lanes; or a table [immediate][lane], in which those
+// of an instruction begin at a multiple of four (vm/prune/skeleton.h).
+enum class Immediate { Program, PerLane };
+
+template <class T, Immediate kFrom = Immediate::Program>
+class Machine {
+ public:
+  using Traits = ValueTraits<T>;
+  using P = typename Traits::Point;
+  using Places = PointTraits<P>;
+  using Place = typename Places::Place;
+  using C = Constant<T>;
+  static constexpr std::size_t kBlock = kFrom == Immediate::PerLane ? 1 : kSlot<T>;
+  static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
+
+  // `used` is how many of a slot's numbers matter; `table_bytes` how large a table of immediates is.
+  Machine(const Code& program, Workspace& workspace, std::size_t used, std::size_t table_bytes = 0)
+      : program_(program), used_(used) {
+    const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Place);
+    const std::size_t value_slots = program_.max_values + program_.locals + kSpares;
+    const std::size_t value_bytes = value_slots * kBlock * sizeof(T);
+    auto* memory = static_cast<std::byte*>(workspace.reserve(point_bytes + value_bytes + table_bytes));
+    points_ = reinterpret_cast<Place*>(memory);
+    values_ = reinterpret_cast<T*>(memory + point_bytes);
+    locals_ = values_ + program_.max_values * kBlock;
+    spares_ = locals_ + program_.locals * kBlock;
+    table_ = reinterpret_cast<float*>(memory + point_bytes + value_bytes);
+  }
+
+  Place* first_point() { return points_; }
+  float* immediate_table() { return table_; }
+  const T* result() const { return values_; }
+  ChoiceObserver<T>& observer() { return observer_; }
+  const TagObserver<T>& tags() const { return tags_; }
+
+  // Runs the program on the block of points at first_point(); its values are at result() afterwards.
+  void interpret() {
+    Cursor c{0, points_, values_ - kBlock, 0, 1};
+    const std::size_t size = program_.size;
+    while (c.at != size) {
+      const std::uint32_t word = program_.words[c.at];
+      ++c.at;
+      if constexpr (kFrom == Immediate::PerLane) c.in_table = (c.in_table + 3) & ~std::size_t{3};
+      switch (static_cast<Opcode>(word & 0xff)) {
+// clang-format off
+#define APPLY(Name, apply)                                                                              \
+  case Opcode::Name:                                                                                    \
+    if constexpr (kInLoop<T>) {                                                                         \
+      apply<Name##Op, count_##Name>(c);                                                                 \
+    } else {                                                                                            \
+      out_of_loop([&]() HWY_ATTR { apply<Name##Op, count_##Name>(c); });                                \
+    }                                                                                                   \
+    break;
+#define OP_Point(Name) APPLY(Name, apply_point)
+#define OP_Shape(Name) APPLY(Name, apply_shape)
+#define OP_Outline(Name) APPLY(Name, apply_outline)
+#define OP_Unary(Name) APPLY(Name, apply_unary)
+#define OP_Binary(Name) APPLY(Name, apply_binary)
+#define OP_Ternary(Name) APPLY(Name, apply_ternary)
+#define OP_Machine(Name)
+#define OP(Name, mnemonic, form, ...) OP_##form(Name)
+#include "vm/program/opcodes.def"
+#include "vm/program/opcodes_end.def"
+#undef APPLY
+        // clang-format on
+        case Opcode::Drop:
+          c.point -= kBlock;
+          c.affine >>= 1;
+          break;
+        case Opcode::Tee:
+          copy(locals_ + operand_of(word) * kBlock, c.top);
+          break;
+        case Opcode::Load:
+          c.top += kBlock;
+          copy(c.top, locals_ + operand_of(word) * kBlock);
+          break;
+        case Opcode::Tag:
+          for (std::size_t i = 0; i < used_; ++i) Traits::tag(c.top[i], tags_.see(operand_of(word), c.point[i]));
+          break;
+      }
+    }
+  }
+
+ private:
+  // Where the program is. It is no member: nothing points to it, and so it stays in registers, where a store to a
+  // slot could be thought to change what lies in memory.
+  struct Cursor {
+    std::size_t at;        // next word
+    Place* point;          // top of the point stack
+    T* top;                // top of the value stack
+    std::size_t in_table;  // the next immediate
+    // A bit for each point on the stack, of the top one the lowest: whether affine maps alone have led to it, which
+    // keep what is convex so. Of Convex values alone; what lies deeper than 64 is thought bent.
+    std::uint64_t affine;
+  };
+
+  // Immediate counts as compile-time constants.
+  enum : int {
+#define OP(Name, mnemonic, form, immediates, ...) count_##Name = count_names(immediates),
+#include "vm/program/opcodes.def"
+#undef OP
+  };
+
+  // The instruction's immediates as constants; moves past them. Local copies, so that stores to the stack cannot be
+  // thought to change them.
+  template <int Count>
+  struct Immediates {
+    C k[Count > 0 ? Count : 1];
+    const std::uint32_t* words;
+  };
+  template <int Count>
+  HWY_INLINE Immediates<Count> take(Cursor& c) {
+    Immediates<Count> result;
+    for (int i = 0; i < Count; ++i) {
+      if constexpr (kFrom == Immediate::PerLane) {
+        result.k[i] = C::load(table_ + (c.in_table + static_cast<std::size_t>(i)) * kLanes);
+      } else {
+        result.k[i] = immediate(program_, c.at + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
+      }
+    }
+    c.in_table += Count;
+    result.words = program_.words + c.at;
+    c.at += Count;
+    return result;
+  }
+
+  template <class Apply>
+  static HWY_NOINLINE void out_of_loop(const Apply& apply) {
+    apply();
+  }
+
+  template <class Op, int Count>
+  HWY_INLINE void apply_point(Cursor& c) {
+    const auto immediates = take<Count>(c);
+    if constexpr (Traits::kConvex) {
+      constexpr std::uint64_t kAffine = keeps_convex(Op::kOpcode) ? 1 : 0;
+      c.affine = c.affine << 1 | (c.affine & kAffine);
+    }
+    const Place* from = c.point;
+    Place* to = c.point += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Places::template map<Op>(from[i], immediates.k); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_shape(Cursor& c) {
+    const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
+    const bool moved = modes & kMoved, joined = modes & kJoined;
+    const auto by = moved ? take<3>(c) : Immediates<3>{};
+    const auto immediates = take<Count>(c);
+    const Place* from = c.point;
+    T* to = joined ? c.top : c.top += kBlock;
+    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
+      if (modes & kAnyShape) {
+        const T which = C::load(table_ + c.in_table * kLanes);
+        const T value = any_shape(TranslateOp::apply(*from, by.k), immediates.k, which);
+        *to = joined ? MinOp::apply(*to, value, immediates.k) : value;
+        return;
+      }
+    }
+    const bool convex = is_convex(Op::kOpcode) && c.affine & 1;
+    for_used([&](std::size_t i) HWY_ATTR {
+      const T value = Traits::lift(
+          Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words), convex);
+      if (joined) observer_.see(i, to[i], value);
+      to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
+    });
+    if (joined) observer_.next();
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_outline(Cursor& c) {
+    const Outline<C, Count> outline(program_, c.at, operand_of(program_.words[c.at - 1]));
+    c.at += outline.count() * Count;
+    const Place* from = c.point;
+    T* to = c.top += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::lift(Places::template outline<Op>(from[i], outline)); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_unary(Cursor& c) {
+    const Sources sources = sources_of(program_.words[c.at - 1]);
+    Operand a = operand(c, sources.a, sources.local, spares_);
+    const auto immediates = take<Count>(c);
+    T* to = c.top += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = Traits::template apply<Op>(a.next(), immediates.k); });
+  }
+  template <class Op, int Count>
+  HWY_INLINE void apply_binary(Cursor& c) {
+    const Sources sources = sources_of(program_.words[c.at - 1]);
+    // The constant of a is the first, the value of b the top one.
+    const bool stack = sources.b == Source::Stack;
+    Operand b = stack ? operand(c, sources.b, 0, nullptr) : Operand{};
+    Operand a = operand(c, sources.a, sources.local, spares_);
+    if (!stack) b = operand(c, sources.b, sources.local, spares_ + kBlock);
+    const auto immediates = take<Count>(c);
+    T* to = c.top += kBlock;
+    for_used([&](std::size_t i) HWY_ATTR {
+      const T &x = a.next(), &y = b.next();
+      if constexpr (Op::kChoice != Choice::None) observer_.see(i, x, y);
+      to[i] = Traits::template apply<Op>(x, y, immediates.k);
+    });
+    if constexpr (Op::kChoice != Choice::None) observer_.next();
+  }
+
+  template <class Op, int Count>
+  HWY_INLINE void apply_ternary(Cursor& c) {
+    static_assert(Count == 0);
+    T* to = c.top -= 2 * kBlock;
+    for_used([&](std::size_t i)
+                 HWY_ATTR { to[i] = Traits::template apply<Op>(to[i], to[i + kBlock], to[i + 2 * kBlock]); });
+  }
+
+  // The numbers of an operand, wherever they lie.
+  struct Operand {
+    const T* at;
+    std::size_t step;
+    HWY_INLINE const T& next() {
+      const T* now = at;
+      at += step;
+      return *now;
+    }
+  };
+  // Takes the operand from its source; `spare` is a slot for what is not in one.
+  HWY_INLINE Operand operand(Cursor& c, Source source, std::uint32_t local, T* spare) {
+    if (source == Source::Stack) {
+      c.top -= kBlock;
+      return {c.top + kBlock, 1};
+    }
+    if (source == Source::Local) return {locals_ + local * kBlock, 1};
+    if (source == Source::Constant) {
+      *spare = Traits::lift(as_value(c.point->x, take<1>(c).k[0]));
+      return {spare, 0};
+    }
+    const auto axis = static_cast<std::size_t>(source) - static_cast<std::size_t>(Source::X);
+    if constexpr (std::is_same_v<T, P>) {
+      static_assert(sizeof(Place) % sizeof(T) == 0, "a coordinate's neighbours are a whole number of numbers away");
+      return {&c.point->x + axis, sizeof(Place) / sizeof(T)};
+    } else {
+      P Place::*const coordinate = axis == 0 ? &Place::x : axis == 1 ? &Place::y : &Place::z;
+      const Place* point = c.point;
+      for_used([&](std::size_t i) HWY_ATTR { spare[i] = Traits::lift(point[i].*coordinate); });
+      return {spare, 1};
+    }
+  }
+  HWY_INLINE void copy(T* to, const T* from) {
+    for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });
+  }
+
+  // Calls body(i) for the numbers of a slot that matter. A full block of distances, the common case, has a constant
+  // length; for wider types it makes no difference, and twice the code.
+  template <class Body>
+  HWY_INLINE void for_used(const Body& body) {
+    if (const std::size_t used = used_;
+        kAlwaysFull<T> || kBlock == 1 || (std::is_same_v<T, Batch> && used == kBlock)) {
+      for (std::size_t i = 0; i < kBlock; ++i) body(i);
+    } else {
+      for (std::size_t i = 0; i < used; ++i) body(i);
+    }
+  }
+
+  const Code program_;
+  std::size_t used_;
+  Place* points_;
+  T* values_;
+  T* locals_;
+  T* spares_;
+  float* table_;
+  [[no_unique_address]] ChoiceObserver<T> observer_;
+  [[no_unique_address]] TagObserver<T> tags_;
+};
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

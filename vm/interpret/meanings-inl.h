@@ -1,0 +1,183 @@
+// The opcodes' meanings as functions, and how they are applied to the machine's values and points.
+#if defined(FATHOM_VM_MEANINGS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_MEANINGS_INL
+#undef FATHOM_VM_MEANINGS_INL
+#else
+#define FATHOM_VM_MEANINGS_INL
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "vm/interpret/domain-inl.h"
+#include "vm/interpret/outlines-inl.h"
+#include "vm/interpret/semantics-inl.h"
+#include "vm/interpret/solids-inl.h"
+#include "vm/program/opcode.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+
+#define OP(Name, mnemonic, form, immediates, choice, ...) inline constexpr Choice kChoice##Name = Choice::choice;
+#include "vm/program/opcodes.def"
+#undef OP
+
+// One struct per opcode with its meaning as a function; the form decides what it may use.
+#define OP_Point(Name, meaning)                                                                \
+  struct Name##Op {                                                                            \
+    static constexpr Opcode kOpcode = Opcode::Name;                                            \
+    template <class T>                                                                         \
+    static HWY_INLINE Vec3<T> apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                                          \
+    }                                                                                          \
+  };
+#define OP_Shape(Name, meaning)                                                        \
+  struct Name##Op {                                                                    \
+    static constexpr Opcode kOpcode = Opcode::Name;                                    \
+    template <class T>                                                                 \
+    static HWY_INLINE T apply(const Vec3<T>& p, [[maybe_unused]] const Constant<T>* k, \
+                              [[maybe_unused]] const std::uint32_t* w) {               \
+      return meaning;                                                                  \
+    }                                                                                  \
+  };
+#define OP_Outline(Name, meaning)                                        \
+  struct Name##Op {                                                      \
+    static constexpr Opcode kOpcode = Opcode::Name;                      \
+    template <class T, class Groups>                                     \
+    static HWY_INLINE T apply(const Vec3<T>& p, const Groups& outline) { \
+      return meaning;                                                    \
+    }                                                                    \
+  };
+#define OP_Unary(Name, meaning)                                                    \
+  struct Name##Op {                                                                \
+    template <class T>                                                             \
+    static HWY_INLINE T apply(const T& a, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                              \
+    }                                                                              \
+  };
+#define OP_Binary(Name, meaning)                                                               \
+  struct Name##Op {                                                                            \
+    static constexpr Choice kChoice = kChoice##Name;                                           \
+    template <class T>                                                                         \
+    static HWY_INLINE T apply(const T& a, const T& b, [[maybe_unused]] const Constant<T>* k) { \
+      return meaning;                                                                          \
+    }                                                                                          \
+  };
+#define OP_Ternary(Name, meaning)                                   \
+  struct Name##Op {                                                 \
+    template <class T>                                              \
+    static HWY_INLINE T apply(const T& a, const T& b, const T& c) { \
+      return meaning;                                               \
+    }                                                               \
+  };
+#define OP_Machine(Name, meaning)
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
+#include "vm/program/opcodes.def"
+#include "vm/program/opcodes_end.def"
+
+// How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and
+// how meanings are applied to it. `convex`: of a shape that is.
+template <class T>
+struct ValueTraits {
+  using Point = T;
+  static constexpr bool kConvex = false;
+  static HWY_INLINE T lift(const Point& value, bool = false) { return value; }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const Constant<T>* k) {
+    return Op::apply(a, k);
+  }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const T& b, const Constant<T>* k) {
+    return Op::apply(a, b, k);
+  }
+  template <class Op>
+  static HWY_INLINE T apply(const T& a, const T& b, const T& c) {
+    return Op::apply(a, b, c);
+  }
+  static HWY_INLINE void tag(T&, std::uint32_t) {}
+};
+template <class T>
+struct ValueTraits<Convex<T>> {
+  using Point = T;
+  static constexpr bool kConvex = true;
+  static HWY_INLINE Convex<T> lift(const T& value, bool convex = false) {
+    if (convex) return {value, constant<T>(std::numeric_limits<double>::infinity())};
+    return plain(value);
+  }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Constant<T>* k) {
+    Convex<T> result = plain(Op::apply(a.v, k));
+    if constexpr (std::is_same_v<Op, ScaleOp>) result.convex = max(a.convex * k[0], result.convex);
+    if constexpr (std::is_same_v<Op, OffsetOp>) {
+      // A solid that shrinks shows what lay within it, of which nothing was known.
+      result.convex = select(k[0] < constant<T>(0.0), result.convex, max(a.convex - k[0], result.convex));
+    }
+    return result;
+  }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Convex<T>& b, const Constant<T>* k) {
+    if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
+    Convex<T> result = plain(Op::apply(a.v, b.v, k));
+    if constexpr (std::is_same_v<Op, MeetOp>) result.convex = max(convex_intersection(a, b), result.convex);
+    return result;
+  }
+  template <class Op>
+  static HWY_INLINE Convex<T> apply(const Convex<T>& a, const Convex<T>& b, const Convex<T>& c) {
+    return plain(Op::apply(a.v, b.v, c.v));
+  }
+  static HWY_INLINE void tag(Convex<T>&, std::uint32_t) {}
+};
+// A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is
+// nothing to choose the machine works on the number alone, and the (left) operand's tag stays.
+inline constexpr double kNoSurface = -1;
+template <class T>
+struct ValueTraits<Tagged<T>> {
+  using Number = ValueTraits<T>;
+  using Point = typename Number::Point;
+  static constexpr bool kConvex = Number::kConvex;
+  static HWY_INLINE Tagged<T> lift(const Point& value, bool convex = false) {
+    return {Number::lift(value, convex), constant<T>(kNoSurface)};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Constant<T>* k) {
+    return {Number::template apply<Op>(a.v, k), a.surface};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Tagged<T>& b, const Constant<T>* k) {
+    if constexpr (Op::kChoice != Choice::None) return Op::apply(a, b, k);
+    return {Number::template apply<Op>(a.v, b.v, k), a.surface};
+  }
+  template <class Op>
+  static HWY_INLINE Tagged<T> apply(const Tagged<T>& a, const Tagged<T>& b, const Tagged<T>& c) {
+    return {Number::template apply<Op>(a.v, b.v, c.v), a.surface};
+  }
+  static HWY_INLINE void tag(Tagged<T>& value, double surface) {
+    value.surface = select(value.surface < constant<T>(0.0), constant<T>(surface), value.surface);
+  }
+};
+
+// What the point stack holds for numbers of type P, and how a point's or a shape's meaning is applied to that. Of a
+// shape that is not moved, `by` is 0.
+template <class P>
+struct PointTraits {
+  using Place = Vec3<P>;
+  template <class Op>
+  static HWY_INLINE Place map(const Place& p, const Constant<P>* k) {
+    return Op::apply(p, k);
+  }
+  template <class Op, int Count>
+  static HWY_INLINE P shape(const Place& p, bool moved, const Constant<P>* by, const Constant<P>* k,
+                            const std::uint32_t* w) {
+    return Op::apply(moved ? TranslateOp::apply(p, by) : p, k, w);
+  }
+  template <class Op, class Groups>
+  static HWY_INLINE P outline(const Place& p, const Groups& groups) {
+    return Op::apply(p, groups);
+  }
+};
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

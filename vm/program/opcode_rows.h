@@ -1,0 +1,46 @@
+// Columns of the table (vm/program/opcode.h) at hand: what reads and cuts programs asks for them hundreds of thousands of
+// times a picture, and a call each time took half of it.
+// Tested by: tests/vm/program/opcode_test.cpp
+#pragma once
+
+#include <cstdint>
+
+#include "vm/program/opcode.h"
+
+namespace fathom::vm {
+
+struct OpcodeRow {
+  Opcode opcode;
+  Form form;
+  bool choice;
+  int immediates;  // as OpcodeInfo::immediates
+  int cost;        // as OpcodeInfo::cost
+};
+
+inline constexpr OpcodeRow kOpcodeRows[] = {
+#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
+  {Opcode::Name, Form::form, Choice::choice != Choice::None, count_names(immediates), cost},
+#include "vm/program/opcodes.def"
+#undef OP
+};
+
+inline const OpcodeRow& row_of(std::uint32_t word) { return kOpcodeRows[word & 0xff]; }
+
+inline bool is_function(Form form) { return form == Form::Unary || form == Form::Binary; }
+inline bool is_joined(std::uint32_t word) {
+  return row_of(word).form == Form::Shape && (operand_of(word) & kJoined) != 0;
+}
+
+// Words of an instruction after its opcode word.
+inline std::uint32_t immediates_of(std::uint32_t word) {
+  const OpcodeRow& row = row_of(word);
+  const auto own = static_cast<std::uint32_t>(row.immediates);
+  if (is_function(row.form)) {
+    const Sources sources = sources_of(word);
+    return own + (sources.a == Source::Constant) + (sources.b == Source::Constant);
+  }
+  if (row.form == Form::Shape) return own + (operand_of(word) & kMoved ? 3 : 0);
+  return row.form == Form::Outline ? own * operand_of(word) : own;
+}
+
+}  // namespace fathom::vm
