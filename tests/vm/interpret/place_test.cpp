@@ -21,11 +21,12 @@ namespace {
 using compiler::Scene;
 using glm::dvec3;
 
+// Levelled, as the first pass does: the distances of the program and of the judge are the same.
 Scene painted_scene(int seed) {
   Random random(seed);
   GraphOptions options;
   options.depth = 2 + seed % 4;
-  return random_scene(random, options);
+  return compiler::level(random_scene(random, options));
 }
 
 // As the surface program is made: by all passes but the one that removes paint.
