@@ -35,10 +35,10 @@ std::optional<Number> to_number(Token token) {
   return value;
 }
 
-// The listing's: offset, length, two heights, cost.
+// Columns of a listing: offset, length, two stack heights, cost.
 constexpr int kColumns = 5;
 
-// "12" or "0->1".
+// True for "12" or "0->1".
 bool is_column(Token token) {
   const auto is_number = [](Token part) {
     return !part.empty() && part.find_first_not_of("0123456789") == Token::npos;
@@ -47,7 +47,7 @@ bool is_column(Token token) {
   return is_number(token.substr(0, arrow)) && (arrow == token.size() || is_number(token.substr(arrow + 2)));
 }
 
-// One line's instruction while it is read.
+// Operand and immediates of the instruction being read.
 struct Draft {
   std::uint32_t operand = 0;
   std::vector<double> immediates;
@@ -86,7 +86,7 @@ class Assembler {
     program_.append(row->opcode, draft.operand, draft.immediates, std::move(place));
   }
 
-  // The line's tokens, without the listing's columns, comment and place.
+  // Splits `line` into tokens_, without the listing's columns and the comment. The source location goes to `place`.
   void split(std::string_view line, DebugEntry& place) {
     tokens_.clear();
     int columns = 0;
@@ -110,7 +110,7 @@ class Assembler {
     if (columns > 0 && tokens_.empty()) fail(line, "a line of columns without an instruction");
   }
 
-  // "@6:5 symbol" or "@ symbol"; the symbol goes to the end of the line.
+  // Reads "@6:5 symbol" or "@ symbol"; the symbol extends to the end of the line.
   void read_place(std::string_view text, DebugEntry& place) {
     const std::size_t end = std::min(text.find_first_of(" \r"), text.size());
     const Token where = text.substr(1, end - 1);
@@ -129,7 +129,7 @@ class Assembler {
       fail(symbol, "a backslash here must be followed by n, r, t, \\, \" or u00XX");
   }
 
-  // Returns how long the text in quotes is.
+  // Reads the quoted name after `source`. Returns the length of the quoted text in bytes.
   std::size_t read_source(std::string_view line) {
     const bool alone = tokens_.size() == 1 && tokens_[0] == "source" && program_.words.empty();
     const std::size_t length = quoted_length(line);
@@ -180,7 +180,8 @@ class Assembler {
     return row.form == Form::Outline ? text + ", again and again" : text;
   }
 
-  // Of tee, load, tag and outlines: the number after the mnemonic. Returns where the immediates begin.
+  // Reads the number after the mnemonic of tee, load, tag and outlines. Returns the index of the first immediate's
+  // token.
   std::size_t read_count(const OpcodeInfo& row, Draft& draft) {
     if (tokens_.size() < 2) {
       fail(tokens_[0], fmt::format("`{}` takes a number", row.mnemonic));
@@ -192,7 +193,7 @@ class Assembler {
     return 2;
   }
 
-  // "at 0 1 0 min" behind a shape's own numbers. Returns where these end.
+  // Reads "at 0 1 0 min" behind a shape's own numbers. Returns the end of the shape's own numbers in tokens_.
   std::size_t read_modes(const OpcodeInfo& row, Draft& draft) {
     std::size_t last = tokens_.size();
     if (last > 1 && tokens_[last - 1] == "min") {
@@ -211,10 +212,11 @@ class Assembler {
     return last;
   }
 
-  // "_ x" before a function's own numbers. Returns where these begin.
+  // Reads "_ x" before a function's own numbers. Returns the index of the first of the function's own numbers.
   std::size_t read_sources(const OpcodeInfo& row, Draft& draft) {
     const std::size_t arity = row.form == Form::Binary ? 2 : 1;
-    if (tokens_.size() != 1 + arity + static_cast<std::size_t>(row.immediates)) return 1;  // none, or wrong anyway
+    // A function without operands in the text takes all from the stack; any other count is an error found later.
+    if (tokens_.size() != 1 + arity + static_cast<std::size_t>(row.immediates)) return 1;
     Sources sources;
     std::optional<std::uint32_t> local;
     for (std::size_t i = 0; i < arity && !error_; ++i) {
@@ -261,8 +263,8 @@ class Assembler {
 
   std::string_view text_;
   Program program_;
-  bool placed_ = false, named_ = false, counted_ = false;  // whether a place, `source`, `locals` was read
-  std::vector<Token> tokens_;                              // of the line
+  bool placed_ = false, named_ = false, counted_ = false;  // true once a source location, `source`, `locals` was read
+  std::vector<Token> tokens_;                              // of the current line
   std::optional<AssembleError> error_;
 };
 

@@ -1,4 +1,5 @@
-// Reads what vm/encoding/disassemble.h writes: assemble(disassemble(p)) is p, word for word, with its debug entries.
+// Reads the listings of vm/encoding/disassemble.h: assemble(disassemble(p)) is p, word for word, with its debug
+// entries.
 //
 //     locals 1
 //     source "scene.json"
@@ -6,10 +7,10 @@
 //     tee 0
 //     min _ %0
 //
-// A line is an instruction. In front of it may stand the listing's columns (offset, length, stack heights, cost),
-// which are not looked at: a listing in which something was changed or added reads as what it says now. `;` begins a
-// comment. `@line:column` and the rest of the line say where the instruction comes from. Numbers are decimal; those
-// with a point or exponent are what the machine in double sees, f32 is what they round to.
+// A line is an instruction. The listing's columns (offset, length, stack heights, cost) may precede the instruction
+// and are ignored, so edited listings can be assembled too. `;` begins a comment. `@line:column` and the rest of the
+// line are the instruction's source location and symbol. Numbers are decimal. Float immediates are read as doubles,
+// the constants of evaluation in double, and are rounded to f32 for evaluation in f32.
 //
 // Tested by: tests/vm/encoding/assemble_test.cpp, tests/golden (assembly)
 #pragma once
@@ -24,12 +25,13 @@
 namespace fathom::vm {
 
 struct AssembleError {
-  std::size_t begin, end;  // bytes of the text at fault
+  std::size_t begin, end;  // range of bytes at fault in the text
   std::string reason;
-  bool unknown_instruction = false;  // those bytes should be a mnemonic
+  bool unknown_instruction = false;  // true if [begin, end) is not a mnemonic but should be
 };
 
-// What the text says, sound or not: vm/program/verify.h tells. Without any place (@) in the text there are no debug entries.
+// Returns the unverified program of `text`; vm/program/verify.h checks it. A text without any source location (@)
+// gives no debug entries.
 [[nodiscard]] std::variant<Program, AssembleError> assemble(std::string_view text);
 
 }  // namespace fathom::vm

@@ -10,11 +10,12 @@
 namespace fathom::vm {
 namespace {
 
-// Raised whenever a function of vm/interpret/semantics-inl.h, vm/number/ or their kin gives other values than before: the rows
-// below do not show it. tests/vm/encoding/binary_test.cpp notices.
+// Version of the opcodes' results. Increase the number whenever a function of vm/interpret/*-inl.h or vm/number/
+// changes its values, because kRows does not show that. tests/vm/encoding/binary_test.cpp fails when this was
+// forgotten.
 constexpr std::string_view kMachine = "fathom machine 1\n";
 
-// How an opcode is told apart, read and meant; its cost is an estimate and no part of it.
+// Columns of the opcode table that a program's result depends on. Cost is an estimate and not included.
 constexpr std::string_view kRows =
 #define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
   mnemonic " " #form " " immediates " " #choice " " #meaning "\n"
@@ -27,7 +28,7 @@ bool is_wide(const Program& program, std::size_t word) {
          std::bit_cast<std::uint64_t>(static_cast<double>(std::bit_cast<float>(program.words[word])));
 }
 
-// Calls body(word) for every float immediate. Stops where the code makes no sense: the verifier says so better.
+// Calls body(word) for every float immediate. Stops at invalid code, for which the verifier has a better message.
 template <typename Body>
 void for_each_constant(const std::vector<std::uint32_t>& words, const Body& body) {
   for (std::size_t at = 0; at < words.size();) {
@@ -78,7 +79,7 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
     constant[word] = true;
     program.wide[word] = static_cast<double>(std::bit_cast<float>(program.words[word]));
   });
-  std::optional<VerifyError> misplaced;  // told when the code itself is sound
+  std::optional<VerifyError> misplaced;  // returned only if the code itself passes the verifier
   std::int64_t last = -1;
   for (std::size_t left = in.count(12); left > 0; --left) {
     const std::uint32_t word = in.u32();
@@ -134,7 +135,7 @@ VerifiedProgram with_debug(const VerifiedProgram& verified, DebugTable table) {
   Program program = verified.program();
   program.source_name = std::move(table.source_name);
   program.debug = std::move(table.entries);
-  constexpr std::uint32_t kAny = ~0u;  // it passed with limits of its own
+  constexpr std::uint32_t kAny = ~0u;  // the program already passed the caller's limits
   auto again = verify(std::move(program), {kAny, kAny, kAny});
   return std::get<VerifiedProgram>(std::move(again));
 }

@@ -1,4 +1,4 @@
-// Programs as bytes: docs/BYTECODE.md has the layout. What is read back is verified, or refused with the reason.
+// Programs as bytes; docs/BYTECODE.md has the layout. Programs are verified when read, and refused with the reason.
 // Tested by: tests/vm/encoding/binary_test.cpp
 #pragma once
 
@@ -11,23 +11,23 @@
 
 namespace fathom::vm {
 
-// Of the code alone; write_debug() has the rest.
+// Writes the code without debug entries; write_debug() writes these.
 void write_program(ByteWriter& out, const VerifiedProgram& program);
 [[nodiscard]] std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Limits& limits = {});
 
-// Where the instructions come from, and their source's name.
+// Source locations of the instructions, and the name of their source.
 struct DebugTable {
   std::string source_name;
-  std::vector<DebugEntry> entries;  // none, or one for each instruction
+  std::vector<DebugEntry> entries;  // empty, or one per instruction
 };
 void write_debug(ByteWriter& out, const VerifiedProgram& program, std::string_view source_name);
-// `in` fails when there is something else than a table for `program`.
+// Reads the table of `program`; `in` fails on anything else.
 DebugTable read_debug(ByteReader& in, const VerifiedProgram& program);
-// The same program with that table.
+// Returns a copy of `program` with debug entries `table`.
 VerifiedProgram with_debug(const VerifiedProgram& program, DebugTable table);
 
-// Of everything the table of opcodes says that a program's meaning depends on: two builds with the same digest run
-// a program alike.
+// Returns a digest of all parts of the opcode table that a program's result depends on. Two builds with the same
+// digest compute the same results.
 Digest opcode_digest();
 
 }  // namespace fathom::vm

@@ -1,6 +1,5 @@
-// Numbers and texts as bytes, little endian on every machine: what the files that programs and renders are kept in
-// are made of. What is read may come from a stranger: a reader never leaves its bytes, and after the first failure
-// gives zeros.
+// Numbers and texts as bytes, little endian on every machine: the encoding of program and film files. The bytes of a
+// reader may be hostile: a reader never reads outside them, and returns zeros after the first failure.
 //
 //     ByteWriter out;              ByteReader in(out.bytes());
 //     out.u32(7);                  const std::uint32_t seven = in.u32();
@@ -26,7 +25,7 @@ class ByteWriter {
   void u32(std::uint32_t value) { little_endian(value, 4); }
   void u64(std::uint64_t value) { little_endian(value, 8); }
   void f64(double value);
-  void text(std::string_view text);  // u32 bytes, then these
+  void text(std::string_view text);  // the size in bytes as u32, then the bytes
   void raw(std::span<const std::uint8_t> bytes);
 
   std::size_t size() const { return bytes_.size(); }
@@ -47,16 +46,16 @@ class ByteReader {
   std::uint32_t u32() { return static_cast<std::uint32_t>(little_endian(4)); }
   std::uint64_t u64() { return little_endian(8); }
   double f64();
-  // Fails when it is longer than `most` bytes.
+  // Reads a text; fails when the text is longer than `most` bytes.
   std::string text(std::size_t most);
   std::span<const std::uint8_t> raw(std::size_t count);
-  // A number of things that take `least` bytes each or more; fails when there is no room for so many, so that
-  // nothing is set aside for what is not there.
+  // Reads a count of items that take at least `least` bytes each. Fails when fewer bytes are left than the items
+  // need, so that callers never allocate memory for missing items.
   std::size_t count(std::size_t least);
 
-  void fail() { failed_ = true; }  // what was read makes no sense
+  void fail() { failed_ = true; }  // for bytes that the caller finds invalid
   bool failed() const { return failed_; }
-  std::size_t offset() const { return at_; }  // of the next byte; after a failure of the last one that was there
+  std::size_t offset() const { return at_; }  // of the next byte; stays there after a failure
   std::size_t left() const { return bytes_.size() - at_; }
 
  private:

@@ -1,5 +1,5 @@
-// Fingerprints of bytes: XXH3 of 128 bits (Yann Collet, xxHash specification), the same on every machine. They tell
-// files that are equal from others and from damaged ones; they are no proof against who means harm.
+// Fingerprints of bytes: XXH3 of 128 bits (Yann Collet, xxHash specification), the same on every machine. A Digest
+// detects differing and damaged files, but does not protect against forged files: XXH3 is not cryptographic.
 // Tested by: tests/vm/encoding/bytes_test.cpp
 #pragma once
 

@@ -7,7 +7,8 @@
 namespace fathom::vm {
 namespace {
 
-// e.g. " _ x"; nothing when all operands come from the stack. `constant` is where the next constant lies.
+// Returns the operands' text, e.g. " _ x", or "" when all operands come from the stack. `constant`: offset of the
+// first leading immediate.
 std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t constant) {
   if ((row.form != Form::Unary && row.form != Form::Binary) || operand_of(word) == 0) return "";
   const Sources sources = sources_of(word);
@@ -21,7 +22,7 @@ std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_
   return text;
 }
 
-// e.g. " at 0 1 0 min".
+// Returns the text of kMoved and kJoined, e.g. " at 0 1 0 min". `moved`: offset of the translation.
 std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t moved) {
   if (row.form != Form::Shape) return "";
   std::string text;
@@ -36,7 +37,7 @@ std::string place(const DebugEntry& entry) {
   return entry.symbol.empty() ? where : where + " " + escape(entry.symbol);
 }
 
-// A stack's height before and after, or the one height when it stays.
+// Returns a stack's height before and after, e.g. "0->1", or one number when the height does not change.
 std::string height(int before, int change) {
   return change == 0 ? fmt::format("{}", before) : fmt::format("{}->{}", before, before + change);
 }
@@ -58,7 +59,7 @@ std::string instruction_text(const Program& program, std::size_t at) {
   const std::size_t first = at + 1 + leading, count = instruction_length(word) - 1 - leading;
   for (std::size_t n = 0; n < count; ++n) {
     const int i = static_cast<int>(n) % row.immediates;
-    if (row.form == Form::Outline && i == 0) text += ' ';  // sets the groups apart
+    if (row.form == Form::Outline && i == 0) text += ' ';  // separates the groups
     text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
                                          : fmt::format(" {}", program.wide[first + n]);
   }

@@ -7,7 +7,7 @@
 namespace fathom::vm {
 namespace {
 
-// The controls U+0080 to U+009F in UTF-8.
+// First and last of the control characters U+0080 to U+009F, in UTF-8.
 constexpr std::string_view kFirstC1 = "\xC2\x80", kLastC1 = "\xC2\x9F";
 constexpr std::string_view kLetters = "nrt\\\"", kMeanings = "\n\r\t\\\"";
 

@@ -1,4 +1,4 @@
-// Any text on one line: control characters and backslashes as JSON writes them.
+// Escapes any text so that it fits on one line: control characters and backslashes as JSON writes them.
 // Tested by: tests/vm/encoding/assemble_test.cpp
 #pragma once
 
@@ -7,16 +7,17 @@
 
 namespace fathom::vm {
 
-// What is no UTF-8 stays as it is.
+// Escapes `text`. Bytes that are not UTF-8 stay unchanged.
 std::string escape(std::string_view text);
 
-// The same between quotes, with those in it escaped, too.
+// Escapes `text`, including quotes in it, and puts it between quotes.
 std::string quote(std::string_view text);
-// How many bytes of a line that begins with a quote belong to the quoted text; 0 when it does not end.
+// Returns the number of bytes of the quoted text that begins `line`, including both quotes, or 0 when the closing
+// quote is missing.
 std::size_t quoted_length(std::string_view line);
 
-// The opposite of escape() and of what stands between the quotes, added to `out`; false when there is a backslash
-// that neither would write.
+// Appends the unescaped `text`, a result of escape() or the inside of a result of quote(), to `out`. Returns false on
+// a backslash that neither function would write.
 bool unescape(std::string_view text, std::string& out);
 
 }  // namespace fathom::vm

@@ -5,8 +5,8 @@
 namespace fathom::vm {
 namespace {
 
-// The bytes of the UTF-8 character that begins the text, control or not; 0 when none does. Source: RFC 3629,
-// section 4.
+// Returns the number of bytes of the UTF-8 character that begins the text, a control character or not, or 0 when the
+// text begins with no UTF-8 character. Source: RFC 3629, section 4.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

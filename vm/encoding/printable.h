@@ -1,4 +1,4 @@
-// Text from strangers as a terminal may be sent it.
+// Makes untrusted text safe to send to a terminal.
 // Tested by: tests/vm/encoding/printable_test.cpp
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace fathom::vm {
 
-// The bytes of the character that begins `text`, which is not empty; 0 when it is a control character (Unicode's
-// category Cc) or no UTF-8 (RFC 3629: neither overlong nor a surrogate).
+// Returns the number of bytes of the character that begins `text`, or 0 when the character is a control character
+// (Unicode's category Cc) or not UTF-8 (RFC 3629; overlong forms and surrogates are not UTF-8). `text` is not empty.
 std::size_t printable_length(std::string_view text);
 
-// Each byte that does not belong to such a character as U+FFFD; line breaks stay.
+// Replaces each byte that belongs to no printable character with U+FFFD. Line breaks stay.
 std::string printable(std::string_view text);
 
-// The same for data, with tabs as they are and control characters as JSON writes them: \u0085.
+// Like printable(), for data: tabs stay too, and control characters are written as in JSON: \u0085.
 std::string escape_controls(std::string_view text);
 
 }  // namespace fathom::vm

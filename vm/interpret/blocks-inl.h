@@ -1,4 +1,5 @@
-// The machine over many points: blocks of them, and the way in and out of its lanes.
+// Runs the interpreter over many points: divides the points into blocks, loads their coordinates and stores the
+// results.
 #if defined(FATHOM_VM_BLOCKS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_BLOCKS_INL
 #undef FATHOM_VM_BLOCKS_INL
@@ -25,8 +26,8 @@ HWY_INLINE void set_point(Vec3<Dual<BatchOf<S>>>& p, BatchOf<S> x, BatchOf<S> y,
   p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
 }
 
-// Calls body(first point of the block, points in it) with the machine's points filled; lanes past the end repeat the
-// last point. S: the type of a coordinate.
+// Runs the program on each block of points and calls body(first point, number of points, number of registers,
+// results). Lanes past the end repeat the last point. S: type of a coordinate.
 template <class T, class S, class Body>
 HWY_INLINE void for_each_block(const Code& program, const PointsOf<S>& points, std::size_t count,
                                Workspace& workspace, const Body& body) {
@@ -56,7 +57,7 @@ HWY_INLINE void for_each_block(const Code& program, const PointsOf<S>& points, s
   }
 }
 
-// Stores the first `size` of the lanes that value(i) gives.
+// Stores the first `size` lanes of the registers value(0) to value(used - 1).
 template <class S, class Value>
 HWY_INLINE void store(std::size_t size, std::size_t used, S* to, const Value& value) {
   constexpr std::size_t kWidth = kLanesOf<S>;

@@ -1,6 +1,6 @@
 // The f32 evaluators.
-// Compiled once for each instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for what chooses
-// among them at run time.
+// Compiled once per instruction set, which FATHOM_TARGET names, and once with FATHOM_TARGET=0 for the dispatch at run
+// time.
 #include "vm/interpret/evaluate.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ HWY_AFTER_NAMESPACE();
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// An overflowing derivative has no direction.
+// Returns `a`, or 0 for an infinite or NaN derivative, which gives no direction.
 HWY_INLINE Batch finite_or_zero(Batch a) {
   return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
 }
@@ -107,13 +107,13 @@ struct Isa {
 // Best first.
 constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
 
-// Highway's choice without any mock.
+// Removes any override of Highway's targets. Returns the targets that this computer can run.
 std::int64_t supported_targets() {
   hwy::SetSupportedTargetsForTest(0);
   return (hwy::SupportedTargets() & HWY_TARGETS) | HWY_STATIC_TARGET;
 }
 
-// FATHOM_ISA takes effect before main(): no evaluation can have begun.
+// Applies FATHOM_ISA before main(), when no evaluation can have begun.
 const bool kEnvironmentApplied = [] {
   const char* wanted = std::getenv("FATHOM_ISA");
   if (wanted == nullptr || *wanted == 0 || force_isa(wanted)) return true;
@@ -140,8 +140,8 @@ bool force_isa(std::string_view name) {
   const std::int64_t supported = supported_targets();
   bool found = false;
   for (const Isa& isa : kIsas) found = found || (isa.name == name && (supported & isa.target) != 0);
-  // The instruction set and all below it: what is not compiled for this one runs on the next, not on the portable
-  // code.
+  // Enables the instruction set and all below it, so that a function that is not compiled for the instruction set
+  // runs on the next lower one and not on the portable code.
   std::int64_t targets = 0;
   for (const Isa& isa : kIsas) {
     if (targets != 0 || isa.name == (found ? name : before)) targets |= isa.target;

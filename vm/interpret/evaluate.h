@@ -1,6 +1,7 @@
-// The public door of the machine: distances, gradients, surfaces and ranges of a verified program.
+// Public interface of the interpreter: distances, gradients, surfaces and ranges of a verified program.
 //
-// Same bits for every instruction set, block position and count: each point's result depends on that point alone.
+// Results have the same bits for every instruction set, block position and count: each point's result depends on that
+// point alone.
 //
 //     vm::Workspace workspace;                       // one per thread
 //     vm::evaluate_distance(program, {x, y, z}, count, distance, workspace);
@@ -21,23 +22,24 @@
 
 namespace fathom::vm {
 
-// distance[i] = f(points[i]), float32, for i in [0, count).
+// Computes distance[i] = f(points[i]) in float32 for i in [0, count).
 void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
 
-// The same distances, and how far around each point the solid is convex (vm/number/convex-inl.h): with L the
-// program's Lipschitz constant, at x within convex / L of the point p either f(x) >= convex - L |x - p|, or max(f, 0)
-// is there what one convex function is. At least |distance|; infinite when there is nothing else.
+// Computes the same distances and each point's convexity radius `convex` (vm/number/convex-inl.h). Let L be the
+// program's Lipschitz constant. At every x within convex / L of the point p, either f(x) >= convex - L |x - p|, or
+// max(f(x), 0) equals a convex function, the same for all such x. `convex` is at least |distance|, and infinite for a
+// solid that is convex as a whole.
 void evaluate_convex(const Code& program, Points points, std::size_t count, float* distance, float* convex,
                      Workspace& workspace);
 
-// What is known of a batch of points beside the distance; arrays of at least `count` entries.
+// Results of evaluate_surface() for a batch of points; arrays of at least `count` entries.
 struct SurfaceValues {
   float* distance;
   float* gradient_x;  // df/dx of the winning branch; not normalised; zero where undefined, never NaN on finite input
   float* gradient_y;
   float* gradient_z;
-  std::uint32_t* surface;   // the number of the `tag` that won, 0 in a program without tags
-  float* convex = nullptr;  // as of evaluate_convex; null where nobody asks
+  std::uint32_t* surface;   // surface of the `tag` that won, 0 in a program without tags
+  float* convex = nullptr;  // as in evaluate_convex(); not computed if null
 };
 void evaluate_surface(const Code& program, Points points, std::size_t count, SurfaceValues out, Workspace& workspace);
 
@@ -48,63 +50,64 @@ struct SurfaceValue {
   double convex = 0;
 };
 
-// The same in double, with the program's unrounded constants: one point at a time or many, the same bits.
+// Evaluation in double, with the program's unrounded constants. One point at a time and many give the same bits.
 double evaluate_distance(const Code& program, glm::dvec3 point, Workspace& workspace);
 void evaluate_distance(const Code& program, RealPoints points, std::size_t count, double* distance,
                        Workspace& workspace);
 SurfaceValue evaluate_surface(const Code& program, glm::dvec3 point, Workspace& workspace);
 
-// Where a surface's point lies in the coordinates of the node that the surface was given to: the `tag` that won, and
-// the point on top of the stack where it stands.
+// Position of a point in the coordinates of the node that carries its surface: the top of the point stack at the
+// `tag` that won.
 struct SurfacePlace {
-  std::uint32_t surface;  // the number of the `tag`, 0 in a program without tags
+  std::uint32_t surface;  // of the `tag`, 0 in a program without tags
   glm::dvec3 place;       // the evaluated point itself in a program without tags
 };
-// Where two tags of one surface win equally, the first in the program counts.
+// If two tags of one surface tie, the first in the program wins.
 SurfacePlace evaluate_place(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct SurfaceShare {
-  std::uint32_t surface;  // the number of a `tag`
+  std::uint32_t surface;  // of a `tag`
   double weight;          // above 0
-  glm::dvec3 place{0};    // as of SurfacePlace; only of evaluate_placed_shares()
+  glm::dvec3 place{0};    // as in SurfacePlace; set only by evaluate_placed_shares()
 };
-// The surfaces that have a share in a point, at most the kMost largest; their weights add up to 1. None in a program
-// without tags.
+// Surfaces that have a share in a point: the kMost with the largest weights. The weights add up to 1. Empty in a
+// program without tags.
 struct SurfaceShares {
   static constexpr int kMost = 4;
   std::array<SurfaceShare, kMost> all;
   int count = 0;
 };
-// A surface's share is by how much the distance changes when that surface moves, over the sum of all: where one alone
-// decides 1, along a smooth blend from 0 to 1 as Quilez's mix factor ("Smooth minimum").
+// Computes the surfaces' shares in a point. A surface's share is the change of the distance per movement of that
+// surface, divided by the sum over all surfaces. The share is 1 where one surface alone determines the distance, and
+// goes from 0 to 1 along a smooth blend like Quilez's mix factor ("Smooth minimum").
 SurfaceShares evaluate_shares(const Code& program, glm::dvec3 point, Workspace& workspace);
-// The same with a share for each `tag` instruction and point, so that a surface can have several, each with its
-// place.
+// Like evaluate_shares(), with one share per `tag` instruction and point, so that a surface can have several shares,
+// each with its place.
 SurfaceShares evaluate_placed_shares(const Code& program, glm::dvec3 point, Workspace& workspace);
 
 struct Range {
   double lo, hi;
 };
 
-// An interval that contains f(p) for every p in the box [lo, hi] where every operation has a value, rounded outwards.
-// Source: Moore, "Interval Analysis", 1966.
+// Returns an interval, rounded outwards, that contains f(p) for every p in the box [lo, hi] at which every operation
+// is defined. Source: Moore, "Interval Analysis", 1966.
 Range evaluate_range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
-// What a program does along a stretch of a line: f(origin + t direction) and its derivative by t, for t in [begin,
-// end] (vm/number/along-inl.h). The derivative's range is infinite where the value may jump.
+// Ranges along an interval of a line: of f(origin + t direction) and of its derivative by t, for t in [begin, end]
+// (vm/number/along-inl.h). The derivative's range is infinite where the value may jump.
 struct AlongLine {
   Range value, derivative;
 };
 AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                          Workspace& workspace);
 
-// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and those this machine can run, best
-// first. The environment variable FATHOM_ISA forces one.
+// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and the names of all that this computer
+// can run, best first. The environment variable FATHOM_ISA forces one.
 std::string_view isa_name();
 std::vector<std::string_view> available_isas();
 
-// Uses `name` from here on; false (and no change) when this machine cannot run it. Not thread safe: call it before
-// evaluation starts.
+// Uses the instruction set `name` from here on. Returns false, without a change, if this computer cannot run `name`.
+// Not thread safe: call force_isa() before evaluation starts.
 bool force_isa(std::string_view name);
 
 }  // namespace fathom::vm

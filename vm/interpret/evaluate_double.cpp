@@ -1,4 +1,4 @@
-// The evaluators in double: one point, its gradient and surface, or a box. Slopes: vm/range/slope.cpp.
+// The evaluators in double of one point, its gradient and surface, or a box. Slopes are in vm/range/slope.cpp.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -9,11 +9,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Each execution of a tag has a number of its own: the surface's in units of kTags, plus how many came before. So the
-// winner is found again, and ties are decided by the surface first, as everywhere.
+// Numbers each execution of a tag: the surface times kTags, plus the number of tags executed before. So the winning
+// tag can be identified, and ties are decided by the surface first, as in all evaluators.
 template <>
 struct TagObserver<Tagged<Real>> {
-  static constexpr double kTags = 0x1p28;  // more than a verified program has instructions; with 24 bits still exact
+  // More than a verified program has instructions. The number is exact in a double: 28 bits and a surface's 24.
+  static constexpr double kTags = 0x1p28;
   std::vector<glm::dvec3> seen;
   double see(std::uint32_t surface, const Vec3<Real>& p) {
     seen.emplace_back(p.x.v, p.y.v, p.z.v);
@@ -70,7 +71,7 @@ AlongLine along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, do
                 Workspace& workspace) {
   const auto coordinate = [&](int axis) {
     const double a = origin[axis] + begin * direction[axis], b = origin[axis] + end * direction[axis];
-    // Grown by far more than the rounding of the end points.
+    // Widened by far more than the rounding error of the end points.
     const double slack = 0x1p-48 * (std::fabs(a) + std::fabs(b));
     return Along{{std::min(a, b) - slack, std::max(a, b) + slack}, {direction[axis], direction[axis]}};
   };

@@ -1,5 +1,5 @@
-// Many points in double, compiled for the instruction sets whose registers hold four doubles or more; elsewhere one
-// point at a time is as fast. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
+// The evaluator of many points in double. Compiled for the instruction sets whose registers hold four doubles or
+// more; on others, one point at a time is as fast. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/interpret/evaluate_real_batch.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep

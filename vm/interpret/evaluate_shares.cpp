@@ -1,4 +1,4 @@
-// How much each surface has a share in a point, where blends mix them: one point, in double.
+// The evaluator of the surfaces' shares in a point, where blends mix surfaces: one point, in double.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,11 +11,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Shapes are of this surface until a tag claims them.
+// Surface of a shape until a tag assigns one.
 constexpr std::uint32_t kUnclaimed = std::numeric_limits<std::uint32_t>::max();
 
-// A number and by how much it grows when one of the surfaces it was made from moves in: the derivative, of which only
-// the largest parts are kept. The surfaces of a Placed one are numbers of tags in the order of their execution.
+// A number and its growth per inward movement of each surface it was made from, a derivative, of which only the
+// largest are kept. In a Placed number, `surface` is the index of a tag in order of execution.
 enum class Shares { Plain, Placed };
 template <Shares kShares>
 struct Shared {
@@ -24,7 +24,7 @@ struct Shared {
   SurfaceShares shares;
 };
 
-// Adds `scale` times those of `from`.
+// Adds the shares of `from` times `scale` to `to`. If `to` is full, a larger share replaces the smallest.
 void add_shares(SurfaceShares& to, const SurfaceShares& from, double scale) {
   for (int i = 0; i < from.count; ++i) {
     const SurfaceShare share{from.all[i].surface, from.all[i].weight * scale};
@@ -58,7 +58,7 @@ struct ValueTraits<Shared<kShares>> {
   static HWY_INLINE Shared apply(const Shared& a, const Real* k) {
     return {Op::template apply<Real>(a.v, k), a.shares};
   }
-  // What an operation over several numbers makes of each, whatever it is, its derivatives tell.
+  // An operation on several numbers scales each operand's shares by the derivative with respect to that operand.
   template <class Op>
   static HWY_INLINE Shared apply(const Shared& a, const Shared& b, const Real* k) {
     const Real zero{0}, one{1};
@@ -89,7 +89,7 @@ struct ValueTraits<Shared<kShares>> {
   }
 };
 
-// Of shapes that are joined in one instruction.
+// The min of a shape with kJoined.
 template <Shares kShares>
 HWY_INLINE Shared<kShares> min(const Shared<kShares>& a, const Shared<kShares>& b) {
   return ValueTraits<Shared<kShares>>::template apply<MinOp>(a, b, nullptr);

@@ -1,8 +1,8 @@
 // The interpreter: one loop, a template over the number type.
 //
-// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (256 with 16 f32 lanes); all
-// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The program is
-// verified: nothing is checked here.
+// A stack slot is a block of `kSlot<T>` numbers, so that one dispatch serves many points (256 with 16 f32 lanes). All
+// slots of both stacks and the locals lie in one workspace and stay in the first-level cache. The interpreter checks
+// nothing, because the program is verified.
 #if defined(FATHOM_VM_INTERPRET_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERPRET_INL
 #undef FATHOM_VM_INTERPRET_INL
@@ -23,14 +23,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Who is told what is chosen from: the i-th numbers of a choice's operands, then that the choice is over. No one.
+// Observes the operands of each choice instruction: see() gets the i-th numbers of both operands, next() ends the
+// choice. The primary template ignores them.
 template <class T>
 struct ChoiceObserver {
   HWY_INLINE void see(std::size_t, const T&, const T&) {}
   HWY_INLINE void next() {}
 };
 
-// Numbers the tags: by the surface that the instruction names, wherever the top point is.
+// Maps an executed tag to the number that its value gets. The primary template returns the instruction's surface and
+// ignores the top point.
 template <class T>
 struct TagObserver {
   template <class Place>
@@ -39,8 +41,8 @@ struct TagObserver {
   }
 };
 
-// Numbers per stack slot. Sixteen registers a block measured best or equal: with fewer, an instruction waits for the
-// one before it, with more, the cache is too small. Types that are many registers wide take shorter blocks.
+// Numbers per stack slot. Sixteen registers per block measured best or equal: with fewer, an instruction waits for
+// the previous one; with more, the cache is too small. Types that are many registers wide have shorter blocks.
 template <class T>
 inline constexpr std::size_t kSlot = 1;
 template <>
@@ -52,8 +54,8 @@ inline constexpr std::size_t kSlot<Convex<Batch>> = 16;
 template <>
 inline constexpr std::size_t kSlot<Tagged<Convex<Dual<Batch>>>> = 4;
 
-// Whether the loop holds the code of every opcode. A call for each instruction is felt where a block of one register
-// each is all its work; elsewhere it is not, and the loop compiles in half of the time.
+// True if the code of every opcode is inlined into the loop. A call per instruction costs measurable time only for
+// types of one register. For all other types the opcodes are functions, and the loop compiles in half of the time.
 template <class T>
 inline constexpr bool kInLoop = HWY_TARGET != HWY_SCALAR && std::is_same_v<T, Batch>;
 template <>
@@ -61,7 +63,7 @@ inline constexpr bool kInLoop<Real> = true;
 template <>
 inline constexpr bool kInLoop<RealBatch> = true;
 
-// Whether all numbers of a slot always matter.
+// True if all numbers of a slot are always in use.
 template <class T>
 inline constexpr bool kAlwaysFull = kSlot<T> == 1;
 
@@ -73,8 +75,8 @@ HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
   return C::broadcast(program.wide[word]);
 }
 
-// The groups of immediates of an Outline instruction whose first one is at `word`, made into constants when asked
-// for: there is no bound to how many there are.
+// Groups of immediates of an Outline instruction; the first is at `word`. Immediates are converted to constants on
+// access, because the number of groups has no bound.
 template <class C, int kSize>
 class Outline {
  public:
@@ -82,7 +84,8 @@ class Outline {
   Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
 
   std::size_t count() const { return count_; }
-  // Immediate j of group i, unrounded. Its f32 value is what it rounds to (vm/program/verify.h), and so is broadcast's.
+  // Returns immediate j of group i, unrounded. The immediate's f32 word is this value rounded to f32
+  // (vm/program/verify.h), as broadcast() rounds too.
   double operator()(std::size_t i, std::size_t j) const { return wide_[i * kSize + j]; }
   Outline<Real, kSize> real() const { return Outline<Real, kSize>(wide_, count_); }
   HWY_INLINE C constant(std::size_t i, std::size_t j) const { return C::broadcast((*this)(i, j)); }
@@ -92,8 +95,8 @@ class Outline {
   std::size_t count_;
 };
 
-// Where float immediates come from: the program, the same for all lanes; or a table [immediate][lane], in which those
-// of an instruction begin at a multiple of four (vm/prune/skeleton.h).
+// Source of float immediates: the program, with the same value for all lanes, or a table [immediate][lane], in which
+// each instruction's immediates begin at a multiple of four (vm/prune/skeleton.h).
 enum class Immediate { Program, PerLane };
 
 template <class T, Immediate kFrom = Immediate::Program>
@@ -105,9 +108,9 @@ class Machine {
   using Place = typename Places::Place;
   using C = Constant<T>;
   static constexpr std::size_t kBlock = kFrom == Immediate::PerLane ? 1 : kSlot<T>;
-  static constexpr std::size_t kSpares = 2;  // slots for operands that lie in none
+  static constexpr std::size_t kSpares = 2;  // slots for operands that are neither on the stack nor in a local
 
-  // `used` is how many of a slot's numbers matter; `table_bytes` how large a table of immediates is.
+  // `used`: number of numbers in use per slot. `table_bytes`: size of the table of immediates.
   Machine(const Code& program, Workspace& workspace, std::size_t used, std::size_t table_bytes = 0)
       : program_(program), used_(used) {
     const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Place);
@@ -127,7 +130,7 @@ class Machine {
   ChoiceObserver<T>& observer() { return observer_; }
   const TagObserver<T>& tags() const { return tags_; }
 
-  // Runs the program on the block of points at first_point(); its values are at result() afterwards.
+  // Runs the program on the block of points at first_point(). The values are at result() afterwards.
   void interpret() {
     Cursor c{0, points_, values_ - kBlock, 0, 1};
     const std::size_t size = program_.size;
@@ -176,27 +179,27 @@ class Machine {
   }
 
  private:
-  // Where the program is. It is no member: nothing points to it, and so it stays in registers, where a store to a
-  // slot could be thought to change what lies in memory.
+  // State of the interpreter loop. The Cursor is a local variable and not a member: nothing points to it, so the
+  // compiler keeps the Cursor in registers, whereas stores to stack slots could alias members.
   struct Cursor {
     std::size_t at;        // next word
     Place* point;          // top of the point stack
     T* top;                // top of the value stack
-    std::size_t in_table;  // the next immediate
-    // A bit for each point on the stack, of the top one the lowest: whether affine maps alone have led to it, which
-    // keep what is convex so. Of Convex values alone; what lies deeper than 64 is thought bent.
+    std::size_t in_table;  // row of the next immediate in the table
+    // One bit per point on the stack, the top point's lowest: 1 if only affine maps lead to the point, since these
+    // preserve convexity. Maintained for Convex values only. Points deeper than 64 count as not affine.
     std::uint64_t affine;
   };
 
-  // Immediate counts as compile-time constants.
+  // Number of immediates per opcode, as compile-time constants.
   enum : int {
 #define OP(Name, mnemonic, form, immediates, ...) count_##Name = count_names(immediates),
 #include "vm/program/opcodes.def"
 #undef OP
   };
 
-  // The instruction's immediates as constants; moves past them. Local copies, so that stores to the stack cannot be
-  // thought to change them.
+  // Local copies of the instruction's immediates as constants, because stores to the stack could alias the originals.
+  // take() advances past the immediates.
   template <int Count>
   struct Immediates {
     C k[Count > 0 ? Count : 1];
@@ -278,7 +281,7 @@ class Machine {
   template <class Op, int Count>
   HWY_INLINE void apply_binary(Cursor& c) {
     const Sources sources = sources_of(program_.words[c.at - 1]);
-    // The constant of a is the first, the value of b the top one.
+    // In this order, because a's constant precedes b's in the code, and b's value is above a's on the stack.
     const bool stack = sources.b == Source::Stack;
     Operand b = stack ? operand(c, sources.b, 0, nullptr) : Operand{};
     Operand a = operand(c, sources.a, sources.local, spares_);
@@ -301,7 +304,7 @@ class Machine {
                  HWY_ATTR { to[i] = Traits::template apply<Op>(to[i], to[i + kBlock], to[i + 2 * kBlock]); });
   }
 
-  // The numbers of an operand, wherever they lie.
+  // Iterates over the numbers of an operand.
   struct Operand {
     const T* at;
     std::size_t step;
@@ -311,7 +314,7 @@ class Machine {
       return *now;
     }
   };
-  // Takes the operand from its source; `spare` is a slot for what is not in one.
+  // Fetches an operand from its source. `spare`: slot for a constant, or for a coordinate that must be converted.
   HWY_INLINE Operand operand(Cursor& c, Source source, std::uint32_t local, T* spare) {
     if (source == Source::Stack) {
       c.top -= kBlock;
@@ -337,8 +340,8 @@ class Machine {
     for_used([&](std::size_t i) HWY_ATTR { to[i] = from[i]; });
   }
 
-  // Calls body(i) for the numbers of a slot that matter. A full block of distances, the common case, has a constant
-  // length; for wider types it makes no difference, and twice the code.
+  // Calls body(i) for the numbers in use of a slot. A full block of distances, the common case, has a loop of
+  // constant length. For wider types such a loop is no faster and doubles the code.
   template <class Body>
   HWY_INLINE void for_used(const Body& body) {
     if (const std::size_t used = used_;

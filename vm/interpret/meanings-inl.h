@@ -1,4 +1,4 @@
-// The opcodes' meanings as functions, and how they are applied to the machine's values and points.
+// The opcodes' definitions as functions, and their application to the interpreter's values and points.
 #if defined(FATHOM_VM_MEANINGS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_MEANINGS_INL
 #undef FATHOM_VM_MEANINGS_INL
@@ -24,7 +24,7 @@ namespace fathom::vm::HWY_NAMESPACE {
 #include "vm/program/opcodes.def"
 #undef OP
 
-// One struct per opcode with its meaning as a function; the form decides what it may use.
+// One struct per opcode with its definition as a function. The form determines the parameters.
 #define OP_Point(Name, meaning)                                                                \
   struct Name##Op {                                                                            \
     static constexpr Opcode kOpcode = Opcode::Name;                                            \
@@ -77,8 +77,8 @@ namespace fathom::vm::HWY_NAMESPACE {
 #include "vm/program/opcodes.def"
 #include "vm/program/opcodes_end.def"
 
-// How a value type relates to the points shapes run on, which carry neither what is Tagged nor what is Convex; and
-// how meanings are applied to it. `convex`: of a shape that is.
+// Traits of a value type T. Point: number type of the points that shapes run on, without Tagged and Convex. lift():
+// converts a shape's result to a value; `convex` is true for a convex shape. apply(): applies an opcode to values.
 template <class T>
 struct ValueTraits {
   using Point = T;
@@ -111,7 +111,7 @@ struct ValueTraits<Convex<T>> {
     Convex<T> result = plain(Op::apply(a.v, k));
     if constexpr (std::is_same_v<Op, ScaleOp>) result.convex = max(a.convex * k[0], result.convex);
     if constexpr (std::is_same_v<Op, OffsetOp>) {
-      // A solid that shrinks shows what lay within it, of which nothing was known.
+      // Shrinking a solid exposes its interior, where the operand's radius says nothing.
       result.convex = select(k[0] < constant<T>(0.0), result.convex, max(a.convex - k[0], result.convex));
     }
     return result;
@@ -129,8 +129,8 @@ struct ValueTraits<Convex<T>> {
   }
   static HWY_INLINE void tag(Convex<T>&, std::uint32_t) {}
 };
-// A fresh value belongs to no surface, kNoSurface; a tag claims what no tag within has claimed. Where there is
-// nothing to choose the machine works on the number alone, and the (left) operand's tag stays.
+// A shape's value belongs to no surface (kNoSurface) until a tag assigns one; a tag leaves values that have a surface
+// unchanged. Operations other than choices act on the number alone and keep the (left) operand's surface.
 inline constexpr double kNoSurface = -1;
 template <class T>
 struct ValueTraits<Tagged<T>> {
@@ -158,8 +158,8 @@ struct ValueTraits<Tagged<T>> {
   }
 };
 
-// What the point stack holds for numbers of type P, and how a point's or a shape's meaning is applied to that. Of a
-// shape that is not moved, `by` is 0.
+// Traits of the point stack for numbers of type P: the type of its entries, and the application of Point, Shape and
+// Outline opcodes to them. `by`: the translation of a shape, 0 for a shape that is not `moved`.
 template <class P>
 struct PointTraits {
   using Place = Vec3<P>;

@@ -1,13 +1,13 @@
-// Meanings of the outlines' opcodes: signed distances in the xy plane, z ignored. The head of vm/interpret/semantics-inl.h says
-// what holds for all meanings.
+// Definitions of the outlines' opcodes: signed distances in the xy plane, z ignored. The head of
+// vm/interpret/semantics-inl.h has the rules for all definitions.
 //
-// All are exact and 1-Lipschitz outside, and inside unless said. Shapes with a mirror axis at x = 0 are folded onto
-// x >= 0 first: the nearest point of a symmetric boundary is on p's side. Where p's foot lies within a straight or
-// round piece of the boundary, the distance is that to the whole line or circle, which has a unit gradient and the
-// right sign on the boundary itself; only beyond a piece's end is it a root of squares, whose gradient vanishes at 0.
-// Which side of a corner is the inside follows from the shape, never from a computed sign. Cases after Inigo Quilez,
-// "2D distance functions" (iquilezles.org), derived anew. Sines, normals and lengths come as immediates from
-// compiler/shapes/outline_facts.cpp. Tested by: tests/compiler/shapes/shapes_test.cpp
+// All are exact and 1-Lipschitz outside, and also inside unless stated otherwise. Shapes with a mirror axis at x = 0
+// are folded onto x >= 0 first, because the nearest point of a symmetric boundary is on p's side. If p's nearest
+// point lies inside a straight or round piece of the boundary, the distance is that from the whole line or circle,
+// which has a unit gradient and the right sign even on the boundary. Only beyond a piece's end is the distance a root
+// of squares, whose gradient vanishes at 0. The inside of a corner follows from the shape, never from a computed
+// sign. Cases after Inigo Quilez, "2D distance functions" (iquilezles.org), derived anew. Sines, normals and lengths
+// come as immediates from compiler/shapes/outline_facts.cpp. Tested by: tests/compiler/shapes/shapes_test.cpp
 #if defined(FATHOM_VM_OUTLINES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_OUTLINES_INL
 #undef FATHOM_VM_OUTLINES_INL
@@ -22,20 +22,20 @@ namespace fathom::vm::HWY_NAMESPACE {
 
 inline constexpr double kHalfSqrt2 = 0.70710678118654752;
 
-// The part of `along` that lies beyond 0 or beyond `end`; exactly 0 within.
+// Returns the signed part of `along` beyond [begin, end], exactly 0 inside.
 template <class T>
 HWY_INLINE T beyond_segment(const T& along, Constant<T> begin, Constant<T> end) {
   return along - max(begin, min(end, along));
 }
 
-// `face` where the foot is within the piece, `corner` where it lies `beyond` its end. Less than 1e-15 beyond counts
-// as within: such squares vanish in float, and with them the gradient.
+// Returns `face` if the nearest point lies inside a piece, `corner` if it lies `beyond` the piece's end. Less than
+// 1e-15 beyond counts as inside, because such squares vanish in float, and the gradient with them.
 template <class T>
 HWY_INLINE T face_or_corner(const T& beyond, const T& face, const T& corner) {
   return select(constant<T>(1e-30) < sqr(beyond), corner, face);
 }
 
-// A piece whose ends are convex corners, seen from the side where `face` is the distance.
+// Distance from a piece whose ends are convex corners; `face` is the distance from its line.
 template <class T>
 HWY_INLINE T convex_edge(const T& face, const T& beyond) {
   return face_or_corner(beyond, face, length(face, beyond));
@@ -48,7 +48,7 @@ HWY_INLINE T rectangle(const Vec3<T>& p, Constant<T> x, Constant<T> y) {
   return length(max(zero, qx), max(zero, qy)) + min(zero, max(qx, qy));
 }
 
-// k: one end x y, unit direction to the other, length, thickness. Gradient undefined on the segment.
+// k: one end x y, unit direction to the other end, length, thickness. Gradient undefined on the segment.
 template <class T>
 HWY_INLINE T segment(const Vec3<T>& p, const Constant<T>* k) {
   const T x = p.x - k[0], y = p.y - k[1];
@@ -57,8 +57,8 @@ HWY_INLINE T segment(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // Folds the plane onto the sector between +y and the mirror axis at 180 / n degrees from it, towards +x, for shapes
-// with the symmetry of a regular n-gon. k: six unit normals (x, y) of mirror lines, (0, 0) where fewer do: each
-// halves the angle that is left, so six serve 64 sides.
+// with the symmetry of a regular n-gon. k: six unit normals (x, y) of mirror lines, (0, 0) for lines that are not
+// needed. Each mirror line halves the remaining angle, so six suffice for 64 sides.
 template <class T>
 HWY_INLINE Vec3<T> fold_to_sector(const Vec3<T>& p, const Constant<T>* k) {
   T x = abs(p.x), y = p.y;
@@ -82,9 +82,9 @@ HWY_INLINE T regular_polygon(const Vec3<T>& p, const Constant<T>* k) {
   return convex_edge(face, min(constant<T>(0.0), along));
 }
 
-// k: six normals for fold_to_sector, unit direction from a tip to the inner corner, its length, radius, the inner
-// corner's sign: a large positive number when it is convex and negative when not, 0 when it is nearly flat: there the
-// edge's own side tells.
+// k: six normals for fold_to_sector, unit direction from a tip to the inner corner, distance between these, radius,
+// sign of the inner corner. The sign is a large positive number for a convex inner corner, a large negative number
+// for a concave one, and 0 for a nearly flat one, where p's side of the edge gives the sign.
 template <class T>
 HWY_INLINE T star(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -96,19 +96,19 @@ HWY_INLINE T star(const Vec3<T>& p, const Constant<T>* k) {
   return face_or_corner(beyond, face, select(along < zero, corner, select(face + k[16] < zero, -corner, corner)));
 }
 
-// k: as cone_profile.
+// k: as in cone_profile.
 template <class T>
 HWY_INLINE T trapezoid(const Vec3<T>& p, const Constant<T>* k) {
   return cone_profile(abs(p.x), p.y, k);
 }
-// k: as cone_profile, then the middle's y.
+// k: as in cone_profile, then y of the middle.
 template <class T>
 HWY_INLINE T isosceles_triangle(const Vec3<T>& p, const Constant<T>* k) {
   return cone_profile(abs(p.x), p.y - k[6], k);
 }
 
-// k: half width, half height, skew, outward unit normal of the right side, half the side's length. Point symmetric: a
-// side is measured on the half where p is in front of it. Inside and outside as in cone_profile.
+// k: half width, half height, skew, outward unit normal of the right side, half the side's length. The shape is point
+// symmetric, so the side on p's half is measured. Inside and outside as in cone_profile.
 template <class T>
 HWY_INLINE T parallelogram(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -132,14 +132,14 @@ HWY_INLINE T diamond(const Vec3<T>& p, const Constant<T>* k) {
   return convex_edge(x * k[0] + y * k[1] - k[2], beyond_segment(along, constant<T>(0.0), k[4]));
 }
 
-// k: as round_cone_profile.
+// k: as in round_cone_profile.
 template <class T>
 HWY_INLINE T uneven_capsule(const Vec3<T>& p, const Constant<T>* k) {
   return round_cone_profile(abs(p.x), p.y, k);
 }
 
-// A point in the frame of the ray at an angle from +y, k: its sine and cosine. `past`: distance from the ray's line,
-// positive at larger angles; `out`: along the ray.
+// A point in the frame of a ray from the origin, given by sine and cosine of its angle from +y. `past`: signed
+// distance from the ray's line, positive at larger angles. `out`: coordinate along the ray.
 template <class T>
 struct RayFrame {
   T past, out;
@@ -149,7 +149,7 @@ HWY_INLINE RayFrame<T> ray_frame(const T& x, const T& y, Constant<T> sine, Const
   return {x * cosine - y * sine, x * sine + y * cosine};
 }
 
-// k: radius, thickness, sine and cosine of half the aperture, the end x y. Inside exact where the round ends do not
+// k: radius, thickness, sine and cosine of half the aperture, the end x y. Inside, exact if the round ends do not
 // overlap, else a lower bound. Gradient undefined on the arc.
 template <class T>
 HWY_INLINE T arc(const Vec3<T>& p, const Constant<T>* k) {
@@ -159,7 +159,7 @@ HWY_INLINE T arc(const Vec3<T>& p, const Constant<T>* k) {
   return select(constant<T>(0.0) < past, to_end, to_circle) - k[1];
 }
 
-// A flat end along the ray from `begin` to `end`, then what lies before the ray, `body`.
+// Cuts off the shape of distance `body` along a ray. The flat end extends from `begin` to `end` on the ray.
 template <class T>
 HWY_INLINE T cut_by_ray(const RayFrame<T>& f, const T& body, Constant<T> begin, Constant<T> end) {
   const Constant<T> zero = constant<T>(0.0);
@@ -181,7 +181,8 @@ HWY_INLINE T pie(const Vec3<T>& p, const Constant<T>* k) {
   return cut_by_ray(ray_frame(abs(p.x), p.y, k[1], k[2]), disc, constant<T>(0.0), k[0]);
 }
 
-// k: radius, height, half the chord. The corner is nearest above the radius that leads to it and beside the chord.
+// k: radius, height, half the chord. The corner is nearest for a p outside the chord's width and above the radius
+// that leads to the corner.
 template <class T>
 HWY_INLINE T cut_disk(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -191,8 +192,8 @@ HWY_INLINE T cut_disk(const Vec3<T>& p, const Constant<T>* k) {
   return select(zero < x * k[1] - p.y * k[2], body, select(zero < body, outside, body));
 }
 
-// k: radius, thickness, sine and cosine of half the aperture, length of the legs, inner and outer radius. The legs go
-// on straight where the arc ends.
+// k: radius, thickness, sine and cosine of half the aperture, length of the legs, inner and outer radius. The legs
+// continue the arc's ends as straight lines.
 template <class T>
 HWY_INLINE T horseshoe(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -205,8 +206,8 @@ HWY_INLINE T horseshoe(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // k: half height h, centre's offset c, radius r of the right side's circle about (-c, 0), the tip's unit normal. The
-// distance from the circle as (|p|^2 - h^2 + 2 c x) / (|p - centre| + r), since c^2 - r^2 = -h^2: a slim lens has c
-// and r far larger than itself, which cancel in |p - centre| - r.
+// distance from the circle is computed as (|p|^2 - h^2 + 2 c x) / (|p - centre| + r), using c^2 - r^2 = -h^2. A slim
+// lens has c and r far larger than itself, which would cancel in |p - centre| - r.
 template <class T>
 HWY_INLINE T lens(const Vec3<T>& p, const Constant<T>* k) {
   const T x = abs(p.x), y = abs(p.y), above = y - k[0];
@@ -214,8 +215,8 @@ HWY_INLINE T lens(const Vec3<T>& p, const Constant<T>* k) {
   return select(constant<T>(0.0) < above * k[3] - x * k[4], length(x, above), side);
 }
 
-// k: radius, cut radius, distance, the corner x y, unit normals there of the disk and of the cut. Between the normals
-// the corner is nearest.
+// k: radius, cut radius, distance, the corner x y, unit normals at the corner of the disk and of the cut. The corner
+// is nearest for a p between these normals.
 template <class T>
 HWY_INLINE T moon(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -228,7 +229,7 @@ HWY_INLINE T moon(const Vec3<T>& p, const Constant<T>* k) {
 }
 
 // k: bottom radius, top radius, height, centre's offset c, radius r of the right side's circle about (-c, 0), the
-// unit normal where it meets the top. The side's distance as for lens, since r = c + bottom radius.
+// unit normal where it meets the top. The side's distance is computed as in lens, using r = c + bottom radius.
 template <class T>
 HWY_INLINE T egg(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -238,8 +239,8 @@ HWY_INLINE T egg(const Vec3<T>& p, const Constant<T>* k) {
   return select(p.y < zero, length(p.x, p.y) - k[0], top);
 }
 
-// k: size. Two straight sides at 45 degrees that meet at the origin, and two half circles on the upper sides of a
-// square, which meet in the notch at (0, size).
+// k: size. Two straight sides at 45 degrees meet at the origin. Two half circles on the upper sides of a square meet
+// in the notch at (0, size).
 template <class T>
 HWY_INLINE T heart(const Vec3<T>& p, const Constant<T>* k) {
   const T x = abs(p.x), sum = x + p.y;
@@ -254,7 +255,8 @@ template <class T>
 HWY_INLINE T cross(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
   const T ax = abs(p.x), ay = abs(p.y);
-  // At a tie both take their second operand, which must not be the same.
+  // At a tie max and min return their second operand. The order differs, so that `hi` and `side` get different
+  // operands.
   const T hi = max(ax, ay), end = hi - k[0], side = min(ay, ax) - k[1];
   const T body = max(end, side);
   const T outside = max(length(max(zero, end), max(zero, side)), body);
@@ -274,14 +276,15 @@ HWY_INLINE T rounded_x(const Vec3<T>& p, const Constant<T>* k) {
 
 // k: larger radius a, smaller radius b, a^2 - b^2, 1 when y is the long axis and 0 when x is.
 //
-// For a convex shape the distance, inside and out, is the largest over all unit normals n of <p, n> - h(n), h the
-// support function, here |(a nx, b ny)|: every n gives a lower bound, and an error of n counts squared. The best
-// normal is along (x / v, y / u), v = u + a^2 - b^2, where s = (a x / v, b y / u) has length 1 (Lagrange; u = b^2 on
-// the ellipse). 1 / |s| is concave in u > 0 (More & Sorensen, "Computing a Trust Region Step", 1983), so that
-// Newton's method on 1 / |s| = 1 climbs to the root from any smaller u without ever passing it, such as the one where
-// the larger of s's parts is 1. It is slowest near the ends of the evolute, where kEllipseSteps leave 1e-16. A y of 0
-// counts as 1e-15, so that u > 0. Gradient undefined on the long axis between the evolute's ends; elsewhere it is
-// n, whose own change counts for nothing where n is best.
+// The distance from a convex shape, inside and outside, is the maximum over all unit normals n of <p, n> - h(n),
+// where h is the support function, here |(a nx, b ny)|. So every n gives a lower bound, and an error of n enters
+// squared. The best normal is along (x / v, y / u), v = u + a^2 - b^2, with u such that s = (a x / v, b y / u) has
+// length 1 (Lagrange; u = b^2 on the ellipse). 1 / |s| is concave in u > 0 (More & Sorensen, "Computing a Trust
+// Region Step", 1983), so Newton's method on 1 / |s| = 1 climbs to the root from any smaller u without passing the
+// root. The iteration starts at the u for which the larger component of s is 1. Convergence is slowest near the ends
+// of the evolute, where kEllipseSteps leave an error of 1e-16. A y of 0 counts as 1e-15, so that u > 0. Gradient
+// undefined on the long axis between the evolute's ends. Elsewhere the gradient is n, because the derivative of n
+// contributes nothing at the maximum.
 inline constexpr int kEllipseSteps = 24;
 template <class C>
 struct Direction {
@@ -313,8 +316,9 @@ HWY_INLINE T ellipse(const Vec3<T>& p, const Constant<T>* k) {
   return x * n.x + y * n.y - length(n.x * k[0], n.y * k[1]);
 }
 
-// The distance from a convex shape that both axes mirror rises with |x| and with |y|: its range is that of the
-// nearest and the farthest corner, each with its rounding errors. Intervals would lose the iteration above.
+// The distance from a convex shape with both axes as mirror axes grows with |x| and with |y|. So its range is given
+// by the values at the nearest and the farthest corner, each with its rounding error. Interval arithmetic would give
+// no useful bounds of the iteration above.
 HWY_INLINE Interval ellipse(const Vec3<Interval>& p, const Interval* k) {
   const Interval x = abs(p.x), y = abs(p.y);
   if (!(std::isfinite(x.hi) && std::isfinite(y.hi))) return whole_line();

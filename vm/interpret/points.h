@@ -1,9 +1,9 @@
-// Points as the evaluators take them: one array per coordinate.
+// Points as the evaluators read them: one array per coordinate.
 #pragma once
 
 namespace fathom::vm {
 
-// Coordinates of a batch of points, scene units; three arrays of the same length.
+// Coordinates of a batch of points in scene units: three arrays of the same length.
 template <class S>
 struct PointsOf {
   const S* x;  // [point]

@@ -1,10 +1,12 @@
-// Meanings of the opcodes that are longer than a line (vm/program/opcodes.def), over any number type of vm/number/: basic
-// solids, polygons, the Mandelbulb and blends. Others are in vm/interpret/solids-inl.h, vm/interpret/outlines-inl.h and vm/interpret/domain-inl.h.
+// Definitions of the opcodes that are longer than a line (vm/program/opcodes.def), over any number type of
+// vm/number/: basic solids, polygons, the Mandelbulb and blends. Others are in vm/interpret/solids-inl.h,
+// vm/interpret/outlines-inl.h and vm/interpret/domain-inl.h.
 //
 // T is the number type, C its constants. Each shape states where its gradient is undefined; there the derivative is
-// that of the branch taken, or zero. All are 1-Lipschitz and exact inside and outside unless said. Formulas after
-// Inigo Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign failed; derivations
-// beside. Tested by: tests/compiler/shapes/shapes_test.cpp, tests/vm/number/operators_test.cpp
+// that of the branch taken, or zero. All shapes are 1-Lipschitz and exact inside and outside unless stated otherwise.
+// Formulas after Inigo Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign
+// failed, with derivations in the comments.
+// Tested by: tests/compiler/shapes/shapes_test.cpp, tests/vm/number/operators_test.cpp
 #if defined(FATHOM_VM_SEMANTICS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SEMANTICS_INL
 #undef FATHOM_VM_SEMANTICS_INL
@@ -41,7 +43,7 @@ HWY_INLINE Vec3<T> subtract(const Vec3<T>& p, Constant<T> x, Constant<T> y, Cons
   return {p.x - x, p.y - y, p.z - z};
 }
 
-// A constant as a value, of the type of `like`.
+// Converts a constant to the type of the first argument.
 template <class N>
 HWY_INLINE N as_value(const N&, N k) {
   return k;
@@ -51,7 +53,7 @@ HWY_INLINE Dual<N> as_value(const Dual<N>&, N k) {
   return no_derivative(k);
 }
 
-// Row-major 3x4: m * (p, 1).
+// Returns one row of m * (p, 1), where m is a row-major 3x4 matrix.
 template <class T>
 HWY_INLINE T affine_row(const Vec3<T>& p, const Constant<T>* m) {
   return p.x * m[0] + p.y * m[1] + p.z * m[2] + m[3];
@@ -61,8 +63,9 @@ HWY_INLINE Vec3<T> affine(const Vec3<T>& p, const Constant<T>* m) {
   return {affine_row(p, m), affine_row(p, m + 4), affine_row(p, m + 8)};
 }
 
-// Half extents x, y, z. Gradient undefined on the edges' and the inside's medial planes. The order of min's and max's
-// operands matters: on the surface both terms are 0, and the tie must go to the one with a gradient.
+// Box of half extents x, y, z. Gradient undefined on the edges and on the medial planes inside. The order of min's
+// and max's operands matters: on the surface both terms are 0, and the tie must go to the operand that has a
+// gradient.
 template <class T>
 HWY_INLINE T box(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) {
   const Constant<T> zero = constant<T>(0.0);
@@ -70,7 +73,7 @@ HWY_INLINE T box(const Vec3<T>& p, Constant<T> x, Constant<T> y, Constant<T> z) 
   return length(max(zero, qx), max(zero, qy), max(zero, qz)) + min(zero, max(qx, max(qy, qz)));
 }
 
-// About the y axis.
+// Cylinder about the y axis.
 template <class T>
 HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_height) {
   const Constant<T> zero = constant<T>(0.0);
@@ -79,9 +82,9 @@ HWY_INLINE T cylinder(const Vec3<T>& p, Constant<T> radius, Constant<T> half_hei
 }
 
 // k: half height, bottom radius, top radius, the side's outward normal (nx, ny) in the half-plane (distance from the
-// axis, y), the side's length. Inside, a convex profile: the largest of the planes' distances. Outside, the nearer of
-// the side's segment and the near cap's disc. Unlike sign * sqrt(squares) it keeps a unit gradient on the surface,
-// where the planes' branch is taken.
+// axis, y), the side's length. Inside, the distance is the maximum of the planes' distances, because the profile is
+// convex. Outside, the distance is that from the nearer of the side's segment and the near cap's disc. Unlike
+// sign * sqrt(squares), these branches keep a unit gradient on the surface, where the planes' branch is taken.
 template <class T>
 HWY_INLINE T cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -93,8 +96,8 @@ HWY_INLINE T cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const T past_rim = max(zero, rho - select(y < zero, k[1], k[2]));
   const T outside = sqrt(min(sqr(side) + sqr(beyond), sqr(past_rim) + sqr(cap)));
   const T inside = max(side, cap);
-  // Never less than `inside`, but on a rim rounding can leave `outside` 0 and without a gradient where `inside` is
-  // not.
+  // `outside` is never less than `inside` in exact arithmetic. On a rim, rounding can make `outside` 0, without a
+  // gradient, where `inside` is positive.
   return select(zero < inside, max(outside, inside), inside);
 }
 template <class T>
@@ -102,12 +105,12 @@ HWY_INLINE T cone(const Vec3<T>& p, const Constant<T>* k) {
   return cone_profile(length(p.x, p.z), p.y, k);
 }
 
-// k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane (distance from the axis,
-// y). Gradient undefined at the balls' centres and on the axis inside.
+// Hull of two balls. k: bottom radius, top radius, height, the side's outward normal (nx, ny) in the half-plane
+// (distance from the axis, y). Gradient undefined at the balls' centres and on the axis inside.
 template <class T>
 HWY_INLINE T round_cone_profile(const T& rho, const T& y, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
-  const T along = y * k[3] - rho * k[4];  // where the foot on the side lies, 0 at the lower ball
+  const T along = y * k[3] - rho * k[4];  // position along the side, 0 at the lower ball
   const T lower = length(rho, y) - k[0];
   const T upper = length(rho, y - k[2]) - k[1];
   const T side = rho * k[3] + y * k[4] - k[0];
@@ -118,15 +121,15 @@ HWY_INLINE T round_cone(const Vec3<T>& p, const Constant<T>* k) {
   return round_cone_profile(length(p.x, p.z), p.y, k);
 }
 
-// A flat convex polygon of N corners with a thickness. k: 12 numbers of the map that puts the polygon into the xy
-// plane with its first edge on the x axis, corners counter-clockwise; the first edge's length; for each further edge
-// its start x y, its direction ux uy and its length; the thickness. The distance to the flat polygon is |z| over its
-// inside and the distance to the nearest edge elsewhere. Gradient undefined in the polygon's plane.
+// A flat convex polygon of N corners with a thickness. k: 12 numbers of the affine map that puts the polygon into the
+// xy plane with its first edge on the x axis, corners counter-clockwise; the first edge's length; per further edge
+// its start x y, its direction ux uy and its length; the thickness. The distance from the flat polygon is |z| above
+// its inside and the distance from the nearest edge elsewhere. Gradient undefined in the polygon's plane.
 template <int N, class T>
 HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
   const Vec3<T> q = affine(p, k);
-  T outward = -q.y;  // the largest distance to an edge's line
+  T outward = -q.y;  // maximum signed distance from an edge's line
   T nearest = sqr(q.y) + sqr(q.x - max(zero, min(k[12], q.x)));
   for (int i = 1; i < N; ++i) {
     const Constant<T>* edge = k + 13 + 5 * (i - 1);
@@ -140,7 +143,7 @@ HWY_INLINE T sheet(const Vec3<T>& p, const Constant<T>* k) {
   return sqrt(aside + sqr(q.z)) - k[13 + 5 * (N - 1)];
 }
 
-// The polygon's corner after i, and the sign of its area: 1 when the corners go counter-clockwise.
+// Index of the corner after i, and the polygon's orientation: 1 if the corners are counter-clockwise, else -1.
 template <class Outline>
 HWY_INLINE std::size_t next_corner(const Outline& corners, std::size_t i) {
   return i + 1 == corners.count() ? 0 : i + 1;
@@ -156,13 +159,15 @@ HWY_INLINE double polygon_sense(const Outline& corners) {
   return area < 0 ? -1 : 1;
 }
 
-// A simple polygon in the xy plane, corners (x, y) in either order; z does not matter. Exact. Gradient undefined at
-// the corners and on the medial axis. For each edge, `across` is the signed offset from its line, positive to the
-// right, and `beyond` how far past its nearer end. Where the nearest point lies within an edge nothing comes between,
-// so the edge's side tells inside from outside and the distance is `across` itself: no square root, and on the
-// outline, where it is 0, it keeps the unit gradient that sign * sqrt(squares) loses. Elsewhere the sign is the
-// parity of the edges to the right of p, an edge's lower end counting and its upper not: off the outline, too, for
-// rounding may call the far edge of a thin spike the nearest, whose side is the other one.
+// A simple polygon in the xy plane, corners (x, y) in either order; z is ignored. Exact. Gradient undefined at the
+// corners and on the medial axis.
+//
+// For each edge, `across` is the signed distance from its line, positive to the right, and `beyond` the distance past
+// its nearer end. If the nearest point lies inside an edge, nothing lies between p and that edge, so the distance is
+// |across| without a square root, and p's side of the edge tells inside from outside. On the outline, `across` keeps
+// the unit gradient that sign * sqrt(squares) loses. Off the outline and past an edge's end, the sign is the parity
+// of the edges to the right of p instead (an edge includes its lower end but not its upper end): rounding may take
+// the far edge of a thin spike for the nearest, and p is on the other side of that edge.
 template <class T, class Outline>
 HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
   using C = Constant<T>;
@@ -189,12 +194,12 @@ HWY_INLINE T polygon(const Vec3<T>& p, const Outline& corners) {
     side = select(p.y < corners.constant(ey > 0 ? i : j, 1), side,
                   select(p.y < corners.constant(ey > 0 ? j : i, 1), flipped, side));
   }
-  const C on_outline = constant<T>(0x1p-21 * longest);  // no more than what an edge's line is off by in float
+  const C on_outline = constant<T>(0x1p-21 * longest);  // at most the float error of an edge's line
   const T inner = select(on_outline < abs(offset), abs(offset) * side, offset * constant<T>(polygon_sense(corners)));
   return select(past > zero, sqrt(nearest) * side, inner);
 }
-// 1-Lipschitz: what it is at the box's middle, give or take half the diagonal. The slack outweighs the rounding at
-// the middle by far.
+// Range by the Lipschitz constant 1: the distance at the box's middle plus or minus half the diagonal. The slack far
+// outweighs the rounding error at the middle.
 template <class Outline>
 HWY_INLINE Interval polygon(const Vec3<Interval>& p, const Outline& corners) {
   const Real x{(p.x.lo + p.x.hi) / 2}, y{(p.y.lo + p.y.hi) / 2};
@@ -215,7 +220,7 @@ template <class Outline>
 HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
   const Vec3<Slope> flat{p.x, p.y, constant<Slope>(0.0)};
   Slope d = distance_at(flat, polygon(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, corners));
-  double scale = 1;  // the corners', which a shape at the origin promises nothing of
+  double scale = 1;  // magnitude of the corners, which the error bound in distance_at() does not include
   for (std::size_t i = 0; i < corners.count(); ++i) {
     scale = std::max(scale, std::fabs(corners(i, 0)) + std::fabs(corners(i, 1)));
   }
@@ -223,7 +228,7 @@ HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
   return d;
 }
 
-// (re + i im)^n by repeated squaring.
+// Computes (re + i im)^n by repeated squaring.
 template <class T>
 HWY_INLINE void complex_power(T& re, T& im, std::uint32_t n) {
   T base_re = re, base_im = im;
@@ -253,17 +258,18 @@ HWY_INLINE T integer_power(T base, std::uint32_t n) {
   return result;
 }
 
-// A quotient that is a sine or a cosine in exact arithmetic: keeps intervals from blowing up at the axis.
+// Clamps a quotient that is a sine or cosine in exact arithmetic, so that intervals do not blow up at the axis.
 template <class T>
 HWY_INLINE T clamp_unit(const T& x) {
   return max(constant<T>(-1.0), min(constant<T>(1.0), x));
 }
 
 // Daniel White and Paul Nylander's fractal of 2009 about the y axis: w -> w^n + p in spherical coordinates, computed
-// without trigonometry, (cos a + i sin a)^n being cos na + i sin na. Distance estimate 1/2 log|w| |w| / |dw| after
-// Hart, Sandin & Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989. Not a bound: neither certified nor
-// Lipschitz. Far out the estimate grows like |p| log|p| and would overestimate, so there the ball of radius `bound`
-// that holds the set limits it. m and |dw| are kept from 0 and infinity, so nothing is NaN.
+// without trigonometry by (cos a + i sin a)^n = cos na + i sin na. Distance estimate 1/2 log|w| |w| / |dw| after
+// Hart, Sandin & Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989. The estimate is not a bound: neither
+// certified nor Lipschitz. Far out the estimate grows like |p| log|p| and is too large, so there the distance from
+// the ball of radius `bound`, which contains the set, limits the result. m and |dw| are kept away from 0 and
+// infinity, so nothing is NaN.
 template <class T>
 HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t iterations, Constant<T> bailout,
                         Constant<T> bound) {
@@ -296,8 +302,9 @@ HWY_INLINE T mandelbulb(const Vec3<T>& p, std::uint32_t power, std::uint32_t ite
   return select(distance > bound + bound, min(estimate, distance - bound), estimate);
 }
 
-// Polynomial blend of width k: within |a - b| < k the result dips below the lesser by (k - |a-b|)^2 / (4k), at most
-// k/4 (Inigo Quilez, "Smooth minimum"). The gradient is a convex combination of a's and b's, so 1-Lipschitz stays so.
+// Polynomial blend of width k: where |a - b| < k, the result is below the lesser operand by (k - |a-b|)^2 / (4k), at
+// most k/4 (Inigo Quilez, "Smooth minimum"). The gradient is a convex combination of a's and b's, so the blend of
+// 1-Lipschitz functions is 1-Lipschitz.
 template <class T>
 HWY_INLINE T smooth_min(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
   const T h = max(constant<T>(0.0), k - abs(a - b));
@@ -305,8 +312,8 @@ HWY_INLINE T smooth_min(const T& a, const T& b, Constant<T> k, Constant<T> inv4k
 }
 template <class T>
 HWY_INLINE T smooth_max(const T& a, const T& b, Constant<T> k, Constant<T> inv4k) {
-  // b - a, not a - b: of equals max() is b, and abs()'s derivative that of its operand, so that the gradient there is
-  // the mean of both and not 1.5 times b's less half of a's.
+  // b - a, not a - b: at a tie max() returns b, and abs() has the derivative of its operand. So the gradient at the
+  // tie is the mean of a's and b's, and not 1.5 times b's minus half of a's.
   const T h = max(constant<T>(0.0), k - abs(b - a));
   return max(a, b) + h * h * inv4k;
 }
@@ -328,24 +335,25 @@ HWY_INLINE Tagged<T> smooth_max(const Tagged<T>& a, const Tagged<T>& b, Constant
   return {smooth_max(a.v, b.v, k, inv4k), max(a, b).surface};
 }
 
-// Where the surfaces are within `radius` of each other's edge, the plane at 45 degrees through their edge's
-// neighbours; halved, so that two parallel surfaces' gradients add up to no more than 1 (MERCURY's hg_sdf divides by
-// sqrt 2, which is exact for orthogonal surfaces and too much for others).
+// Union with a chamfer, a plane at 45 degrees within `radius` of the surfaces' common edge. The plane's term is
+// halved, so that the gradients of two parallel surfaces add up to at most 1 (MERCURY's hg_sdf divides by sqrt 2,
+// which is exact for orthogonal surfaces and too much for others).
 template <class T>
 HWY_INLINE T chamfer_min(const T& a, const T& b, Constant<T> radius) {
-  const T lesser = min(a, b);  // on the left of the sum, so that the chamfer belongs to the nearer surface
+  const T lesser = min(a, b);  // left operand of the sum, so that the chamfer belongs to the nearer surface
   return min(lesser, (lesser + max(a, b) - radius) * constant<T>(0.5));
 }
 
-// A quarter circle that touches both surfaces. Its gradient reaches sqrt 2 where they are parallel.
+// Union rounded by a quarter circle that touches both surfaces. The gradient's length reaches sqrt 2 where the
+// surfaces are parallel.
 template <class T>
 HWY_INLINE T round_min(const T& a, const T& b, Constant<T> radius) {
   const Constant<T> zero = constant<T>(0.0);
   return max(radius, min(a, b)) - length(max(zero, radius - a), max(zero, radius - b));
 }
 
-// The same with `steps` stairs of two faces each, every one of height `step` (after MERCURY's hg_sdf, stairs; a fold
-// of a - b, so no steeper than a and b).
+// Union with stairs of two faces and height `step` each within `radius` of the common edge (after MERCURY's hg_sdf,
+// stairs). The stairs are a fold of a - b, so the Lipschitz constant is at most that of a and b.
 template <class T>
 HWY_INLINE T stairs_min(const T& a, const T& b, const Constant<T>* k) {  // k: radius, step, 1 / (2 step)
   const T lesser = min(a, b), greater = max(a, b);
@@ -354,16 +362,16 @@ HWY_INLINE T stairs_min(const T& a, const T& b, const Constant<T>* k) {  // k: r
   return min(lesser, (lesser + greater - k[0] + fold) * constant<T>(0.5));
 }
 
-// The intersection of two bodies whose distances are measured in directions at right angles to each other: an outline
-// and a slab, a profile and a disc. Exact where both are.
+// Intersection of two solids whose distances are measured in orthogonal directions: an outline and a slab, a profile
+// and a disc. Exact where both are.
 template <class T>
 HWY_INLINE T meet(const T& a, const T& b) {
   const Constant<T> zero = constant<T>(0.0);
   return length(max(zero, a), max(zero, b)) + min(zero, max(a, b));
 }
 
-// Smooth minimum and maximum rise in both operands, so their ranges are those of the ends; the formula above would
-// use a and b several times and widen the result by up to k.
+// Smooth minimum and maximum are nondecreasing in both operands, so the operands' ends give the ranges. The generic
+// formula uses a and b several times and would widen the result by up to k.
 HWY_INLINE Interval smooth_min(Interval a, Interval b, Interval k, Interval inv4k) {
   const auto end = [&](double x, double y) HWY_ATTR {
     const Interval h = max(Interval{0, 0}, k - abs(Interval{x, x} - Interval{y, y}));
@@ -378,15 +386,16 @@ HWY_INLINE Interval smooth_max(Interval a, Interval b, Interval k, Interval inv4
 }
 
 HWY_INLINE Along smooth_min(const Along& a, const Along& b, const Along& k, const Along& inv4k) {
-  return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v));  // the derivative is between a's and b's
+  return either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v));  // because the derivative is between a's and b's
 }
 HWY_INLINE Along smooth_max(const Along& a, const Along& b, const Along& k, const Along& inv4k) {
   return -smooth_min(-a, -b, k, inv4k);
 }
 HWY_INLINE Slope smooth_min(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   const Slope generic = smooth_min<Slope>(a, b, k, inv4k);
-  Slope r = either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);  // the gradient is between a's and b's
-  r.nonnegative = false;                                                      // a blend of what is not below 0 is
+  // The gradient is between a's and b's, and a blend of nonnegative operands can be negative.
+  Slope r = either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);
+  r.nonnegative = false;
   return r;
 }
 HWY_INLINE Slope smooth_max(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {

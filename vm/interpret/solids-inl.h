@@ -1,5 +1,5 @@
-// Meanings of solids that are longer than a line: frames, arcs, polyhedra, periodic surfaces, fractals. The head of
-// vm/interpret/semantics-inl.h says what holds for all meanings.
+// Definitions of solids that are longer than a line: frames, arcs, polyhedra, periodic surfaces, fractals. The head
+// of vm/interpret/semantics-inl.h has the rules for all definitions.
 #if defined(FATHOM_VM_SOLIDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SOLIDS_INL
 #undef FATHOM_VM_SOLIDS_INL
@@ -16,17 +16,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Box distances in two coordinates: of a rectangle, given how far p lies beyond its sides.
+// Distance from a rectangle, given the signed distances x and y of p beyond its sides.
 template <class T>
 HWY_INLINE T rectangle(const T& x, const T& y) {
   const Constant<T> zero = constant<T>(0.0);
   return length(max(zero, x), max(zero, y)) + min(zero, max(x, y));
 }
 
-// The edges of a box as bars. k: half extents x, y, z, and those of the windows between the bars. Outside, the
-// nearest of the three bars of p's octant. Inside, the nearest of what the box lacks of space: the outside of the box
-// and three shafts through its windows, whose union's outside distance is exact. Both parts take a wall's distance
-// from the same difference, so that on the surface, where the first is 0, the second has its gradient.
+// The edges of a box as bars. k: half extents x, y, z of the box, and of the windows between the bars. Outside, the
+// distance is that from the nearest of the three bars in p's octant. Inside, the distance is that from the nearest
+// empty region: the outside of the box, or one of three shafts through its windows, whose union's outside distance is
+// exact. Both parts take a wall's distance from the same difference, so that on the surface, where the first part is
+// 0, the second part has the wall's gradient.
 template <class T>
 HWY_INLINE T box_frame(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -40,8 +41,8 @@ HWY_INLINE T box_frame(const Vec3<T>& p, const Constant<T>* k) {
   return bars + min(zero, max(max(qx, max(qy, qz)), -shafts));
 }
 
-// A part of a ring in the xy plane, centred about +y, with round ends. k: major radius, minor radius, sine and cosine
-// of the half angle. Exact outside; inside a lower bound where the ends meet or the hole closes.
+// A part of a ring in the xy plane, centred on +y, with round ends. k: major radius, minor radius, sine and cosine of
+// the half angle. Exact outside; inside, a lower bound if the ends meet or the hole closes.
 template <class T>
 HWY_INLINE T capped_torus(const Vec3<T>& p, const Constant<T>* k) {
   const T ax = abs(p.x);
@@ -50,7 +51,8 @@ HWY_INLINE T capped_torus(const Vec3<T>& p, const Constant<T>* k) {
   return select(p.y * k[2] < ax * k[3], end, ring) - k[1];
 }
 
-// Apex at the origin, opening downwards. Sine and cosine of the half angle. Gradient undefined on the axis inside.
+// Infinite cone with its apex at the origin, opening downwards. `sine` and `cosine` are those of the half angle.
+// Gradient undefined on the axis inside.
 template <class T>
 HWY_INLINE T infinite_cone(const Vec3<T>& p, Constant<T> sine, Constant<T> cosine) {
   const T rho = length(p.x, p.z);
@@ -58,18 +60,19 @@ HWY_INLINE T infinite_cone(const Vec3<T>& p, Constant<T> sine, Constant<T> cosin
   return select(along < constant<T>(0.0), length(p), rho * cosine + p.y * sine);
 }
 
-// Regular polyhedra. The mirrors of the solid's symmetries cut space into chambers, and the point of the surface that
-// is nearest to p lies in p's chamber: of a face only one edge counts, and of it one end. So fold p to a face, and
-// there let `above` be the distance from the face's plane, `beyond` that from the edge's line within the plane, and
-// `past` that from the edge's end along it. k: inradius, the face's own inradius, half an edge.
+// Regular polyhedra. The mirror planes of the solid's symmetries divide space into chambers, and the surface point
+// nearest to p lies in p's chamber. A chamber contains a part of one face, with one edge and one end of that edge. So
+// fold p to the chamber of a face, and let `above` be the signed distance from the face's plane, `beyond` that from
+// the edge's line within the plane, and `past` that from the edge's end along the edge. k: inradius, the face's own
+// inradius, half an edge.
 template <class T>
 HWY_INLINE T to_face(const T& above, const T& beyond, const T& past) {
   const Constant<T> zero = constant<T>(0.0);
   return select(zero < above, length(above, max(zero, beyond), max(zero, past)), above);
 }
 
-// Puts the greater of two numbers first. At a tie each stays one of the two: a maximum and a minimum would both take
-// the second's gradient.
+// Puts the greater of two numbers first. At a tie both numbers keep their gradients; max and min would both take the
+// second's gradient.
 template <class T>
 HWY_INLINE void order(T& greater, T& lesser) {
   const auto wrong = greater < lesser;
@@ -83,7 +86,7 @@ HWY_INLINE void order(Interval& greater, Interval& lesser) {
   greater = first;
 }
 
-// Replaces `most` by `other` where that is greater, and what goes with the one by what goes with the other.
+// Replaces `most` by `other` and `with` by `with_other` where `other` is greater than `most`.
 template <class T>
 HWY_INLINE void raise(T& most, T& with, const T& other, const T& with_other) {
   const auto wins = most < other;
@@ -112,7 +115,7 @@ inline constexpr double kInverseSqrt2 = 0.70710678118654752, kInverseSqrt3 = 0.5
 inline constexpr double kInverseSqrt6 = 0.40824829046386302;
 inline constexpr double kGolden = 1.6180339887498949, kInverseGolden = 0.6180339887498949;
 
-// Mirrored in the plane a + b = 0 to where a + b >= 0.
+// Mirrors (a, b) in the plane a + b = 0 to the side where a + b >= 0.
 template <class T>
 HWY_INLINE void fold(T& a, T& b) {
   const auto behind = a + b < constant<T>(0.0);
@@ -121,7 +124,8 @@ HWY_INLINE void fold(T& a, T& b) {
   a = folded;
 }
 
-// Corners (1,1,1), (1,-1,-1), (-1,1,-1), (-1,-1,1), scaled. Folded to the corner (1,1,1) and the face (1,1,-1) at it.
+// Tetrahedron with corners (1,1,1), (1,-1,-1), (-1,1,-1), (-1,-1,1), scaled. p is folded to the corner (1,1,1) and
+// its face with normal (1,1,-1).
 template <class T>
 HWY_INLINE T tetrahedron(Vec3<T> p, const Constant<T>* k) {
   fold(p.x, p.y);
@@ -133,7 +137,7 @@ HWY_INLINE T tetrahedron(Vec3<T> p, const Constant<T>* k) {
   return to_face(above, beyond, (s.middle + s.least) * constant<T>(kInverseSqrt2) - k[2]);
 }
 
-// Corners on the axes.
+// Octahedron with corners on the axes.
 template <class T>
 HWY_INLINE T octahedron(const Vec3<T>& p, const Constant<T>* k) {
   const Sorted<T> s = sorted(Vec3<T>{abs(p.x), abs(p.y), abs(p.z)});
@@ -142,8 +146,8 @@ HWY_INLINE T octahedron(const Vec3<T>& p, const Constant<T>* k) {
   return to_face(above, beyond, (s.most - s.middle) * constant<T>(kInverseSqrt2) - k[2]);
 }
 
-// The rotation by thirds of a turn about (1,1,1), which permutes the axes, that takes (x,y,z) to where y a + z b is
-// largest; x, y, z >= 0 afterwards.
+// Rotates (|x|,|y|,|z|) by a multiple of a third of a turn about (1,1,1), which permutes the axes, so that y a + z b
+// is largest.
 template <class T>
 HWY_INLINE Vec3<T> turned(const Vec3<T>& p, Constant<T> a, Constant<T> b) {
   const T x = abs(p.x), y = abs(p.y), z = abs(p.z);
@@ -154,9 +158,9 @@ HWY_INLINE Vec3<T> turned(const Vec3<T>& p, Constant<T> a, Constant<T> b) {
           select(second_wins, x, select(third_wins, y, z))};
 }
 
-// Face normals (0, golden ratio, 1) and its turns and mirror images. The face is a regular pentagon in the
-// coordinates (x, up), up = (0, -1, golden ratio) / |.|, with a corner on +up: of its five edges those at 36, 108 and
-// 180 degrees from +up can be nearest where x >= 0.
+// Dodecahedron with face normal (0, golden ratio, 1), its rotations by turned() and mirror images. The face is a
+// regular pentagon in the coordinates (x, up), up = (0, -1, golden ratio) / |.|, with a corner on +up. Only the edges
+// at 36, 108 and 180 degrees from +up can be nearest for x >= 0.
 template <class T>
 HWY_INLINE T dodecahedron(const Vec3<T>& p, const Constant<T>* k) {
   constexpr double kN = 0.52573111211913361;  // 1 / sqrt(1 + golden ratio^2)
@@ -173,9 +177,9 @@ HWY_INLINE T dodecahedron(const Vec3<T>& p, const Constant<T>* k) {
   return to_face(above, beyond - k[1], along - k[2]);
 }
 
-// Face normals (1,1,1), (0, 1/golden ratio, golden ratio) and their turns and mirror images; the mirror that
-// exchanges these two leaves the second. The face is a triangle in (x, up), up = (0, -golden ratio, 1/golden ratio) /
-// sqrt 3, with a corner on -up.
+// Icosahedron with face normals (1,1,1), (0, 1/golden ratio, golden ratio), their rotations by turned() and mirror
+// images. A further mirror plane, which exchanges these two normals, folds p to the second. The face is a triangle in
+// (x, up), up = (0, -golden ratio, 1/golden ratio) / sqrt 3, with a corner on -up.
 template <class T>
 HWY_INLINE T icosahedron(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0), half = constant<T>(0.5);
@@ -193,10 +197,10 @@ HWY_INLINE T icosahedron(const Vec3<T>& p, const Constant<T>* k) {
   return to_face(above, beyond - k[1], along - k[2]);
 }
 
-// A square base and an apex above it. k: half width, half height; of a side the outward normal (nx, ny); of a side's
-// edge the normal (mx, my) in the side's plane, and the length. Folded to the half of one side: inside the nearer of
-// its plane and the base's; outside the nearest of the side's triangle, the distance to whose lower edge is left to
-// the base, and the base's square.
+// Pyramid with a square base and an apex above its middle. k: half width, half height; a side's outward normal (nx,
+// ny); the normal (mx, my) of a side's edge in the side's plane, and that edge's length. p is folded to one half of a
+// side. Inside, the distance is that from the nearer of the side's and the base's plane. Outside, the distance is
+// that from the nearer of the side's triangle and the base's square; the base accounts for the triangle's lower edge.
 template <class T>
 HWY_INLINE T pyramid(const Vec3<T>& p, const Constant<T>* k) {
   const Constant<T> zero = constant<T>(0.0);
@@ -204,24 +208,24 @@ HWY_INLINE T pyramid(const Vec3<T>& p, const Constant<T>* k) {
   order(x, z);
   const T qx = x - k[0], qy = p.y + k[1], qz = z - k[0];  // from the base's corner
   const T side = qx * k[2] + qy * k[3];
-  const T up = qy * k[2] - qx * k[3];  // the side, from its lower edge
+  const T up = qy * k[2] - qx * k[3];  // up the side, from its lower edge
   const T beyond = qz * k[4] + up * k[5];
-  const T along = up * k[4] - qz * k[5];  // the edge, from the base's corner
+  const T along = up * k[4] - qz * k[5];  // along the edge, from the base's corner
   const T past = along - max(zero, min(k[6], along));
   const T to_base = sqr(max(zero, qx)) + sqr(qy) + sqr(max(zero, qz));
   const T to_side = sqr(side) + sqr(max(zero, beyond)) + sqr(past);
   const T outside = sqrt(select(up < zero, to_base, min(to_base, to_side)));
   const T inside = max(side, -qy);
-  // As for the cone.
+  // `outside` can be 0 by rounding, as in cone_profile().
   return select(zero < inside, max(outside, inside), inside);
 }
 
-// Triply periodic surfaces, of angles k p; the solid is where they are negative. None changes faster than sqrt 3 k,
-// and each does where all its angles are 0 (gyroid, Schwarz D) or a quarter turn (Schwarz P), which is on the
-// surface.
+// Triply periodic surfaces: functions of the angles k p, negative inside the solid. Their Lipschitz constants are
+// sqrt 3 k, which is attained where all angles are 0 (gyroid, Schwarz D) or a quarter turn (Schwarz P). These points
+// are on the surface.
 //
 // Gyroid (Schoen 1970; this approximation is the usual one): a partial derivative cos x cos y - sin z sin x is at
-// most sqrt(cos^2 y + sin^2 z) by Cauchy's inequality; the squares of the three add up to 3.
+// most sqrt(cos^2 y + sin^2 z) by Cauchy's inequality, and the squares of these three bounds add up to 3.
 template <class T>
 HWY_INLINE T gyroid(const Vec3<T>& p, Constant<T> k) {
   const T x = p.x * k, y = p.y * k, z = p.z * k;
@@ -231,22 +235,22 @@ template <class T>
 HWY_INLINE T schwarz_p(const Vec3<T>& p, Constant<T> k) {
   return cos(p.x * k) + cos(p.y * k) + cos(p.z * k);
 }
-// Schwarz D is half the sum of the sines of x+y-z, x-y+z, -x+y+z and x+y+z. Its gradient's square is
-// sum c_i^2 - (sum c_i)^2 / 4 with c_i the cosines of four angles whose sum is half a turn (the last is negated).
-// With half sums p and pi/2 - p of two pairs of them, C = cos p, S = sin p, and u, v the cosines of their half
-// differences, that is 2 + (C u - S v)^2 - 2 (C v)^2 - 2 (S u)^2. On the square |u|, |v| <= 1 the quadratic form is
-// largest on the border: at a corner at most 0, on a side u = 1 at most 3 C^2 - 2 + C^2 S^2 / (3 C^2 - 1) with C^2 >=
-// 1/2, hence at most 1. So the square is at most 3.
+// Schwarz D is half the sum of the sines of x+y-z, x-y+z, -x+y+z and x+y+z. The square of its gradient's length is
+// sum c_i^2 - (sum c_i)^2 / 4, where c_i are the cosines of four angles whose sum is half a turn (the last is
+// negated). Let p and pi/2 - p be the half sums of two pairs of these angles, C = cos p, S = sin p, and u, v the
+// cosines of the pairs' half differences. Then the square is 2 + (C u - S v)^2 - 2 (C v)^2 - 2 (S u)^2. On |u|, |v|
+// <= 1 the quadratic form after the 2 is largest on the border: at a corner at most 0, on a side u = 1 at most 3 C^2
+// - 2 + C^2 S^2 / (3 C^2 - 1) with C^2 >= 1/2, hence at most 1. So the square is at most 3.
 template <class T>
 HWY_INLINE T schwarz_d(const Vec3<T>& p, Constant<T> k) {
   const T x = p.x * k, y = p.y * k, z = p.z * k;
   return sin(x) * cos(y - z) + cos(x) * sin(y + z);
 }
 
-// Karl Menger's sponge of 1926: a cube without the middle third of each of its sides' squares, all the way through,
-// and so on for the cubes of a third. |.| and min fold p into the cube of each level, a continuous map that lengthens
-// nothing; of the folded coordinates the middle one is the distance from the nearest hole's axis in the largest of
-// two coordinates. A lower bound outside, and in the holes.
+// Karl Menger's sponge of 1926: a cube whose faces' middle squares, of a third of the width, are cut all the way
+// through, repeated in the remaining cubes of a third of the width. abs and min fold p into the cube of each level, a
+// continuous nonexpansive map. The middle one of the folded coordinates is the distance from the nearest hole's axis
+// in the maximum norm. The result is a lower bound outside and in the holes.
 template <class T>
 HWY_INLINE T menger_sponge(const Vec3<T>& p, Constant<T> half_size, std::uint32_t iterations) {
   const Constant<T> third = constant<T>(1.0 / 3);
@@ -262,12 +266,12 @@ HWY_INLINE T menger_sponge(const Vec3<T>& p, Constant<T> half_size, std::uint32_
   return d;
 }
 
-// The filled Julia set of q -> q^2 + c in the quaternions, its slice through 1, i, j (Norton, "Generation and display
-// of geometric fractals in 3-D", 1982). k: c, the radius `bound` that no orbit returns from, the radius at which to
-// stop. The surface lies where the last of the orbit is at `bound`; the estimate is that of Hart, Sandin & Kauffman,
-// "Ray Tracing Deterministic 3-D Fractals", 1989, with the logarithm taken from there. The set lies in the ball of
-// radius `bound`: far out that ball's distance is taken, and nowhere less. Not a bound: neither certified nor
-// Lipschitz.
+// The slice through 1, i, j of the filled Julia set of q -> q^2 + c in the quaternions (Norton, "Generation and
+// display of geometric fractals in 3-D", 1982). k: c. `bound`: radius from beyond which no orbit returns. `bailout`:
+// radius at which the iteration stops. The surface lies where the last point of the orbit has the radius `bound`. The
+// estimate is that of Hart, Sandin & Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989, with the logarithm of
+// |q| / bound. The ball of radius `bound` contains the set, so the result is at least the distance from that ball,
+// and exactly this distance far out. The estimate is not a bound: neither certified nor Lipschitz.
 template <class T>
 HWY_INLINE T julia(const Vec3<T>& p, std::uint32_t iterations, const Constant<T>* k, Constant<T> bound,
                    Constant<T> bailout) {

@@ -16,10 +16,10 @@ float first_lane(const Batch& batch) {
   return lanes[0];
 }
 
-// The program up to the end of an instruction.
+// The program up to and including an instruction.
 struct Prefix {
-  std::size_t offset, size;  // of the instruction's opcode word; of all words so far
-  std::size_t values, points;
+  std::size_t offset, size;    // offset of the instruction's opcode word; number of words up to its end
+  std::size_t values, points;  // heights of the stacks at its end
 };
 
 std::vector<Prefix> prefixes_of(const Code& program) {
@@ -66,7 +66,7 @@ bool is_finite(const TraceStep& step) {
          std::all_of(step.values.begin(), step.values.end(), [](float v) { return std::isfinite(v); });
 }
 
-// By halves: the first `lo` instructions leave finite numbers, the first `hi` do not.
+// Bisects: the stacks are finite after the first `lo` instructions, but not after the first `hi`.
 std::optional<std::size_t> bisect(const Code& program, glm::dvec3 p) {
   Workspace workspace;
   const std::vector<Prefix> prefixes = prefixes_of(program);

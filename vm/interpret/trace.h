@@ -1,7 +1,7 @@
-// A program run at one point with its stacks shown after every instruction, as the machine in f32 has them.
+// Runs a program at one point in f32 and reports both stacks after every instruction.
 //
-// The machine itself keeps no trace: the program is run once for each instruction, up to there. So this is for
-// listings, not for speed: the work grows with the square of the length.
+// The interpreter keeps no trace. Instead, trace() runs the program once per instruction, up to that instruction. So
+// the work grows with the square of the program's length: use traces for listings only.
 // Tested by: tests/vm/interpret/trace_test.cpp
 #pragma once
 
@@ -16,17 +16,17 @@
 
 namespace fathom::vm {
 
-// After an instruction; the deepest first.
+// Stacks after an instruction, deepest entry first.
 struct TraceStep {
-  std::size_t offset;             // of its opcode word
-  std::vector<glm::vec3> points;  // the caller's is the first
+  std::size_t offset;             // of the instruction's opcode word
+  std::vector<glm::vec3> points;  // the first is the caller's
   std::vector<float> values;
 };
 
 void trace(const Code& program, glm::dvec3 point, const std::function<void(const TraceStep&)>& each);
 
-// Where the program's value at the point, in f32, is not a finite number: an instruction before which all on the
-// stacks was finite, and after it no longer; the offset of its opcode word. Nothing where the value is finite.
+// Returns the offset of the opcode word of an instruction before which all entries of the stacks are finite in f32,
+// and after which some are infinite or NaN. Returns nothing if the program's value at the point is finite.
 std::optional<std::size_t> first_not_finite(const Code& program, glm::dvec3 point);
 
 }  // namespace fathom::vm

@@ -1,4 +1,4 @@
-// Memory that the machine runs in.
+// Memory of the interpreter.
 #pragma once
 
 #include <cstddef>
@@ -6,10 +6,11 @@
 
 namespace fathom::vm {
 
-// Scratch memory for the stacks; grows to the largest program it has seen. Not to be shared between threads.
+// Scratch memory for the stacks. A Workspace grows to the largest program run in it. Not thread safe: use one per
+// thread.
 class Workspace {
  public:
-  // At least `bytes` bytes, aligned to 64; what they held before is lost.
+  // Returns at least `bytes` bytes, aligned to 64. Their previous contents are lost.
   void* reserve(std::size_t bytes);
 
  private:

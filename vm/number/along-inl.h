@@ -1,11 +1,12 @@
-// Along: what f does along a stretch of a line: the range of its value, and the range of its derivative by the line's
-// parameter. A search for roots needs both: where the derivative keeps its sign there is at most one, and next to a
-// touch the value is nearly still, which the value's range alone says only of very short stretches. Source: Mitchell,
-// "Robust Ray Intersection with Interval Arithmetic", 1990.
+// Along: ranges of f's value and of its derivative by the line's parameter, along an interval of a line. Root
+// isolation needs both: an interval in which the derivative keeps its sign has at most one root. Near a tangency the
+// value hardly changes, which the value's range alone shows only for very short intervals. Source: Mitchell, "Robust
+// Ray Intersection with Interval Arithmetic", 1990.
 //
 //     sqrt(t^2 + 1) - 2 over t in [0, 1]:    v [-1, -0.58]   d [0, 0.71]
 //
-// Holds, as Slope, for programs without undefined operations; where the value may jump the derivative has no bound.
+// Like Slope's, the ranges hold where every operation of the program is defined. The derivative's range is unbounded
+// where the value may jump.
 // Tested by: tests/vm/number/along_test.cpp
 #if defined(FATHOM_VM_ALONG_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ALONG_INL
@@ -26,10 +27,10 @@ struct Along {
   static inline Along broadcast(double value) { return {Interval::broadcast(value), {0, 0}}; }
 };
 
-// f(a), f's derivative being in `slope`.
+// Returns f(a) with range v, where f's derivative is in `slope`.
 inline Along chain(const Along& a, Interval v, Interval slope) { return {v, a.d * slope}; }
 inline Along jump(const Along&, Interval v) { return {v, whole_line()}; }
-// One of the two, which meet where the choice changes.
+// Returns a value that is a or b and is continuous where the choice changes.
 inline Along either(const Along& a, const Along& b, Interval v) { return {v, hull(a.d, b.d)}; }
 
 inline Along operator-(const Along& a) { return {-a.v, -a.d}; }
@@ -69,9 +70,9 @@ inline Along sqrt(const Along& a) {
   return chain(a, root, root.lo > 0 ? Interval{0.5, 0.5} / root : whole_line());
 }
 
-// A number that changes by no more than `speed` along the line.
+// Returns a value in v whose derivative is at most `speed` in magnitude.
 inline Along at_most(Interval v, double speed) { return {v, {-speed, speed}}; }
-// x dx / l, the share of one component in the derivative of a length l.
+// Returns x dx / l, the term of component x in the derivative of a length l; `inverse` is 1 / l.
 inline Interval share(const Along& x, Interval inverse) { return intersect(x.v * inverse, -1, 1) * x.d; }
 inline Along length(const Along& x, const Along& y) {
   const Interval l = length(x.v, y.v);
@@ -94,7 +95,7 @@ inline Along tan(const Along& a) {
   const Interval t = tan(a.v);
   return magnitude(t) < std::numeric_limits<double>::infinity() ? chain(a, t, Interval{1, 1} + sqr(t)) : jump(a, t);
 }
-// 1/sqrt(1 - x^2), and 0 where |x| > 1; unbounded near 1.
+// Range of the derivative 1/sqrt(1 - x^2), which is 0 where |x| > 1 and unbounded near 1.
 inline Interval asin_rise(Interval x) {
   const Interval one{1, 1}, m = abs(x);
   if (m.lo > 1) return {0, 0};
@@ -123,12 +124,12 @@ inline Along pow(const Along& x, const Along& y) {
     return chain(x, v, n == 0 ? Interval{0, 0} : Interval{n, n} * pow(x.v, Interval{n - 1, n - 1}));
   }
   if (x.v.lo > 0) return {v, exp(y * log(x)).d};
-  // Above 1 a power of what may be 0 still has a slope.
+  // A power with exponent above 1 has a bounded derivative even at x = 0.
   if (fixed && x.v.lo >= 0 && y.v.lo > 1) return chain(x, v, y.v * pow(x.v, y.v - Interval{1, 1}));
   return jump(x, v);
 }
 
-// A step function: constant where there is one step.
+// Value of a step function: constant if there is only one step in the interval.
 inline Along steps(const Along& a, Interval v) { return v.lo == v.hi ? Along{v, {0, 0}} : jump(a, v); }
 inline Along floor(const Along& a) { return steps(a, floor(a.v)); }
 inline Along ceil(const Along& a) { return steps(a, ceil(a.v)); }

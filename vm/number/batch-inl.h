@@ -1,5 +1,5 @@
-// Batch and RealBatch: as many f32 or double lanes as the instruction set has in a register. Plain multiplies and
-// adds only, never fused, so that every instruction set gives the same bits.
+// Batch and RealBatch: one register of f32 or double lanes of the instruction set. Multiplies and adds are never
+// fused, so that every instruction set gives the same bits.
 #if defined(FATHOM_VM_BATCH_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_BATCH_INL
 #undef FATHOM_VM_BATCH_INL
@@ -21,7 +21,7 @@ struct BatchMaskOf {
   hn::Mask<hn::ScalableTag<S>> m;
 };
 
-// S: the type of a lane, float or double.
+// Register of lanes of type S, float or double.
 template <class S>
 struct BatchOf {
   using Constant = BatchOf;
@@ -102,8 +102,8 @@ template <class S>
 HWY_INLINE BatchOf<S> select(BatchMaskOf<S> m, BatchOf<S> yes, BatchOf<S> no) {
   return {hn::IfThenElse(m.m, yes.v, no.v)};
 }
-// a < b ? a : b, so that a NaN gives b. That is what x86's minps and minpd compute; other machines and Highway's
-// emulation have other rules.
+// min(a, b) is a < b ? a : b, so a NaN in either operand gives b. x86's minps and minpd follow this rule; other
+// instruction sets and Highway's emulation follow others.
 #undef FATHOM_X86_REGISTERS
 #define FATHOM_X86_REGISTERS (HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3)
 template <class S>
@@ -143,7 +143,7 @@ HWY_INLINE BatchOf<S> length(BatchOf<S> x, BatchOf<S> y, BatchOf<S> z) {
   return sqrt(x * x + y * y + z * z);
 }
 
-// Adding 0 makes -0 into 0: instruction sets differ in the sign of a zero they round to.
+// Rounding functions. Adding 0 turns -0 into 0, because instruction sets differ in the sign of a rounded zero.
 template <class S>
 HWY_INLINE BatchOf<S> floor(BatchOf<S> a) {
   return BatchOf<S>{hn::Floor(a.v)} + BatchOf<S>::broadcast(0.0);
@@ -161,7 +161,7 @@ HWY_INLINE BatchMaskOf<S> is_nan(BatchOf<S> a) {
   return {hn::IsNaN(a.v)};
 }
 
-// How a number's bits are laid out.
+// Bit layout of a floating-point type.
 template <class S>
 struct FloatLayout;
 template <>
@@ -177,7 +177,7 @@ struct FloatLayout<double> {
   static constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
 };
 
-// 2^n for a whole n in [1 - bias, bias].
+// Returns 2^n for an integer n in [1 - bias, bias].
 template <class S>
 HWY_INLINE BatchOf<S> power_of_two(BatchOf<S> n) {
   using Layout = FloatLayout<S>;

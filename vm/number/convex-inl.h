@@ -1,10 +1,11 @@
-// Convex<T>: a number and how far around the point the solid it stands for is convex: of convex shapes, their unions and
-// intersections, scaled, grown or blended elsewhere; of all other results no more is known than their distance.
+// Convex<T>: a distance and a convexity radius, within which the solid around the point is convex. Convex shapes have
+// such a radius, and so have their unions, intersections, scalings and growing offsets, and their blends away from
+// the blended region. For all other results the radius is |distance|.
 //
-// With L the number's Lipschitz constant: at a place x within convex / L of the point p, either v(x) is at least
-// convex - L |x - p|, or max(v, 0) is there what some convex function is, the same for all such x. So a ray that leaves
-// a convex solid does not come back to it, and one that comes nearer does not meet it before where the line through
-// two of its values becomes 0.
+// Let L be the distance's Lipschitz constant, p the point, and x any point within convex / L of p. Then either v(x)
+// is at least convex - L |x - p|, or max(v(x), 0) equals a convex function, the same function for all such x. So a
+// ray that leaves a convex solid does not return to it, and a ray that approaches it does not hit it before the zero
+// of the line through two of its values.
 #if defined(FATHOM_VM_CONVEX_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_CONVEX_INL
 #undef FATHOM_VM_CONVEX_INL
@@ -21,26 +22,28 @@ template <class T>
 struct Convex {
   using Constant = typename T::Constant;
   T v;
-  Constant convex;  // at least |v|: so near the solid is empty or everything
+  Constant convex;  // convexity radius; at least |v|, because within |v| space is all empty or all solid
 };
 
 template <class T>
 HWY_INLINE Constant<T> value_of(const Convex<T>& a) {
   return value_of(a.v);
 }
-// What nothing more is known of than its value.
+// Returns a value of unknown convexity: the radius is |v|.
 template <class T>
 HWY_INLINE Convex<T> plain(const T& v) {
   return {v, abs(value_of(v))};
 }
 
-// Within the distance of the other, what one has; within that of either, nothing else is there.
+// Union. Within b's distance only a's solid is present, so a's radius holds up to there, and vice versa. Within the
+// lesser distance there is no surface at all.
 template <class T>
 HWY_INLINE Convex<T> min(const Convex<T>& a, const Convex<T>& b) {
   const Constant<T> x = value_of(a), y = value_of(b);
   return {min(a.v, b.v), max(max(min(a.convex, y), min(b.convex, x)), abs(min(x, y)))};
 }
-// What both have; within the distance of either, nothing is there.
+// Convexity radius of an intersection: the lesser of the operands' radii. Within the greater distance the
+// intersection is empty, so that distance is a radius too.
 template <class T>
 HWY_INLINE Constant<T> convex_intersection(const Convex<T>& a, const Convex<T>& b) {
   return max(min(a.convex, b.convex), max(value_of(a), value_of(b)));
@@ -49,8 +52,8 @@ template <class T>
 HWY_INLINE Convex<T> max(const Convex<T>& a, const Convex<T>& b) {
   return {max(a.v, b.v), convex_intersection(a, b)};
 }
-// A blend of width k; `sharp` is what it is where its operands differ by more, and still do when both have changed on
-// the way.
+// Blend v of width k, which equals `sharp` where a and b differ by more than k. Within the distance `apart`, a and b
+// still differ by more than k even if they change in opposite directions.
 template <class T>
 HWY_INLINE Convex<T> blend(const T& v, const Convex<T>& a, const Convex<T>& b, Constant<T> k, const Convex<T>& sharp) {
   const Constant<T> apart = (abs(value_of(a) - value_of(b)) - k) * constant<T>(0.5);

@@ -1,6 +1,6 @@
 // Dual<N>: a number and its three partial derivatives, by the chain rule (forward-mode differentiation; Griewank &
-// Walther, "Evaluating Derivatives", 2008, chapter 3). At a tie of min or max the derivative is the chosen branch's;
-// where a length is zero it is zero: never NaN on finite input.
+// Walther, "Evaluating Derivatives", 2008, chapter 3). At a tie of min or max the derivative is that of the chosen
+// branch. The derivative of a zero length is zero, so derivatives are never NaN on finite input.
 #if defined(FATHOM_VM_DUAL_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_DUAL_INL
 #undef FATHOM_VM_DUAL_INL
@@ -17,7 +17,7 @@ template <class N>
 struct Dual {
   using Constant = N;
   N v;           // value
-  N dx, dy, dz;  // its derivatives along x, y and z
+  N dx, dy, dz;  // derivatives along x, y and z
 };
 
 template <class N>
@@ -25,7 +25,7 @@ HWY_INLINE N value_of(const Dual<N>& a) {
   return a.v;
 }
 
-// A dual with value v and a's derivatives times s.
+// Returns a dual with value v and a's derivatives times s.
 template <class N>
 HWY_INLINE Dual<N> chain(N v, const Dual<N>& a, N s) {
   return {v, a.dx * s, a.dy * s, a.dz * s};
@@ -124,7 +124,7 @@ template <class N>
 HWY_INLINE Dual<N> sqr(const Dual<N>& a) {
   return chain(a.v * a.v, a, a.v + a.v);
 }
-// 1/x, or 0 where x is 0.
+// Returns 1/x for x > 0, else 0.
 template <class N>
 HWY_INLINE N inverse_or_zero(N x) {
   const N zero = N::broadcast(0.0);
@@ -146,7 +146,7 @@ HWY_INLINE Dual<N> length(const Dual<N>& x, const Dual<N>& y, const Dual<N>& z) 
   return {l, ux * x.dx + uy * y.dx + uz * z.dx, ux * x.dy + uy * y.dy + uz * z.dy, ux * x.dz + uy * y.dz + uz * z.dz};
 }
 
-// The same for any sign of x.
+// Returns 1/x for x of either sign, or 0 where x is 0.
 template <class N>
 HWY_INLINE N signed_inverse_or_zero(N x) {
   const N zero = N::broadcast(0.0), inverse = N::broadcast(1.0) / x;
@@ -172,7 +172,7 @@ HWY_INLINE Dual<N> tan(const Dual<N>& a) {
   const N t = tan(a.v);
   return chain(t, a, N::broadcast(1.0) + t * t);
 }
-// 1/sqrt(1 - x^2), 0 where the argument is clamped.
+// Returns the derivative 1/sqrt(1 - x^2), or 0 where asin and acos clamp x.
 template <class N>
 HWY_INLINE N asin_slope(N x) {
   const N one = N::broadcast(1.0);
@@ -209,7 +209,7 @@ template <class N>
 HWY_INLINE N zero_unless_finite(N a) {
   return select(abs(a) < N::broadcast(Precision<N>::kInfinity), a, N::broadcast(0.0));
 }
-// d(x^y) = y x^(y-1) dx + x^y log x dy; the second term only where x > 0.
+// d(x^y) = y x^(y-1) dx + x^y log x dy, where the second term is 0 unless x > 0.
 template <class N>
 HWY_INLINE Dual<N> pow(const Dual<N>& x, const Dual<N>& y) {
   const N p = pow(x.v, y.v), zero = N::broadcast(0.0), one = N::broadcast(1.0);

@@ -1,16 +1,17 @@
-// Elementary functions of Batch and RealBatch (f32 and double lanes) and Real (one double) in additions,
-// multiplications, divisions and square roots alone: the same bits on every machine, which libm does not give. One
-// kernel for all; Precision<N> has what differs: how many terms, and into how many parts pi/2 and ln 2 are split.
+// Elementary functions of Batch and RealBatch (f32 and double lanes) and Real (one double), composed of additions,
+// multiplications, divisions and square roots only. So they give the same bits on every machine, unlike libm. All
+// types share one kernel per function; Precision<N> holds the differences: the number of terms, and the number of
+// parts into which pi/2 and ln 2 are split.
 //
 // Arguments are reduced after Cody & Waite, "Software Manual for the Elementary Functions", 1980: x - n c with c in
-// parts so short that n times each is exact. Then a Taylor polynomial (sine, cosine, exponential; Abramowitz &
-// Stegun, "Handbook of Mathematical Functions", 1964, 4.3.65, 4.3.66, 4.2.1), or one through the Chebyshev points of
-// the reduced range (arc functions, computed with 60 digits). What a reduction rounds off is added back to first
-// order.
+// parts so short that n times each part is exact. The reduced argument goes into a Taylor polynomial (sine, cosine,
+// exponential; Abramowitz & Stegun, "Handbook of Mathematical Functions", 1964, 4.3.65, 4.3.66, 4.2.1), or into a
+// polynomial through the Chebyshev points of the reduced range (arc functions, computed with 60 digits). The rounding
+// error of a reduction is added back to first order.
 //
-// Held by the tests: 4 ulp in f32, 1e-14 (relative) in double; pow as stated at it. sin, cos and tan hold that for
-// |x| <= 1e4 (f32) or 1e6 (double); beyond, x is reduced with an error that grows like x, and from kNoAngle on there
-// is no angle left and x counts as 0. Never NaN for a finite x.
+// Error bounds checked by the tests: 4 ulp in f32, 1e-14 (relative) in double; pow has its own. sin, cos and tan keep
+// these bounds for |x| <= 1e4 (f32) or 1e6 (double). Beyond, the error of the reduction grows in proportion to x, and
+// from kNoAngle on x counts as 0. sin, cos and tan of a finite x are never NaN.
 //
 // Tested by: tests/vm/number/elementary_test.cpp
 #if defined(FATHOM_VM_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
@@ -29,8 +30,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// What differs from type to type. The kernels are written for the types that have it, the Plain ones; the others build
-// on these.
+// Constants that differ from type to type. The kernels are templates over the types with a Precision, the Plain ones;
+// other number types build on Plain types.
 template <class N>
 struct Precision;
 template <class N>
@@ -38,16 +39,17 @@ concept Plain = requires { Precision<N>::kNoAngle; };
 
 template <>
 struct Precision<Batch> {
-  // Eleven bits each but the last: n up to 2^13 times a part is exact.
+  // Eleven bits per part except the last, so the product of a part and n is exact for n up to 2^13.
   static constexpr double kHalfPi[] = {0x1.92p+0, 0x1.fb4p-12, 0x1.444p-24, 0x1.68c234c4c6629p-39};
   static constexpr double kLn2[] = {0x1.62e4p-1, 0x1.7f7d1cf79abcap-20};
   static constexpr double kNoAngle = 0x1p22;
-  static constexpr double kExpLimit = 110;  // e^x is 0 or infinite beyond
+  static constexpr double kExpLimit = 110;  // e^x is 0 or infinite beyond this |x|
   static constexpr double kPi[] = {3.1415927410125732, -8.742278000372485e-08};
   static constexpr double kInfinity = std::numeric_limits<float>::infinity();
-  static constexpr double kWholeFrom = 0x1p24;  // every number from here on is even
+  static constexpr double kWholeFrom = 0x1p24;  // every number from here on is an even integer
   static constexpr int kSineTerms = 4, kCosineTerms = 4, kExpTerms = 6, kLogTerms = 5;
-  // (atan(s)/s - 1)/s^2 in s^2 <= (sqrt 2 - 1)^2, off by 3e-9 relative to atan; (asin(s)/s - 1)/s^2, s^2 <= 1/4.
+  // Polynomials in s^2: (atan(s)/s - 1)/s^2 for s^2 <= (sqrt 2 - 1)^2, with an error of 3e-9 relative to atan, and
+  // (asin(s)/s - 1)/s^2 for s^2 <= 1/4.
   static constexpr double kAtan[] = {-0.3333333134651184, 0.19999539852142334, -0.14263950288295746,
                                      0.10743668675422668, -0.06451718509197235};
   static constexpr double kAsin[] = {0.1666666567325592,   0.07500094175338745,  0.04459940269589424,
@@ -56,7 +58,7 @@ struct Precision<Batch> {
 
 template <>
 struct Precision<Real> {
-  // 33 bits each but the last: n up to 2^20 times a part is exact.
+  // 33 bits per part except the last, so the product of a part and n is exact for n up to 2^20.
   static constexpr double kHalfPi[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
   static constexpr double kLn2[] = {0x1.62e42fefa38p-1, 0x1.ef35793c7673p-45};
   static constexpr double kNoAngle = 0x1p48;
@@ -65,7 +67,7 @@ struct Precision<Real> {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr double kWholeFrom = 0x1p53;
   static constexpr int kSineTerms = 8, kCosineTerms = 8, kExpTerms = 13, kLogTerms = 11;
-  // As above, off by 3e-18 and 5e-18.
+  // Polynomials as above, with errors of 3e-18 and 5e-18.
   static constexpr double kAtan[] = {-0.3333333333333333,  0.19999999999999804,  -0.14285714285659779,
                                      0.11111111105150588,  -0.09090908753259112, 0.07692296368042296,
                                      -0.0666642476020052,  0.05878927554473807,  -0.05230443640686948,
@@ -79,7 +81,7 @@ struct Precision<Real> {
 template <>
 struct Precision<RealBatch> : Precision<Real> {};
 
-// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
+// Returns c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
 template <Plain N, std::size_t kCount>
 HWY_INLINE N polynomial(N x, const double (&c)[kCount]) {
   N sum = N::broadcast(c[kCount - 1]);
@@ -87,7 +89,7 @@ HWY_INLINE N polynomial(N x, const double (&c)[kCount]) {
   return sum;
 }
 
-// 1/first! + sign x/(first + by)! + x^2/(first + 2 by)! + ..., `terms` of them.
+// Returns the sum of the first `terms` terms of 1/first! + sign x/(first + by)! + x^2/(first + 2 by)! + ...
 template <Plain N>
 HWY_INLINE N factorial_series(N x, int terms, int first, int by, double sign) {
   double factorial[2 + 2 * 16] = {1};
@@ -99,7 +101,7 @@ HWY_INLINE N factorial_series(N x, int terms, int first, int by, double sign) {
   return sum;
 }
 
-// NaN where a or b is, else `value`.
+// Returns NaN where a or b is NaN, else `value`.
 template <Plain N>
 HWY_INLINE N nan_from(N a, N b, N value) {
   return select(is_nan(a), a, select(is_nan(b), b, value));
@@ -109,13 +111,13 @@ HWY_INLINE N clamp(N x, double limit) {
   return max(N::broadcast(-limit), min(N::broadcast(limit), x));  // a NaN stays
 }
 
-// -1, 0 or 1; a's own zero or NaN else.
+// Returns -1 or 1, or `a` itself where a is zero or NaN.
 template <Plain N>
 HWY_INLINE N sign(N a) {
   const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
   return select(zero < a, one, select(a < zero, -one, a));
 }
-// Floored: b's sign, except that rounding can leave it just beyond either end. NaN where b is 0.
+// Floored modulo: the result has b's sign, except that rounding can put it just beyond either end. NaN where b is 0.
 template <Plain N>
 HWY_INLINE N mod(N a, N b) {
   return a - b * floor(a / b);
@@ -134,7 +136,7 @@ HWY_INLINE N compare(N a, N b) {
   const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
   return select(a < b, -one, select(b < a, one, nan_from(a, b, zero)));
 }
-// b where a is not 0, else a.
+// Returns b where a is not 0, else a.
 template <Plain N>
 HWY_INLINE N logical_and(N a, N b) {
   const N zero = N::broadcast(0.0);
@@ -155,7 +157,8 @@ struct SinCos {
   N sin, cos;
 };
 
-// With n the nearest whole number to x / (pi/2): r = x - n pi/2 = high + low, |r| <= pi/4 or little more.
+// An angle x reduced to r = x - n pi/2 = high + low, where n is the nearest integer to x / (pi/2). |r| exceeds pi/4
+// at most slightly.
 template <Plain N>
 struct Quarter {
   N high, low;
@@ -172,11 +175,11 @@ HWY_INLINE Quarter<N> quarter_turns(N angle) {
   const N rest = ((a - b) - t) - n * N::broadcast(P::kHalfPi[3]);
   const N high = b + rest;
   const N low = (b - high) + rest;
-  // Only where x is too large to be reduced exactly can r be out of range.
+  // The clamp matters only where x is too large to be reduced exactly.
   return {clamp(high, 0.8), low, n - N::broadcast(4.0) * floor(n * N::broadcast(0.25))};
 }
 
-// sine and cosine of q.high + q.low.
+// Returns sine and cosine of q.high + q.low.
 template <Plain N>
 HWY_INLINE SinCos<N> sin_cos_reduced(const Quarter<N>& q) {
   using P = Precision<N>;
@@ -192,9 +195,9 @@ HWY_INLINE SinCos<N> sin_cos(N x) {
   const Quarter<N> q = quarter_turns(x);
   const SinCos<N> r = sin_cos_reduced(q);
   const N one = N::broadcast(1.0), two = N::broadcast(2.0);
-  const auto first = q.number < one;  // 0
-  const auto last = two < q.number;   // 3
-  const auto third = one < q.number;  // 2, where not the last
+  const auto first = q.number < one;  // number 0
+  const auto last = two < q.number;   // number 3
+  const auto third = one < q.number;  // number 2, or 3, which `last` excludes
   const N sine = select(first, r.sin, select(last, -r.cos, select(third, -r.sin, r.cos)));
   const N cosine = select(first, r.cos, select(last, r.sin, select(third, -r.cos, -r.sin)));
   return {clamp(sine, 1), clamp(cosine, 1)};
@@ -212,17 +215,17 @@ HWY_INLINE N tan(N x) {
   const Quarter<N> q = quarter_turns(x);
   const SinCos<N> r = sin_cos_reduced(q);
   const N one = N::broadcast(1.0);
-  const auto even = abs(abs(q.number - one) - one) < one;  // of 0 .. 3 only 0 and 2 are 1 from 1
+  const auto even = abs(abs(q.number - one) - one) < one;  // among 0..3, only 0 and 2 differ from 1 by 1
   return select(even, r.sin, -r.cos) / select(even, r.cos, r.sin);
 }
 
-// asin(s) - s for |s| <= 1/2.
+// Returns asin(s) - s for |s| <= 1/2.
 template <Plain N>
 HWY_INLINE N asin_excess(N s) {
   const N z = s * s;
   return s * (z * polynomial(z, Precision<N>::kAsin));
 }
-// asin x = pi/2 - 2 asin sqrt((1 - x)/2), which keeps the polynomial's argument below 1/2.
+// Uses asin x = pi/2 - 2 asin sqrt((1 - x)/2) from x = 1/2 on, which keeps the polynomial's argument below 1/2.
 template <Plain N>
 HWY_INLINE N asin(N x) {
   using P = Precision<N>;
@@ -248,7 +251,8 @@ HWY_INLINE N acos(N x) {
   return select(small, near, select(c < zero, behind, twice));
 }
 
-// Angle of the point (x, y), both >= 0, with y <= x: in [0, pi/4]. Above pi/8 as pi/4 + atan((y - x)/(y + x)).
+// Returns the angle of the point (x, y), 0 <= y <= x, in [0, pi/4]. Angles above pi/8 are computed as
+// pi/4 + atan((y - x)/(y + x)).
 template <Plain N>
 HWY_INLINE N atan_ratio(N y, N x) {
   using P = Precision<N>;
@@ -260,14 +264,14 @@ HWY_INLINE N atan_ratio(N y, N x) {
   return select(small, zero, N::broadcast(P::kPi[0] / 4)) +
          (s + (excess + select(small, zero, N::broadcast(P::kPi[1] / 4))));
 }
-// In [-pi, pi]; 0 where both are 0. A negative zero counts as zero.
+// Returns an angle in [-pi, pi]; 0 where both are 0. A negative zero counts as zero.
 template <Plain N>
 HWY_INLINE N atan2(N y, N x) {
   using P = Precision<N>;
   const N zero = N::broadcast(0.0), one = N::broadcast(1.0), ax = abs(x), ay = abs(y);
   const auto steep = ax < ay;
   const N low = select(steep, ax, ay), high = select(steep, ay, ax);
-  // Equal ones (both may be infinite) make 45 degrees, zeros none.
+  // Equal operands, which may both be infinite, make 45 degrees; two zeros make 0 degrees.
   const auto less = low < high;
   const N first = atan_ratio(select(less, low, select(zero < high, one, zero)), select(less, high, one));
   const N half_pi = N::broadcast(P::kPi[0] / 2), half_rest = N::broadcast(P::kPi[1] / 2);
@@ -282,7 +286,7 @@ HWY_INLINE N atan(N x) {
   return atan2(x, N::broadcast(1.0));
 }
 
-// Infinite above the largest number's logarithm, 0 below the smallest's.
+// Returns infinity above the logarithm of the largest number and 0 below the logarithm of the smallest.
 template <Plain N>
 HWY_INLINE N exp(N x) {
   using P = Precision<N>;
@@ -290,21 +294,21 @@ HWY_INLINE N exp(N x) {
   const N n = round_nearest(c * N::broadcast(1.4426950408889634074));
   const N r = (c - n * N::broadcast(P::kLn2[0])) - n * N::broadcast(P::kLn2[1]);
   const N y = one + (r + r * r * factorial_series(r, P::kExpTerms - 1, 2, 1, 1));
-  // 2^n in two factors: n goes beyond the exponents there are at both ends.
+  // 2^n in two factors, because n exceeds the range of exponents at both ends.
   const N half = floor(n * N::broadcast(0.5));
   return y * power_of_two(half) * power_of_two(n - half);
 }
 
-// Terms of log((1+s)/(1-s)) / s - 2 = 2 z/3 + 2 z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz &
-// Stegun, 4.1.27), summed from the last: 5 terms err by 3e-9, 11 by 1e-18.
+// Returns log((1+s)/(1-s)) / s - 2 = 2 z/3 + 2 z^2/5 + ..., z = s^2 <= (3 - 2 sqrt 2)^2 = 0.0295 (Abramowitz &
+// Stegun, 4.1.27), summed from the last term: 5 terms err by 3e-9, 11 by 1e-18.
 template <Plain N>
 HWY_INLINE N log_series(N z, int terms) {
   N sum = N::broadcast(0.0);
   for (int i = terms; i >= 1; --i) sum = (sum + N::broadcast(2.0 / (2 * i + 1))) * z;
   return sum;
 }
-// -infinity at 0, NaN below. With x = 2^e (1 + f) and s = f/(2 + f): log(1 + f) = f - (f^2/2 - s (f^2/2 + series)),
-// whose first term is exact.
+// Returns -infinity at 0 and NaN below. With x = 2^e (1 + f) and s = f/(2 + f), log(1 + f) is
+// f - (f^2/2 - s (f^2/2 + series)), whose first term is exact.
 template <Plain N>
 HWY_INLINE N log(N x) {
   using P = Precision<N>;
@@ -319,15 +323,16 @@ HWY_INLINE N log(N x) {
   return select(zero < x, select(x < infinity, result, edge), edge);
 }
 
-// x^y = e^(y log x) for x > 0. For x < 0 and a whole y, |x|^y with the sign of y's parity, else NaN. At x = 0: 0 for
-// y > 0, 1 for y = 0, infinite for y < 0. Relative error: (2 + 2 |y log x|) ulp.
+// Returns e^(y log x) for x > 0. For x < 0 and an integer y the result is |x|^y, negated if y is odd; for other y it
+// is NaN. At x = 0 the result is 0 for y > 0, 1 for y = 0 and infinite for y < 0. Relative error: (2 + 2 |y log x|)
+// ulp.
 template <Plain N>
 HWY_INLINE N pow(N x, N y) {
   using P = Precision<N>;
   const N zero = N::broadcast(0.0), one = N::broadcast(1.0), infinity = N::broadcast(P::kInfinity);
   const N magnitude = exp(y * log(abs(x)));
   const N half = y * N::broadcast(0.5);
-  const N fraction = y - floor(y), parity = half - floor(half);  // 0 or 1/2 where y is whole
+  const N fraction = y - floor(y), parity = half - floor(half);  // parity: 0 or 1/2 for an integer y
   const auto large = N::broadcast(P::kWholeFrom) < abs(y);
   const N whole = select(large, magnitude, select(zero < parity, -magnitude, magnitude));
   const N negative = select(zero < fraction, infinity - infinity, whole);

@@ -1,11 +1,11 @@
-// Enclosure: what the f32 machine can compute while its point ranges over a box of f32 points; one box a lane.
+// Enclosure: the range of f32 results while the point ranges over a box of f32 points; one box per lane.
 //
-// It holds float results, not exact ones: rounding never turns the order of two numbers, so where an operation rises
-// or falls in each operand the f32 results at the ends are the ends of all f32 results, and nothing is rounded
-// outwards. The whole line [-inf, inf] stands for "anything, NaN too", and whatever may be NaN is the whole line; so
-// an infinite end is one that floats can reach, 0 times which is NaN. An undecided comparison gives the hull of both
-// answers. No bound is NaN, and -0 counts as 0. Constants are those of the f32 machine, and finite. The elementary
-// functions are in enclosure_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
+// An Enclosure bounds f32 results, not exact ones. Rounding preserves the order of two numbers, so if an operation is
+// monotone in each operand, the f32 results at the ends are the ends of all f32 results, without outward rounding.
+// The whole line [-inf, inf] means "any value, or NaN", and every value that may be NaN has the whole line. So an
+// infinite end is a value that floats can reach, and 0 times an infinite end is NaN. An undecided comparison gives
+// the hull of both answers. No bound is NaN, and -0 counts as 0. Constants are those of f32 evaluation, and finite.
+// The elementary functions are in enclosure_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
 //
 //     x * x - 1 over x in [-1, 2] as a product:    [-2, 4] - 1 = [-3, 3]      with sqr:    [0, 4] - 1 = [-1, 3]
 //
@@ -29,7 +29,7 @@ struct Enclosure {
   Batch lo, hi;
 };
 
-// Three answers: a comparison can hold somewhere in the box, fail somewhere, or both.
+// Result of a comparison over a box: the comparison can hold somewhere, fail somewhere, or both.
 struct EnclosureMask {
   BatchMask maybe_true, maybe_false;
 };
@@ -45,7 +45,8 @@ HWY_INLINE Batch magnitude(const Enclosure& a) { return max(-a.lo, a.hi); }
 HWY_INLINE Enclosure whole_where(BatchMask mask, const Enclosure& a) {
   return {select(mask, -infinity(), a.lo), select(mask, infinity(), a.hi)};
 }
-// A bound that is NaN, of infinities that cancel, is no bound: min and max give their second operand then.
+// Replaces a NaN bound, the result of cancelling infinities, by an infinite one: min and max return their second
+// operand if the first is NaN.
 HWY_INLINE Enclosure without_nan(Batch lo, Batch hi) { return {max(lo, -infinity()), min(hi, infinity())}; }
 HWY_INLINE Enclosure hull(const Enclosure& a, const Enclosure& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
 HWY_INLINE Enclosure as_enclosure(const Enclosure& a) { return a; }
@@ -64,7 +65,7 @@ HWY_INLINE Enclosure operator+(Batch a, const Enclosure& b) { return {a + b.lo, 
 HWY_INLINE Enclosure operator-(const Enclosure& a, Batch b) { return {a.lo - b, a.hi - b}; }
 HWY_INLINE Enclosure operator-(Batch a, const Enclosure& b) { return {a - b.hi, a - b.lo}; }
 
-// The sum of the products is NaN where one of them is, and where they already make the whole line.
+// The sum of the products is NaN if one of the products is NaN, or if they already span the whole line.
 HWY_INLINE Enclosure operator*(const Enclosure& a, const Enclosure& b) {
   const Batch p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
   return whole_where(is_nan((p + q) + (r + s)), {min(min(p, q), min(r, s)), max(max(p, q), max(r, s))});
@@ -75,7 +76,7 @@ HWY_INLINE Enclosure operator*(const Enclosure& a, Batch b) {
 }
 HWY_INLINE Enclosure operator*(Batch a, const Enclosure& b) { return b * a; }
 
-// By a divisor that keeps its sign, made positive.
+// Divides by a divisor of constant sign, made positive first. A divisor that contains 0 gives the whole line.
 HWY_INLINE Enclosure operator/(const Enclosure& a, const Enclosure& b) {
   const Batch zero = Batch::broadcast(0.0f);
   const BatchMask negative = b.hi < zero;
@@ -106,7 +107,8 @@ HWY_INLINE Enclosure select(BatchMask mask, const Enclosure& yes, const Enclosur
   return {select(mask, yes.lo, no.lo), select(mask, yes.hi, no.hi)};
 }
 
-// Of a first operand that may be NaN the result is the second, within its bounds; of a second one it may be NaN.
+// min and max return b if an operand is NaN. So if a may be NaN, the result may be any value of b, which the bounds
+// include; if b may be NaN, the result may be NaN.
 HWY_INLINE Enclosure min(const Enclosure& a, const Enclosure& b) {
   return {min(a.lo, b.lo), select(is_whole(b), infinity(), min(a.hi, b.hi))};
 }
@@ -118,7 +120,7 @@ HWY_INLINE Enclosure max(const Enclosure& a, Batch b) { return {max(a.lo, b), ma
 HWY_INLINE Enclosure min(Batch a, const Enclosure& b) { return min(as_enclosure(a), b); }
 HWY_INLINE Enclosure max(Batch a, const Enclosure& b) { return max(as_enclosure(a), b); }
 
-// The range of |a|, of no use where a is the whole line.
+// Range of |a|; not valid where a is the whole line, because a may be NaN there.
 HWY_INLINE Enclosure sizes(const Enclosure& a) {
   return {max(Batch::broadcast(0.0f), max(a.lo, -a.hi)), magnitude(a)};
 }

@@ -1,7 +1,7 @@
-// Elementary functions of Enclosure: the f32 kernels at the ends, widened by twice what a kernel may err, since the
-// kernels follow functions that rise or fall without quite doing so themselves. A jump inside the operand gives the
-// hull of both sides; where a function is undefined at some place of the operand, or its operand may be NaN, the
-// result is the whole line.
+// Elementary functions of Enclosure: the f32 kernels at the ends, widened by twice a kernel's maximum error, because
+// the kernels of monotone functions are not exactly monotone themselves. A jump inside the operand gives the hull of
+// both sides. If a function is undefined somewhere in the operand, or the operand may be NaN, the result is the whole
+// line.
 #if defined(FATHOM_VM_ENCLOSURE_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ENCLOSURE_ELEMENTARY_INL
 #undef FATHOM_VM_ENCLOSURE_ELEMENTARY_INL
@@ -15,12 +15,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Twice the 4 ulp of vm/number/elementary-inl.h: of a normal number relative to it, of a subnormal one absolute. (On
-// twelve million pairs of neighbouring floats no kernel turned back at all.)
+// Twice the 4 ulp of vm/number/elementary-inl.h: relative for normal numbers, absolute for subnormal ones. (On twelve
+// million pairs of neighbouring floats every kernel was monotone.)
 inline constexpr float kKernelShare = 0x1p-20f, kKernelLeast = 0x1p-146f;
-inline constexpr float kAngleKnown = 1e4f;  // up to here the f32 kernels know their angle
+inline constexpr float kAngleKnown = 1e4f;  // up to here the f32 kernels keep their error bound
 
-// [lo, hi] and a kernel's error more. An overflow is somewhere beyond the largest number.
+// Returns [lo, hi] widened by the kernels' error. An overflowed bound stands for a finite value beyond the largest
+// float.
 HWY_INLINE Enclosure kernel_range(Batch lo, Batch hi) {
   const Batch share = Batch::broadcast(kKernelShare), least = Batch::broadcast(kKernelLeast);
   const Batch low = min(lo, largest()), high = max(hi, -largest());
@@ -37,15 +38,15 @@ HWY_INLINE Enclosure whole_if_whole(const Enclosure& a, const Enclosure& b, cons
   return whole_where(is_whole(a) | is_whole(b), value);
 }
 
-// Whether `offset` and some whole number of periods lie in a, or may; `inverse` is 1 over the period, and the angle
-// is known.
+// True if `a` contains, or may contain, an integer number of periods plus `offset` periods. `inverse` is 1 / period.
+// Valid up to kAngleKnown.
 HWY_INLINE BatchMask passes_multiple(const Enclosure& a, double inverse, double offset) {
   const Batch scale = Batch::broadcast(inverse), shift = Batch::broadcast(offset);
   const Batch from = a.lo * scale, to = a.hi * scale;
   const Batch slack = (max(abs(from), abs(to)) + Batch::broadcast(1.0f)) * Batch::broadcast(0x1p-21f);
   return (from - shift) - slack <= floor((to - shift) + slack);
 }
-// Of the sine, which is largest at `offset` of a turn.
+// Range of a sine wave that has a maximum at `offset` turns; `at_lo` and `at_hi` are its values at a's ends.
 HWY_INLINE Enclosure wave(const Enclosure& a, Batch at_lo, Batch at_hi, double offset) {
   constexpr double kInverseTurn = 0.15915494309189535;
   const Batch one = Batch::broadcast(1.0f);
@@ -65,7 +66,7 @@ HWY_INLINE Enclosure tan(const Enclosure& a) {
 HWY_INLINE Enclosure asin(const Enclosure& a) { return whole_if_whole(a, kernel_range(asin(a.lo), asin(a.hi))); }
 HWY_INLINE Enclosure acos(const Enclosure& a) { return whole_if_whole(a, kernel_range(acos(a.hi), acos(a.lo))); }
 HWY_INLINE Enclosure atan(const Enclosure& a) { return whole_if_whole(a, kernel_range(atan(a.lo), atan(a.hi))); }
-// Over a box that touches neither the origin nor the branch cut (y = 0, x <= 0) the extremes are at corners.
+// Over a box that touches neither the origin nor the branch cut (y = 0, x <= 0), the extremes are at corners.
 HWY_INLINE Enclosure atan2(const Enclosure& y, const Enclosure& x) {
   const Batch zero = Batch::broadcast(0.0f), pi = Batch::broadcast(Precision<Batch>::kPi[0]);
   const Batch p = atan2(y.lo, x.lo), q = atan2(y.lo, x.hi), r = atan2(y.hi, x.lo), s = atan2(y.hi, x.hi);
@@ -87,7 +88,7 @@ HWY_INLINE Enclosure logical_not(const Enclosure& a) {
   const BatchMask always = (a.lo == zero) & (a.hi == zero);
   return whole_if_whole(a, {select(always, one, zero), select(contains(a, zero), one, zero)});
 }
-// Whether a can be other than 0, and whether it can be 0.
+// Returns a mask: maybe_true if a can be nonzero, maybe_false if a can be 0.
 HWY_INLINE EnclosureMask is_true(const Enclosure& a) {
   const Batch zero = Batch::broadcast(0.0f);
   return {(a.lo < zero) | (zero < a.hi), contains(a, zero)};
@@ -105,7 +106,8 @@ HWY_INLINE Enclosure step(const Enclosure& edge, const Enclosure& x) {
   return whole_if_whole(edge, x, {step(edge.hi, x.lo), step(edge.lo, x.hi)});
 }
 
-// Within one period but for the rounding of the quotient and the product; nowhere where one of these may overflow.
+// The result is within one period, except for the rounding of the quotient and the product. If the quotient or the
+// product may overflow, the result is the whole line.
 HWY_INLINE Enclosure mod(const Enclosure& a, const Enclosure& b) {
   const Batch zero = Batch::broadcast(0.0f);
   const Enclosure turns = floor(a / b);
@@ -116,7 +118,7 @@ HWY_INLINE Enclosure mod(const Enclosure& a, const Enclosure& b) {
   return whole_where(!(is_bounded(turns) & (size < Batch::broadcast(0x1p126f))), value);
 }
 
-// x^y for x >= 0, as the kernel does it.
+// Range of x^y for x >= 0, computed as in the kernel: exp(y log x).
 HWY_INLINE Enclosure positive_power(const Enclosure& x, const Enclosure& y) {
   const Batch zero = Batch::broadcast(0.0f), one = Batch::broadcast(1.0f), least = Batch::broadcast(0x1p-149f);
   const auto at_zero = [&](Batch exponent) HWY_ATTR {
@@ -125,7 +127,7 @@ HWY_INLINE Enclosure positive_power(const Enclosure& x, const Enclosure& y) {
   const Enclosure positive = exp(y * log(Enclosure{max(x.lo, least), max(x.hi, least)}));
   return select(zero < x.lo, positive, hull(positive, {at_zero(y.hi), at_zero(y.lo)}));
 }
-// Of a negative x there are only the powers with a whole exponent.
+// A negative x has a power only for an integer exponent.
 HWY_INLINE Enclosure pow(const Enclosure& x, const Enclosure& y) {
   const Batch zero = Batch::broadcast(0.0f);
   const Enclosure above = positive_power({max(zero, x.lo), max(zero, x.hi)}, y);

@@ -1,5 +1,5 @@
 // Interval: all values f can take while x, y, z range over a box. Bounds are rounded outwards after every operation
-// by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers; a
+// by one ulp or more, so the exact result is always inside. An undecided comparison gives the hull of both answers. A
 // NaN bound gives the whole line. The elementary functions are in interval_elementary-inl.h. Source: Moore, "Interval
 // Analysis", 1966.
 #if defined(FATHOM_VM_INTERVAL_INL) == defined(HWY_TARGET_TOGGLE)
@@ -22,11 +22,12 @@ struct Interval {
   using Constant = Interval;
   double lo, hi;
 
-  // Constants derived from a scene's numbers are rounded once: one ulp either way holds the unrounded one.
+  // Widens a constant by one ulp either way: the constant was rounded once when derived from a scene's numbers, so
+  // the interval contains the unrounded value.
   static inline Interval broadcast(double value);
 };
 
-// Three answers: a comparison can hold somewhere in the box, fail somewhere, or both.
+// Result of a comparison over a box: the comparison can hold somewhere, fail somewhere, or both.
 struct IntervalMask {
   bool maybe_true, maybe_false;
 };
@@ -35,18 +36,18 @@ inline Interval whole_line() {
   const double inf = std::numeric_limits<double>::infinity();
   return {-inf, inf};
 }
-// [lo, hi], each correctly rounded before, widened by at least half an ulp.
+// Returns [lo, hi] widened by at least half an ulp; `lo` and `hi` are correctly rounded.
 inline Interval outward(double lo, double hi) {
   constexpr double kUlp = 2.3e-16, kTiny = 5e-324, kLargest = std::numeric_limits<double>::max();
   if (!(lo <= hi)) return whole_line();
-  // An overflow is somewhere beyond the largest number, not at infinity.
+  // An overflowed bound stands for a finite value beyond the largest double, not for infinity.
   lo = std::min(lo, kLargest);
   hi = std::max(hi, -kLargest);
   return {lo < -kLargest ? lo : lo - std::fabs(lo) * kUlp - kTiny,
           hi > kLargest ? hi : hi + std::fabs(hi) * kUlp + kTiny};
 }
 inline Interval hull(Interval a, Interval b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
-// 0 * infinity is 0 here: the infinity stands for arbitrarily large finite values.
+// Product in which 0 * infinity is 0: the infinity stands for arbitrarily large finite values.
 inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
 inline Interval Interval::broadcast(double value) { return value == 0 ? Interval{0, 0} : outward(value, value); }

@@ -1,7 +1,7 @@
-// Elementary functions of Interval: Real's kernels at the ends, widened by kKernelSlack, far above their error. Where
-// a function is undefined in part of the operand the result is the hull over the rest; where in all of it, the whole
-// line. So a range says nothing of points where a part of the formula is undefined. A jump inside the operand gives
-// the hull of both sides.
+// Elementary functions of Interval: Real's kernels at the ends, widened by kKernelSlack, which is far above the
+// kernels' error. If a function is undefined in part of the operand, the result is the hull over the rest; if
+// undefined in all of it, the whole line. So a range does not hold at points where a part of the formula is
+// undefined. A jump inside the operand gives the hull of both sides.
 #if defined(FATHOM_VM_INTERVAL_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_INTERVAL_ELEMENTARY_INL
 #undef FATHOM_VM_INTERVAL_ELEMENTARY_INL
@@ -24,11 +24,11 @@ inline Interval intersect(Interval a, double lo, double hi) {
   return {std::clamp(a.lo, lo, hi), std::clamp(a.hi, lo, hi)};
 }
 
-// [lo, hi] and a kernel's error more.
+// Returns [lo, hi] widened by the kernels' error.
 inline Interval kernel_range(double lo, double hi) {
   return outward(lo - std::fabs(lo) * kKernelSlack, hi + std::fabs(hi) * kKernelSlack);
 }
-// A function that never falls.
+// Range of a nondecreasing function f.
 template <class F>
 inline Interval rising(Interval a, const F& f) {
   return kernel_range(f(Real{a.lo}).v, f(Real{a.hi}).v);
@@ -39,13 +39,13 @@ inline Interval ceil(Interval a) { return {ceil(Real{a.lo}).v, ceil(Real{a.hi}).
 inline Interval round_nearest(Interval a) { return {round_nearest(Real{a.lo}).v, round_nearest(Real{a.hi}).v}; }
 inline Interval sign(Interval a) { return {sign(Real{a.lo}).v, sign(Real{a.hi}).v}; }
 
-// Whether offset + n period lies in a, or may, for some whole n.
+// True if `a` contains, or may contain, offset + n period for some integer n.
 inline bool passes_multiple(Interval a, double offset, double period) {
-  constexpr double kSlack = 1e-9;  // of a period; a's ends stay below 1e6
+  constexpr double kSlack = 1e-9;  // in periods; a's ends stay below 1e6
   const double from = (a.lo - offset) / period - kSlack, to = (a.hi - offset) / period + kSlack;
   return !(floor(Real{to}).v < from);
 }
-// Of the sine, `offset` being where it is largest.
+// Range of a sine wave that has a maximum at `offset`; `at_lo` and `at_hi` are its values at a's ends.
 inline Interval wave(Interval a, double at_lo, double at_hi, double offset) {
   if (!(magnitude(a) <= 1e6)) return {-1, 1};
   const Interval ends = kernel_range(std::min(at_lo, at_hi), std::max(at_lo, at_hi));
@@ -65,7 +65,7 @@ inline Interval acos(Interval a) { return kernel_range(acos(Real{a.hi}).v, acos(
 inline Interval atan(Interval a) {
   return rising(a, [](Real x) HWY_ATTR { return atan(x); });
 }
-// Over a box that touches neither the origin nor the branch cut (y = 0, x <= 0) the extremes are at corners.
+// Over a box that touches neither the origin nor the branch cut (y = 0, x <= 0), the extremes are at corners.
 inline Interval atan2(Interval y, Interval x) {
   if (x.lo <= 0 && contains(y, 0)) return kernel_range(-kPi, kPi);
   double lo = kPi, hi = -kPi;
@@ -90,7 +90,7 @@ inline Interval mod(Interval a, Interval b) {
   if (contains(b, 0)) return whole_line();
   const Interval turns = floor(a / b);
   if (turns.lo == turns.hi) return a - b * turns;
-  // Within one period, but for the rounding of the quotient and the product.
+  // The result is within one period, except for the rounding of the quotient and the product.
   const double slack = 4e-16 * (magnitude(a) + magnitude(b));
   return {std::min(0.0, b.lo) - slack, std::max(0.0, b.hi) + slack};
 }
@@ -113,7 +113,7 @@ inline Interval compare(Interval a, Interval b) {
 }
 inline Interval step(Interval edge, Interval x) { return {x.lo < edge.hi ? 0.0 : 1.0, x.hi < edge.lo ? 0.0 : 1.0}; }
 
-// |x|^y over x in [a.lo, a.hi], both >= 0.
+// Range of x^y over x in [a.lo, a.hi], both >= 0.
 inline Interval positive_power(Interval a, Interval y) {
   double lo = std::numeric_limits<double>::infinity(), hi = 0;
   for (double base : {a.lo, a.hi}) {
@@ -125,14 +125,14 @@ inline Interval positive_power(Interval a, Interval y) {
   if (a.lo == 0 && contains(y, 0)) lo = std::min(lo, 0.0), hi = std::max(hi, 1.0);
   if (contains(y, 0)) lo = std::min(lo, 1.0), hi = std::max(hi, 1.0);
   if (std::isnan(lo) || std::isnan(hi)) return {0, std::numeric_limits<double>::infinity()};
-  // The kernel's relative error grows with |y log x|, which between underflow and overflow is at most 750.
+  // The kernel's relative error grows with |y log x|, which is at most 750 between underflow and overflow.
   const Interval wide = outward(lo * (1 - 1e-12), hi * (1 + 1e-12));
   return {std::max(0.0, wide.lo), wide.hi};
 }
 inline Interval pow(Interval x, Interval y) {
   const Real first = ceil(Real{y.lo}), last = floor(Real{y.hi});
   if (!(x.lo < 0)) return positive_power(x, y);
-  const bool defined_below = first.v <= last.v;  // for whole exponents only
+  const bool defined_below = first.v <= last.v;  // negative x have powers only for integer exponents
   if (!defined_below) return x.hi < 0 ? whole_line() : positive_power({0, x.hi}, y);
   const Interval below = positive_power({std::max(0.0, -x.hi), -x.lo}, {first.v, last.v});
   const bool one = first.v == last.v;

@@ -1,14 +1,15 @@
-// Gradient noise: at each whole point of space one of the twelve directions from a cube's centre to the middles of
-// its edges, chosen by a hash of the point; between them the eight planes that these make, mixed by a quintic, so
-// that value, slope and curvature are continuous. Source: Perlin, "Improving Noise", 2002.
+// Gradient noise. A hash of each lattice point chooses one of the twelve directions from a cube's centre to the
+// middles of its edges. Inside a cell, a quintic interpolates the eight linear functions that the corners' directions
+// define, so that value, slope and curvature are continuous. Source: Perlin, "Improving Noise", 2002.
 //
 // The hash is (34 n + 10) n mod 289, a permutation, nested over the axes (Gustavson & McEwan, "Tiling simplex noise
-// and flow noise in two and three dimensions", JCGT 2022). All of its numbers are whole and exact in f32, so it is
-// the same in f32 and in double, on every machine, and needs no integers and no table, which lanes would have to
-// gather. The noise repeats after 289. Further out than kNoiseReach along an axis it stays what it is there; of a NaN
-// it is NaN.
+// and flow noise in two and three dimensions", JCGT 2022). All its intermediate results are integers that f32
+// represents exactly, so the hash is the same in f32 and in double and on every machine. The hash needs no integer
+// types and no table, which lanes would have to gather from. The noise has period 289. Coordinates are clamped to
+// kNoiseReach; a NaN gives NaN.
 //
-// Over Batch, RealBatch, Real, their Duals and Recorded; vm/number/noise_range-inl.h has the others.
+// These functions serve Batch, RealBatch, Real, their Duals and Recorded; vm/number/noise_range-inl.h has the other
+// types.
 // Tested by: tests/vm/number/noise_test.cpp
 #if defined(FATHOM_VM_NOISE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_NOISE_INL
@@ -23,20 +24,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// n modulo 289, in [-144, 144], of a whole number up to 2^22: n / 289 is never within 1/578 of the middle between two
-// whole numbers, and the f32 product errs by less.
+// Returns n modulo 289, in [-144, 144], for an integer n up to 2^22. Exact, because n / 289 is never within 1/578 of
+// the middle between two integers, and the f32 product errs by less.
 template <class N>
 HWY_INLINE N noise_residue(const N& n) {
   return n - round_nearest(n * N::broadcast(1.0 / 289)) * N::broadcast(289.0);
 }
-// Of a whole number in [-289, 289].
+// Returns the hash of an integer in [-289, 289].
 template <class N>
 HWY_INLINE N noise_hash(const N& n) {
   return noise_residue((n * N::broadcast(34.0) + N::broadcast(10.0)) * n);
 }
 
-// The hashes of the corners of the cell from the whole point (x, y, z); bit 0, 1 and 2 of a corner's number say
-// whether it is one further along x, y and z.
+// Computes the hashes of the corners of the cell whose lowest corner is the lattice point (x, y, z). Bits 0, 1 and 2
+// of a corner's index are its offsets along x, y and z.
 template <class N>
 HWY_INLINE void noise_corners(const N& x, const N& y, const N& z, N (&hashes)[8]) {
   const N one = N::broadcast(1.0), rx = noise_residue(x), ry = noise_residue(y), rz = noise_residue(z);
@@ -50,8 +51,8 @@ HWY_INLINE void noise_corners(const N& x, const N& y, const N& z, N (&hashes)[8]
   }
 }
 
-// The dot product of (x, y, z) with a corner's direction. The hash's third chooses which coordinate is left out, its
-// last two bits the signs.
+// Returns the dot product of (x, y, z) with a corner's direction. The third of the range in which the hash lies
+// chooses the coordinate that is left out, the last two bits of the hash the signs.
 template <class N, class T>
 HWY_INLINE T edge_dot(const N& hash, const T& x, const T& y, const T& z) {
   const N quarter = hash * N::broadcast(0.25), bits = quarter - floor(quarter);  // 0, 1/4, 1/2 or 3/4
@@ -60,13 +61,13 @@ HWY_INLINE T edge_dot(const N& hash, const T& x, const T& y, const T& z) {
          select(abs(bits - N::broadcast(0.375)) < N::broadcast(0.25), -b, b);
 }
 
-// 6 t^5 - 15 t^4 + 10 t^3 = t^3 (1 + 3 (1 - t) + 6 (1 - t)^2), in which nothing cancels.
+// Returns 6 t^5 - 15 t^4 + 10 t^3, computed without cancellation as t^3 (1 + 3 (1 - t) + 6 (1 - t)^2).
 template <class N>
 HWY_INLINE N noise_fade(const N& t) {
   const N one = N::broadcast(1.0), s = one - t;
   return t * t * t * (s * (s * N::broadcast(6.0) + N::broadcast(3.0)) + one);
 }
-// Its derivative: 30 t^2 (1 - t)^2.
+// Returns the derivative of noise_fade: 30 t^2 (1 - t)^2.
 template <class N>
 HWY_INLINE N noise_fade_slope(const N& t) {
   const N s = t * (N::broadcast(1.0) - t);

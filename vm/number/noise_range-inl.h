@@ -1,9 +1,9 @@
-// Gradient noise of Interval, Along and Slope: what it and its derivatives can be while its operands range over a
-// box.
+// Gradient noise of Interval, Along and Slope: ranges of the noise and its derivatives while its operands range over
+// a box.
 //
-// Within a cell of the lattice the corners' directions are known, and the noise is a polynomial; a box in two cells
-// or less along each axis has the hull over its cells. Of any larger one no more is known than what holds whatever
-// the hash is (vm/number/noise_bounds.h). Tested by: tests/vm/number/noise_test.cpp
+// Within a cell of the lattice the corners' directions are known, and the noise is a polynomial. A box that spans at
+// most two cells along each axis gets the hull over its cells. Any larger box gets the bounds that hold for any hash
+// (vm/number/noise_bounds.h). Tested by: tests/vm/number/noise_test.cpp
 #if defined(FATHOM_VM_NOISE_RANGE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_NOISE_RANGE_INL
 #undef FATHOM_VM_NOISE_RANGE_INL
@@ -23,11 +23,11 @@ namespace fathom::vm::HWY_NAMESPACE {
 struct NoiseRange {
   Interval v;
   std::array<Interval, 3> d;  // derivatives along x, y and z
-  double steepest;            // the gradient's length at most
+  double steepest;            // bound on the gradient's length
 };
 using NoiseBox = std::array<Interval, 3>;
 
-// By how far a coordinate can be from the nearest whole number.
+// Returns a bound on the gradient's length over the box, from the coordinates' maximum distances to an integer.
 inline double steepest_noise(const NoiseBox& box) {
   double steepest = kNoiseSlope;
   for (const Interval& at : box) {
@@ -37,24 +37,24 @@ inline double steepest_noise(const NoiseBox& box) {
   }
   return steepest;
 }
-// What holds all over the box, whatever the hash.
+// Returns the bounds that hold over the box for any hash.
 inline NoiseRange any_noise(const NoiseBox& box) {
   const double steepest = steepest_noise(box);
   const Interval slope{-steepest, steepest};
   return {{-kNoiseRange, kNoiseRange}, {slope, slope, slope}, steepest};
 }
 
-// Between a and b, t of the way; of operands that have nothing to do with each other, no wider than it must be.
+// Range of a + (b - a) t for t in [0, 1]; the tightest possible for independent operands.
 inline Interval mix_ranges(Interval a, Interval b, Interval t) {
   const auto at = [](double from, double to, double part) { return from + (to - from) * part; };
   return outward(std::min(at(a.lo, b.lo, t.lo), at(a.lo, b.lo, t.hi)),
                  std::max(at(a.hi, b.hi, t.lo), at(a.hi, b.hi, t.hi)));
 }
 
-// One cell of the lattice and a part of it.
+// Noise over a box within one cell of the lattice.
 class NoiseCell {
  public:
-  // `corner`: the cell's lowest; `box`: within the closed cell.
+  // `corner`: lowest corner of the cell; `box`: within the closed cell.
   NoiseCell(const std::array<double, 3>& corner, const NoiseBox& box) {
     Real hashes[8];
     noise_corners(Real{corner[0]}, Real{corner[1]}, Real{corner[2]}, hashes);
@@ -72,7 +72,7 @@ class NoiseCell {
 
   NoiseRange range() const {
     NoiseRange result{value(), {derivative(0), derivative(1), derivative(2)}, kNoiseSlope};
-    // From the middle no further than the derivatives lead; of small boxes that is far less.
+    // Mean value form: the value at the box's middle plus derivatives times offsets; far tighter for small boxes.
     std::array<Interval, 3> middle;
     Interval moved{0, 0};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -87,10 +87,10 @@ class NoiseCell {
   }
 
  private:
-  static constexpr double kSlack = 1e-14;  // far above what the polynomials round off within a cell
+  static constexpr double kSlack = 1e-14;  // far above the rounding error of the polynomials within a cell
   static constexpr std::size_t kBit[] = {1, 2, 4};
 
-  // Of a finite range and 1, 2 or their negatives: nothing is rounded.
+  // Product of a finite range and s = 1, 2, -1 or -2, which is exact.
   static Interval times(double s, Interval t) {
     return s > 0 ? Interval{s * t.lo, s * t.hi} : Interval{s * t.hi, s * t.lo};
   }
@@ -103,7 +103,7 @@ class NoiseCell {
     return {std::max(0.0, std::min(a, b) - kSlack), contains(t, 0.5) ? 1.875 : std::max(a, b) + kSlack};
   }
 
-  // direction . (place - corner c)
+  // Range of dot(direction of corner c, `at` - corner c).
   Interval plane(std::size_t c, const std::array<Interval, 3>& at) const {
     Interval sum{0, 0};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -120,8 +120,8 @@ class NoiseCell {
     return mix_ranges(mix_ranges(edges[0], edges[1], fade[1]), mix_ranges(edges[2], edges[3], fade[1]), fade[2]);
   }
 
-  // Along axis i, over the four edges of the cell along it: what the fade makes of the difference of the ends'
-  // planes, and the planes' own slopes.
+  // Range of the derivative along axis i, interpolated over the four cell edges parallel to that axis: the fade's
+  // slope times the difference of the planes of the edge's ends, plus the planes' own slopes.
   Interval derivative(std::size_t i) const {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     const auto edge = [&](std::size_t c) {
@@ -138,7 +138,7 @@ class NoiseCell {
     return mix_ranges(low, high, fade_[k]);
   }
 
-  std::array<std::array<double, 3>, 8> g_;  // [corner] its direction
+  std::array<std::array<double, 3>, 8> g_;  // [corner] direction
   std::array<Interval, 3> at_, fade_, slope_;
 };
 
@@ -182,8 +182,8 @@ inline Along noise(const Along& x, const Along& y, const Along& z) {
   return {n.v, intersect(n.d[0] * x.d + n.d[1] * y.d + n.d[2] * z.d, -speed, speed)};
 }
 
-// The gradient is J^T times that of the noise, J being the operands' derivatives: no longer than this one times J's
-// largest singular value.
+// The gradient is J^T times the noise's gradient, where J are the operands' derivatives. So its length is at most the
+// length of the noise's gradient times J's largest singular value.
 inline Slope noise(const Slope& x, const Slope& y, const Slope& z) {
   const NoiseRange n = noise_range({x.v, y.v, z.v});
   const auto along = [&](Interval by_x, Interval by_y, Interval by_z) {

@@ -1,4 +1,4 @@
-// What a number type must supply to run in the machine. The opcodes never ask which type they run on.
+// The interface of number types, over which the interpreter and the opcodes are templates.
 //
 // A number type T has T::Constant, the type of immediates (a constant carries no derivative), and
 //
@@ -7,21 +7,27 @@
 //   floor ceil round_nearest sign         round_nearest: half to even; sign: -1, 0, 1
 //   atan2(y, x)  pow(x, y)  mod(a, b)     atan2(0, 0) = 0; mod(a, b) = a - b floor(a / b)
 //   noise(x, y, z)                        gradient noise, noise-inl.h
-//   divide(a, b)                          a / b, whose derivative is 0 where b is
+//   divide(a, b)                          a / b, whose derivative is 0 where b is 0
 //   logical_not(a)  logical_and(a, b)  logical_or(a, b)  compare(a, b)  step(edge, x)    as in vm/program/opcodes.def
 //   min(a, b) = a < b ? a : b             max(a, b) = a > b ? a : b        (one rule for ties and NaN: b)
 //   length(x, y)  length(x, y, z)         gradient zero where the length is zero
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
-// with either operand of + - * min max < > a constant. A Convex or Tagged needs of all these only what
-// vm/interpret/semantics-inl.h applies to values. The types: Batch and RealBatch (f32 and double lanes, batch-inl.h), Real
-// (double, real-inl.h: bit for bit a lane of RealBatch), Interval (interval-inl.h), Along (value and derivative along
-// a line, along-inl.h), Slope (value, gradient and float error over a box, slope-inl.h), Enclosure (what f32 computes
-// over boxes, enclosure-inl.h), and over Batch and Real Dual (derivatives, dual-inl.h), Convex (how far the solid is
-// convex, convex-inl.h) and Tagged (which surface won, tagged-inl.h).
-// Recorded (recorded-inl.h) holds no number: it writes down what is done to it.
+// where either operand of + - * min max < > can be a constant. Convex and Tagged supply only the functions that
+// vm/interpret/semantics-inl.h applies to values. The types:
 //
-// These headers are compiled once for each instruction set, hence "-inl" and the namespace HWY_NAMESPACE.
+//   Batch, RealBatch   f32 and double lanes, batch-inl.h
+//   Real               double, real-inl.h: the same bits as a lane of RealBatch
+//   Interval           range of the exact value over a box, interval-inl.h
+//   Along              ranges of value and derivative along a line, along-inl.h
+//   Slope              ranges of value and gradient, and float error, over a box, slope-inl.h
+//   Enclosure          range of the f32 results over a box per lane, enclosure-inl.h
+//   Dual<N>            value and partial derivatives over Batch or Real, dual-inl.h
+//   Convex<T>          value and convexity radius, convex-inl.h
+//   Tagged<T>          value and the surface it belongs to, tagged-inl.h
+//   Recorded           no value: records the operations applied to it, recorded-inl.h
+//
+// These headers are compiled once per instruction set, hence "-inl" and the namespace HWY_NAMESPACE.
 #if defined(FATHOM_VM_NUMBER_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_NUMBER_INL
 #undef FATHOM_VM_NUMBER_INL
@@ -47,7 +53,7 @@ HWY_INLINE Constant<T> constant(double value) {
   return Constant<T>::broadcast(value);
 }
 
-// A number without its derivatives, for what does not change the result in first order.
+// Returns a number without its derivatives, for terms that do not change the result in first order.
 template <class T>
 HWY_INLINE Constant<T> value_of(const T& a) {
   return a;

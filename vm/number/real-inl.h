@@ -44,8 +44,8 @@ HWY_INLINE Real length(Real x, Real y, Real z) { return sqrt(x * x + y * y + z *
 
 HWY_INLINE bool is_nan(Real a) { return a.v != a.v; }
 
-// No result is -0, as for Batch. Half to even: adding 2^52 leaves no bits for a fraction, and the default rounding
-// decides.
+// Rounds half to even: adding 2^52 leaves no bits for a fraction, so the default rounding mode decides. Like in
+// Batch, no result is -0.
 HWY_INLINE Real round_nearest(Real a) {
   const double m = std::fabs(a.v);
   return {(m < 0x1p52 ? std::copysign((m + 0x1p52) - 0x1p52, a.v) : a.v) + 0.0};
@@ -56,14 +56,14 @@ HWY_INLINE Real floor(Real a) {
 }
 HWY_INLINE Real ceil(Real a) { return {0.0 - floor(-a).v}; }
 
-// 2^n for a whole n in [-1022, 1023].
+// Returns 2^n for an integer n in [-1022, 1023].
 HWY_INLINE Real power_of_two(Real n) {
   const double whole = n.v == n.v ? n.v : 0;
   return {std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52)};
 }
 HWY_INLINE Scaled<Real> split_power_of_two(Real x) {
   const bool subnormal = x.v < 0x1p-1022;
-  // Unsigned: of a negative number, whose result nobody uses, the difference can wrap round.
+  // Unsigned, because the difference can wrap around for a negative x, whose result is never used.
   const auto bits = std::bit_cast<std::uint64_t>(subnormal ? x.v * 0x1p54 : x.v);
   const std::int64_t exponent = static_cast<std::int64_t>(bits - 0x3fe6a09e667f3bcd) >> 52;
   return {{std::bit_cast<double>(bits - (static_cast<std::uint64_t>(exponent) << 52))},

@@ -1,5 +1,6 @@
-// The machine's elementary functions of one double: the compiler computes constants with them, because libm's differ
-// from machine to machine. Accuracy: vm/number/elementary-inl.h. Tested by: tests/vm/number/elementary_test.cpp
+// The interpreter's elementary functions of one double. The compiler computes constants with these functions, because
+// those of libm differ from machine to machine. Accuracy: vm/number/elementary-inl.h.
+// Tested by: tests/vm/number/elementary_test.cpp
 #pragma once
 
 namespace fathom::vm::real {

@@ -1,20 +1,22 @@
-// Slope: what a formula can do over a box: the range of its value, of its partial derivatives, the length of its
-// gradient, and how far f32 evaluation can be from the exact value. One run of the program gives a Lipschitz constant
-// and an error bound of any formula, so a user's expression can be marched like a shape.
+// Slope: bounds of a formula over a box: the ranges of its value and partial derivatives, the maximum length of its
+// gradient, and the maximum difference between f32 evaluation and the exact value. One run of the program gives a
+// Lipschitz constant and an error bound of any formula, so a user's expression can be marched like a shape.
 //
 //     sqrt(x^2 + y^2) - 1 over [-2,2]^2:    v [-1, 1.83]   norm 1   error a few units
 //
-// The gradient's length has rules of its own, |grad(a + b)| <= |grad a| + |grad b|, beside what the partials give.
-// A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s) = J^T F / |F|, no longer than the
-// largest singular value of J, whose square is at most the largest row sum of |J^T J| (Gershgorin). So distances have
-// norm 1 even where they are 0 and the quotient of intervals is unbounded.
+// The gradient's length is bounded by the partial derivatives and also by rules of its own, such as
+// |grad(a + b)| <= |grad a| + |grad b|. A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s)
+// is J^T F / |F|, no longer than the largest singular value of J, whose square is at most the largest row sum of |J^T
+// J| (Gershgorin). So distances have norm 1 even where they are 0 and the quotient of intervals is unbounded.
 //
 // Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
-// "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: an operation hands on its operands' errors
-// times its slope over all values f32 may have there (`seen`) and adds its own. Jumps that f32 may take elsewhere
-// than exact arithmetic, and operands f32 may have outside the domain, count in full.
+// "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: the error of an operation is its operands'
+// errors times its slope over all values that f32 may have there (`seen`), plus its own rounding error. A jump that
+// f32 may take elsewhere than exact arithmetic counts with its full height, and an f32 operand outside the domain
+// makes the error unbounded.
 //
-// Holds at points where every operation of the program is defined: a NaN can vanish in a min or a comparison.
+// The bounds hold at points where every operation of the program is defined, because a NaN can vanish in a min or a
+// comparison.
 // Tested by: tests/vm/interpret/formula_test.cpp
 #if defined(FATHOM_VM_SLOPE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SLOPE_INL
@@ -33,13 +35,14 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-inline constexpr double kUnit = 0x1p-24;  // what errors are counted in
+inline constexpr double kUnit = 0x1p-24;  // unit of errors
 
-// What is known of a value that is a sum of squares |F|^2. Most values are none, and then nothing of it is copied.
+// Extra bounds of a value that is a sum of squares |F|^2. Copies skip the members when not `known`, as for most
+// values.
 struct Squares {
   bool known = false;
   std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
-  double root_error;          // bound on |sqrt(f32 value) - |F||, the root being exact, in kUnit
+  double root_error;          // bound on |sqrt(f32 value) - |F||, with an exact sqrt, in kUnit
 
   Squares() {}
   Squares(const Squares& other) { *this = other; }
@@ -52,22 +55,24 @@ struct Squares {
 
 struct Slope {
   using Constant = Slope;
-  Interval v;           // the exact value
-  Interval dx, dy, dz;  // partial derivatives, where they exist
+  Interval v;           // range of the exact value
+  Interval dx, dy, dz;  // ranges of the partial derivatives, where these exist
   double norm;          // bound on the gradient's length; infinite where the value may jump
   double error;         // bound on |f32 value - exact value|, in kUnit
-  bool nonnegative;     // neither the exact nor the f32 value can be below 0
+  bool nonnegative;     // true if neither the exact nor the f32 value can be negative
   Squares squares = {};
 
   static inline Slope broadcast(double value);
 };
 
-// The error of a rounding to f32 whose result is at most `size`: subnormals round absolutely, overflow has no bound.
+// Returns the error, in kUnit, of a rounding to f32 whose result is at most `size`. Subnormals have an absolute
+// error; overflow has no bound.
 inline double rounding(double size) { return size < 3.4e38 ? size + 0x1p-120 : kUnbounded; }
-// Bounds are sums and products of nonnegative doubles; this much more outweighs their own rounding. NaN is no bound.
+// Increases a bound by more than the rounding of the nonnegative doubles that it is a sum or product of. A NaN
+// becomes kUnbounded.
 inline double bound(double value) { return value >= 0 ? value * (1 + 1e-14) : kUnbounded; }
 
-// What f32 evaluation may have in place of the exact value.
+// Returns the range of the f32 value.
 inline Interval seen(const Slope& a) {
   const double slack = bound(a.error * kUnit);
   const Interval range = outward(a.v.lo - slack, a.v.hi + slack);
@@ -81,11 +86,11 @@ inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, doubl
   const double n = std::min(bound(norm), length);
   return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false};
 }
-// f(a), f's derivative being in `slope` over a's exact values.
+// Returns f(a) with range v, where f's derivative is in `slope` over a's exact values.
 inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
   return make_slope(v, a.dx * slope, a.dy * slope, a.dz * slope, times(a.norm, magnitude(slope)), error);
 }
-// No more is known of the derivatives; f32 has a value in `alternatives`.
+// Returns a value in v with unbounded derivatives, whose f32 value is in v or `alternatives`.
 inline Slope jump(Interval v, Interval alternatives) {
   const Interval all = hull(v, alternatives), line = whole_line();
   Slope result = make_slope(v, line, line, line, kUnbounded, (all.hi - all.lo) / kUnit + rounding(magnitude(all)));
@@ -117,7 +122,7 @@ inline Slope operator+(const Slope& a, const Slope& b) {
   r.squares.known = a.squares.known && b.squares.known;
   if (r.squares.known) {
     for (std::size_t i = 0; i < 6; ++i) r.squares.g[i] = a.squares.g[i] + b.squares.g[i];
-    // The roots are the lengths of the parts of F, so their errors add like those.
+    // The roots of a and b are the lengths of two parts of F, so their errors add up like lengths: by hypot.
     r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
   return r;
@@ -148,17 +153,18 @@ inline Slope operator/(const Slope& a, const Slope& b) {
 }
 inline Slope divide(const Slope& a, const Slope& b) { return a / b; }
 
-// Decided only where no f32 rounding can turn it.
+// Compares the ranges of the f32 values, so no f32 rounding can change a decided comparison.
 inline IntervalMask operator<(const Slope& a, const Slope& b) { return seen(a) < seen(b); }
 inline IntervalMask operator>(const Slope& a, const Slope& b) { return b < a; }
 
-// Both may be taken, and both meet where the choice changes.
+// Returns a value that is a or b and is continuous where the choice changes.
 inline Slope either(const Slope& a, const Slope& b, Interval v, double error) {
   Slope r = make_slope(v, hull(a.dx, b.dx), hull(a.dy, b.dy), hull(a.dz, b.dz), std::max(a.norm, b.norm), error);
   r.nonnegative = a.nonnegative && b.nonnegative;
   return r;
 }
-// Of a continuous function. Where f32 takes the other branch the two are as far apart as they can be in the box.
+// Assumes that the selected function is continuous. If f32 may take the other branch, the error is the maximum
+// difference of the branches in the box.
 inline Slope select(IntervalMask mask, const Slope& yes, const Slope& no) {
   if (!mask.maybe_false) return yes;
   if (!mask.maybe_true) return no;
@@ -191,12 +197,12 @@ inline Slope sqr(const Slope& a) {
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);
   r.nonnegative = r.squares.known = true;
   r.squares.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
-  // The root of a square is the number again, but that the square was rounded (by half as much of the root) or
-  // underflowed (below 2^-150, so the root is off by at most 2^-74).
+  // The root of the square is |a|, except for the square's rounding, whose relative error is halved by the root, and
+  // underflow (below 2^-150, so the root is off by at most 2^-74).
   r.squares.root_error = bound(a.error + magnitude(seen_a) + 0x1p-50);
   return r;
 }
-// The largest singular value of J.
+// Returns a bound on the largest singular value of J, where g is J^T J.
 inline double gram_norm(const std::array<Interval, 6>& g) {
   double m[6];
   for (std::size_t i = 0; i < 6; ++i) m[i] = magnitude(g[i]);
@@ -204,12 +210,12 @@ inline double gram_norm(const std::array<Interval, 6>& g) {
 }
 inline Slope sqrt(const Slope& a) {
   const Interval s = seen(a), root = sqrt(a.v), line = whole_line();
-  if (!(s.lo >= 0)) {  // f32 may have a negative operand, and no root
+  if (!(s.lo >= 0)) {  // the f32 operand may be negative, and the f32 root NaN
     Slope r = jump(root, root);
     r.error = kUnbounded;
     return r;
   }
-  // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and e over the sum of the roots.
+  // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and at most e divided by the sum of the roots.
   const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
   const double error = std::min({apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit),
                                  a.squares.known ? a.squares.root_error : kUnbounded});
@@ -225,8 +231,9 @@ inline Slope sqrt(const Slope& a) {
 inline Slope length(const Slope& x, const Slope& y) { return sqrt(sqr(x) + sqr(y)); }
 inline Slope length(const Slope& x, const Slope& y, const Slope& z) { return sqrt(sqr(x) + sqr(y) + sqr(z)); }
 
-// A distance in the space of p, exact or at least 1-Lipschitz, whose float error vm/program/opcodes.def promises. It changes
-// as fast as p can move, whichever way that is: by the largest singular value of p's derivatives.
+// Returns the distance d of a shape at p. The distance has Lipschitz constant 1 in p and the float error that
+// vm/program/opcodes.def promises. The Lipschitz constant of the result is the largest singular value of p's
+// derivatives, because the direction in which p moves is unknown.
 inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
   const Slope squares = sqr(p.x) + sqr(p.y) + sqr(p.z);
   const double speed = gram_norm(squares.squares.g);

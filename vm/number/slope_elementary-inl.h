@@ -1,5 +1,5 @@
-// Elementary functions of Slope, and the functions that jump. A kernel's own error is its measured worst, rounded up,
-// at two units of 2^-24 for an ulp.
+// Elementary functions and step functions of Slope. A kernel's own error is its measured maximum, rounded up; an ulp
+// counts as two units of 2^-24.
 #if defined(FATHOM_VM_SLOPE_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SLOPE_ELEMENTARY_INL
 #undef FATHOM_VM_SLOPE_ELEMENTARY_INL
@@ -13,13 +13,15 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 inline constexpr double kKernelUnits = 8;   // 4 ulp
-inline constexpr double kAngleLimit = 1e4;  // up to here the f32 kernels know their angle
+inline constexpr double kAngleLimit = 1e4;  // up to here the f32 kernels keep their error bound
 
-// f(a) with f's derivative over the exact and over the f32 operands.
+// Returns f(a) with range v. `slope`: range of f's derivative over the exact operands; `seen_slope`, `seen_v`: ranges
+// of derivative and value over the f32 operands.
 inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_slope, Interval seen_v) {
   return chain(a, v, slope, times(magnitude(seen_slope), a.error) + rounding(kKernelUnits * magnitude(seen_v)));
 }
-// Where f32 does not know its angle, both values are in [-1, 1]; of an overflow the sine is NaN.
+// Error of sine and cosine beyond kAngleLimit: both the exact and the f32 value are in [-1, 1], but the sine of an
+// overflowed angle is NaN.
 inline double wave_error(Interval s) { return magnitude(s) < 3.4e38 ? 2 / kUnit : kUnbounded; }
 inline Slope sin(const Slope& a) {
   const Interval s = seen(a);
@@ -38,14 +40,14 @@ inline Slope tan(const Slope& a) {
   if (!(magnitude(s) <= kAngleLimit) || !(magnitude(t) < kUnbounded)) return jump(whole_line(), whole_line());
   return smooth(a, tan(a.v), one + sqr(tan(a.v)), one + sqr(t), t);
 }
-// 1/sqrt(1 - x^2) and 0 where |x| > 1; unbounded near 1.
+// Range of the derivative 1/sqrt(1 - x^2), which is 0 where |x| > 1 and unbounded near 1.
 inline Interval asin_slope(Interval x) {
   const Interval one{1, 1}, m = abs(x);
   if (m.lo > 1) return {0, 0};
   if (!(m.hi < 1)) return {0, kUnbounded};
   return one / sqrt((one - m) * (one + m));
 }
-// Next to 1 the derivative is no use: |asin a - asin b| <= pi/2 sqrt|a - b|.
+// The derivative gives no bound near 1; there, |asin a - asin b| <= pi/2 sqrt|a - b|.
 inline double asin_error(const Slope& a, Interval value) {
   const double by_root = kPi / 2 * std::sqrt(a.error / kUnit);
   return bound(std::min(times(magnitude(asin_slope(seen(a))), a.error), by_root)) +
@@ -82,8 +84,8 @@ inline Slope log(const Slope& a) {
   return smooth(a, log(a.v), one / a.v, one / s, log(s));
 }
 
-// x^y, y being the whole number n: n x^(n-1). The kernel's relative error is (2 + 2 |n log x|) ulp, and
-// t |log t| <= max(1/e, M log M) for t = |x|^n up to M.
+// Returns x^y for y equal to the integer n, with derivative n x^(n-1). The kernel's relative error is
+// (2 + 2 |n log x|) ulp, and t |log t| <= max(1/e, M log M) for t = |x|^n up to M.
 inline Slope whole_power(const Slope& x, const Slope& y, double n) {
   const Interval s = seen(x), exponent{n, n}, less{n - 1, n - 1};
   const double size = magnitude(pow(s, exponent));
@@ -99,13 +101,14 @@ inline Slope pow(const Slope& x, const Slope& y) {
     if (n == 0) return exactly({1, 1});
     if (n > 0 || !contains(seen(x), 0)) return whole_power(x, y, n);
   }
-  if (seen(x).lo > 0) {  // what the kernel does
+  if (seen(x).lo > 0) {  // exp(y log x), as the kernel computes the power
     Slope r = exp(y * log(x));
     r.v = {std::max(r.v.lo, pow(x.v, y.v).lo), std::min(r.v.hi, pow(x.v, y.v).hi)};
     return r;
   }
   Slope r = jump(pow(x.v, y.v), whole_line());
-  // A root or power of what may be 0 but not less: t |log t| as above, and |x|^y moves by no more than its range.
+  // A power of an x that may be 0 but not negative: t |log t| as in whole_power(), and the f32 and the exact |x|^y
+  // differ by at most the width of the range.
   if (x.nonnegative && y.v.lo > 0) {
     const Interval range = pow(seen(x), seen(y));
     r.error =
@@ -118,7 +121,7 @@ inline Slope pow(const Slope& x, const Slope& y) {
   return r;
 }
 
-// A step function: constant where f32 and exact arithmetic both see one step.
+// Value of a step function: constant if f32 and exact arithmetic agree on one step.
 inline Slope steps(Interval v, Interval alternatives) {
   return alternatives.lo == alternatives.hi ? exactly(alternatives) : jump(v, alternatives);
 }
@@ -134,7 +137,7 @@ inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());
   const Slope turns = floor(a / b);
   if (turns.norm == 0) return a - b * turns;
-  // f32 leaves the period by the rounding of the quotient and the product.
+  // In f32 the rounding of the quotient and the product can leave the period.
   const Interval sa = seen(a), sb = seen(b);
   const double slack = 4 * kUnit * (magnitude(sa) + magnitude(sb));
   return jump(mod(a.v, b.v), {std::min(0.0, sb.lo) - slack, std::max(0.0, sb.hi) + slack});

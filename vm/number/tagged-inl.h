@@ -1,5 +1,5 @@
-// Tagged<T>: a number and the surface it belongs to. min, max and select hand on the chosen operand's surface; sums
-// and products keep the left operand's. So the program that computes the distance also tells whose distance it is.
+// Tagged<T>: a number and the surface it belongs to. min, max and select return the chosen operand's surface, sums
+// and products the left operand's. So a run of the program yields the distance and the surface it belongs to.
 #if defined(FATHOM_VM_TAGGED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_TAGGED_INL
 #undef FATHOM_VM_TAGGED_INL
@@ -16,7 +16,7 @@ template <class T>
 struct Tagged {
   using Constant = typename T::Constant;
   T v;
-  Constant surface;  // the number as a float: exact below 2^24, which the 24-bit operand guarantees
+  Constant surface;  // the surface's number as a float: exact below 2^24, which the 24-bit operand guarantees
 };
 
 template <class T>
@@ -59,7 +59,8 @@ template <class T>
 HWY_INLINE Tagged<T> max(Constant<T> a, const Tagged<T>& b) {
   return {max(a, b.v), b.surface};
 }
-// Where both are equal the surface with the lower number wins, in whatever order the operands come.
+// Returns the winner's surface. If a and b are equal, the lower surface number wins, independent of the operands'
+// order.
 template <class T, class Mask>
 HWY_INLINE Constant<T> choose(Mask a_wins, Mask b_wins, const Tagged<T>& a, const Tagged<T>& b) {
   const Constant<T> at_tie = min(a.surface, b.surface);

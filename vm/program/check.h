@@ -1,6 +1,6 @@
-// CHECK: the one way to say "this cannot happen unless we have a bug".
-// Prints the condition, the place and a remark, and aborts; active in every build type. Not for user mistakes
-// (compiler/source/diagnostics.h) nor for untrusted programs (vm/program/verify.h).
+// CHECK: asserts a condition that only a bug in fathom can violate.
+// On failure CHECK prints the condition, its file and line and a remark, and aborts. CHECK is active in every build
+// type. User mistakes go to compiler/source/diagnostics.h, untrusted programs to vm/program/verify.h.
 #pragma once
 
 namespace fathom {

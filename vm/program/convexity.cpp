@@ -3,7 +3,7 @@
 namespace fathom::vm {
 
 double convex_share(const Code& program) {
-  std::uint64_t affine = 1, convex = 0, total = 0;  // affine: as the machine's (vm/interpret/interpret-inl.h)
+  std::uint64_t affine = 1, convex = 0, total = 0;  // affine: as Cursor::affine in vm/interpret/interpret-inl.h
   for (std::size_t at = 0; at < program.size; at += instruction_length(program.words[at])) {
     const std::uint32_t word = program.words[at];
     const Opcode opcode = static_cast<Opcode>(word & 0xff);

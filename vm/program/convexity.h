@@ -1,4 +1,4 @@
-// Which shapes are convex, and how much of a program is. Tested by: tests/vm/program/convexity_test.cpp
+// Convexity of shapes, and the share of convex shapes in a program. Tested by: tests/vm/program/convexity_test.cpp
 #pragma once
 
 #include "vm/program/opcode.h"
@@ -6,7 +6,7 @@
 
 namespace fathom::vm {
 
-// Whether a Shape's distance is a convex function of the point, whatever its immediates, and so its solid convex.
+// True if a Shape's distance is a convex function of the point for all immediates; its solid is then convex too.
 constexpr bool is_convex(Opcode shape) {
   switch (shape) {
     case Opcode::Sphere:
@@ -45,11 +45,11 @@ constexpr bool is_convex(Opcode shape) {
   }
 }
 
-// Whether what is convex at the point that a Point makes is so at the point it is made of.
+// True if a function that is convex in the Point's output is also convex in the Point's input.
 constexpr bool keeps_convex(Opcode point) { return point == Opcode::Translate || point == Opcode::Affine; }
 
-// The share of a program's cost, in [0,1], that goes to convex shapes where they stay so: at points to which affine maps
-// alone have led.
+// Returns the share of a program's cost, in [0,1], that goes to convex shapes at points reached by affine maps alone.
+// Other maps do not preserve convexity.
 double convex_share(const Code& program);
 
 }  // namespace fathom::vm

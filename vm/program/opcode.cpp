@@ -24,7 +24,7 @@ constexpr StackEffect plain_effect(Opcode opcode, Form form) {
   }
   switch (opcode) {
     case Opcode::Drop:
-      return {0, 0, 2, -1};  // the first point is the caller's and stays
+      return {0, 0, 2, -1};  // the bottom point is the caller's and stays
     case Opcode::Load:
       return {0, +1, 0, 0};
     default:
@@ -48,7 +48,7 @@ constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
 #undef OP
 }};
 
-// The i-th blank-separated word of `names`.
+// Returns the blank-separated word number `index` of `names`, or an empty view.
 std::string_view nth_name(std::string_view names, int index) {
   for (;;) {
     const std::size_t start = names.find_first_not_of(' ');

@@ -1,4 +1,4 @@
-// Opcodes and what is known of each, generated from vm/program/opcodes.def.
+// Opcodes and their properties, generated from vm/program/opcodes.def.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ inline constexpr int kOpcodeCount = 0
 enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Ternary, Machine };
 enum class Choice : std::uint8_t { None, Lesser, Greater, Carve, Either };
 
-// How an instruction changes the heights of the two stacks. `needs` is the height that must be there before.
+// Change of the two stacks' heights by an instruction; *_needed is the height required before the instruction.
 struct StackEffect {
   int values_needed, values_change;
   int points_needed, points_change;
@@ -40,18 +40,18 @@ constexpr int count_names(std::string_view names) {
   return count;
 }
 
-// What the operand of an instruction says beside its row, so that what is often done together is one instruction
-// (compiler/lower/fuse.h). A Shape can be moved: three immediates x, y, z come before its own, and it stands there. It can
-// be joined: the result is the least of it and the top value, which it replaces.
+// Flags in a Shape's operand, which fuse a common sequence into one instruction (compiler/lower/fuse.h). kMoved:
+// three immediates x, y, z precede the row's own, and the shape is translated there. kJoined: the result is the min
+// of the shape and the top value, and replaces the top value.
 inline constexpr std::uint32_t kMoved = 1, kJoined = 2;
-// Of skeletons' round boxes alone (vm/prune/skeleton.h): it is another shape in every lane.
+// Flag of a skeleton's RoundBox only (vm/prune/skeleton.h): each lane evaluates a shape of its own.
 inline constexpr std::uint32_t kAnyShape = 4;
-// A Unary's or Binary's operand can come from elsewhere than the stack: a coordinate of the top point, an immediate
-// before the row's own, or a local. Those of a Ternary lie on the stack.
+// Source of a Unary's or Binary's operand: the stack, a coordinate of the top point, an immediate before the row's
+// own, or a local. A Ternary's operands lie on the stack.
 enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };
 struct Sources {
-  Source a = Source::Stack, b = Source::Stack;  // a Unary has a alone
-  std::uint32_t local = 0;                      // the same of both
+  Source a = Source::Stack, b = Source::Stack;  // a Unary has only a
+  std::uint32_t local = 0;                      // shared by a and b
 };
 inline constexpr std::uint32_t kMaxLocalSource = (1u << 18) - 1;
 
@@ -59,38 +59,39 @@ struct OpcodeInfo {
   Opcode opcode;
   std::string_view mnemonic;
   Form form;
-  std::string_view immediate_names;  // blank separated, ":24" marks a whole number from 1 to 24
-  int immediates;                    // words after the opcode word; of an Outline, of one group
+  std::string_view immediate_names;  // separated by blanks; ":24" marks an integer from 1 to 24
+  int immediates;                    // number of words after the opcode word, in an Outline per group
   Choice choice;
-  int cost;            // multiply-adds per point; of an Outline, of one group
-  StackEffect effect;  // of the plain instruction
-  bool has_operand;    // the opcode word's high 24 bits are a number
+  int cost;            // multiply-adds per point, in an Outline per group
+  StackEffect effect;  // of the instruction without kMoved, kJoined or Sources
+  bool has_operand;    // true if the opcode word's high 24 bits are a number
 };
 
 const OpcodeInfo& info(Opcode opcode);
 
-// The groups of immediates after an opcode word: an Outline's operand, 1 of any other row.
+// Returns the number of groups of immediates after an opcode word: an Outline's operand, 1 for any other row.
 std::uint32_t group_count(std::uint32_t word);
-// The least count an Outline row allows; 1 of any other row.
+// Returns the minimum number of groups of an Outline row, 1 for any other row.
 std::uint32_t minimum_groups(Opcode opcode);
-// Immediates before the row's own: where a Shape is moved to, a Source::Constant of a and of b.
+// Returns the number of immediates before the row's own: 3 for a Shape with kMoved, 1 per Source::Constant.
 int leading_immediates(std::uint32_t word);
 StackEffect effect_of(std::uint32_t word);
-// Whether the result can be exactly one of two operands: a row with a choice, or a joined Shape.
+// True if the result can be exactly one of two operands: a row with a choice, or a Shape with kJoined.
 bool is_choice(std::uint32_t word);
-// Words of an instruction, the opcode word included, and its cost. The low byte must name an opcode.
+// Length of an instruction in words, including the opcode word, and its cost in multiply-adds per point. The low byte
+// of `word` must name an opcode.
 std::size_t instruction_length(std::uint32_t word);
 std::uint64_t instruction_cost(std::uint32_t word);
 
-// The i-th row, or nullptr when `byte` names no opcode.
+// Returns the row of the opcode `byte`, or nullptr when `byte` names no opcode.
 const OpcodeInfo* find_opcode(std::uint32_t byte);
 
-// The most that immediate `index` of `opcode` can be, an unsigned integer from 1; 0 when it is a float.
+// Returns the maximum of integer immediate `index` of `opcode`, whose minimum is 1, or 0 for a float immediate.
 std::uint32_t largest_integer(const OpcodeInfo& opcode, int index);
 inline bool is_integer_immediate(const OpcodeInfo& opcode, int index) { return largest_integer(opcode, index) > 0; }
 std::string_view immediate_name(const OpcodeInfo& opcode, int index);
 
-// What the head of vm/program/opcodes.def promises of a Shape's float error, per unit of max(1, |p|, |d|).
+// Bound on a Shape's float error per unit of max(1, |p|, |d|), as promised at the head of vm/program/opcodes.def.
 inline constexpr double kFloatError = 10 * 0x1p-24;
 
 inline constexpr std::uint32_t opcode_word(Opcode opcode, std::uint32_t operand = 0) {

@@ -11,7 +11,7 @@
 namespace fathom::vm {
 namespace {
 
-// What the pass knows before the instruction at hand.
+// State of the verifier before the current instruction: heights of the stacks, their maxima, and the written locals.
 struct State {
   std::int64_t values = 0, points = 1, max_values = 0, max_points = 1;
   std::vector<bool> written;  // [local]

@@ -22,14 +22,15 @@ HWY_AFTER_NAMESPACE();
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// The first lane's number, of those that are left.
+// Returns the number in the first lane of `left`.
 HWY_INLINE float first_of(Batch numbers, BatchMask left) {
   alignas(64) float lanes[kLanes];
   numbers.store(lanes);
   return lanes[hn::FindFirstTrue(FloatLanes(), left.m)];
 }
 
-// A shape that is another one in every lane (vm/prune/skeleton.h): each is asked once, for the lanes that are it.
+// Evaluates a shape that differs per lane (vm/prune/skeleton.h): each opcode once, for the lanes that have the
+// opcode.
 Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   Batch result = which;
   float opcode = hn::GetLane(which.v);
@@ -64,14 +65,15 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   }
 }
 
-// Rows of floats, one a lane, turned: floats q * kQuad and on of row(lane), as to[float][lane].
+// Transposes rows of floats, one row per lane: copies the kQuad floats of row(lane) from q * kQuad on to
+// to[float][lane].
 #if HWY_TARGET == HWY_SCALAR
 template <class Row>
 HWY_INLINE void turn_quad(const Row& row, std::size_t q, float* to) {
   std::copy_n(row(0) + q * kQuad, kQuad, to);
 }
 #else
-// Four rows that are four columns within each of their quads.
+// Transposes four registers as 4x4 matrices, one matrix per 128-bit block.
 HWY_INLINE void turn_blocks(hn::Vec<FloatLanes> (&v)[kQuad]) {
   const FloatLanes d;
   const hn::RepartitionToWide<FloatLanes> wide;
@@ -84,7 +86,8 @@ HWY_INLINE void turn_blocks(hn::Vec<FloatLanes> (&v)[kQuad]) {
   v[3] = hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23));
 }
 
-// `length` floats of each of the lanes first, first + stride, ..., side by side.
+// Loads `length` floats from quad q on of each of the lanes first, first + stride, ..., side by side into one
+// register.
 template <std::size_t length, class D, class Row>
 HWY_INLINE hn::Vec<D> load_rows(D d, const Row& row, std::size_t first, std::size_t stride, std::size_t q) {
   if constexpr (hn::MaxLanes(D()) == length) {
@@ -106,11 +109,12 @@ HWY_INLINE void turn_quad(const Row& row, std::size_t q, float* to) {
   for (std::size_t i = 0; i < kQuad; ++i) hn::Store(v[i], d, to + i * kLanes);
 }
 
-// Quads q and q + 1, which take fewer loads together.
+// Transposes quads q and q + 1, which together take fewer loads.
 template <class Row>
 HWY_INLINE void turn_two_quads(const Row& row, std::size_t q, float* to) {
   const FloatLanes d;
-  hn::Vec<FloatLanes> a[kQuad], b[kQuad];  // of every other four lanes; their blocks are of q and q + 1 by turns
+  // a and b hold alternate groups of four lanes. Their 128-bit blocks alternate between quads q and q + 1.
+  hn::Vec<FloatLanes> a[kQuad], b[kQuad];
   for (std::size_t i = 0; i < kQuad; ++i) {
     a[i] = load_rows<2 * kQuad>(d, row, i, 2 * kQuad, q);
     b[i] = load_rows<2 * kQuad>(d, row, i + kQuad, 2 * kQuad, q);
@@ -123,14 +127,14 @@ HWY_INLINE void turn_two_quads(const Row& row, std::size_t q, float* to) {
 }
 #endif
 
-// A register of points, each with the program it is in.
+// One register of points, each with the constants of its own program.
 class LanePrograms {
  public:
   HWY_INLINE LanePrograms(std::span<const SkeletonJob> jobs)
       : jobs_(jobs.data()), count_(std::min(jobs.size(), kLanes)) {
     if (count_ == kLanes) return;
     std::copy_n(jobs_, count_, some_);
-    std::fill(some_ + count_, some_ + kLanes, some_[count_ - 1]);  // lanes past the end repeat the last
+    std::fill(some_ + count_, some_ + kLanes, some_[count_ - 1]);  // lanes past the end repeat the last job
     jobs_ = some_;
   }
 
@@ -139,7 +143,7 @@ class LanePrograms {
     return {Batch::load(rows_), Batch::load(rows_ + kLanes), Batch::load(rows_ + 2 * kLanes)};
   }
 
-  // Constants as the machine takes them, [constant][lane].
+  // Writes the constants in the order in which the interpreter reads them, [constant][lane].
   HWY_INLINE void put_constants(const Skeleton& skeleton, const float* constants, const std::uint32_t* pool,
                                 float* to) const {
     for (std::size_t place = 0; place < skeleton.quads.size(); ++place) {
@@ -156,9 +160,9 @@ class LanePrograms {
     }
   }
 
-  // After points().
+  // Writes the distances, limited to each job's `most`. Call after points(), which loads the limits.
   HWY_INLINE void put_distances(Batch values, float* distance) {
-    // What is not a number stays so.
+    // A NaN distance stays NaN, because min() returns its second operand then.
     min(Batch::load(rows_ + 3 * kLanes), values).store(rows_);
     for (std::size_t lane = 0; lane < count_; ++lane) distance[jobs_[lane].point] = rows_[lane];
   }

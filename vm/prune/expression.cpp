@@ -86,7 +86,7 @@ void Expression::enter_choice(ExpressionNode& node, std::uint32_t self) {
   choices_.push_back(self);
 }
 
-// The top value, computed at the top point.
+// Pops the top value. Returns false if the value was not computed at the top point.
 bool Expression::take(std::uint32_t& operand) {
   const Value value = values_[--height_];
   operand = value.node;
@@ -101,7 +101,7 @@ bool Expression::use_local(std::uint32_t local, std::uint32_t& operand) {
 std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
   const Place place{points_.back().place, at};
   const auto next = static_cast<std::uint32_t>(places_.size());
-  if (locals_ > 0) {  // else no place is met twice
+  if (locals_ > 0) {  // without locals, no place occurs twice
     if (2 * places_.size() >= slots_.size()) grow_slots(code);
     Slot& slot = slots_[slot_of(code, place)];
     if (slot.reading == reading_) return slot.place;
@@ -111,12 +111,12 @@ std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
   return next;
 }
 
-// Where an equal place is, or would be.
+// Returns the index of the slot of an equal place, or of the free slot for `place`.
 std::size_t Expression::slot_of(const Code& code, const Place& place) const {
   const std::size_t length = instruction_length(code.words[place.at]);
   std::uint64_t hash = 0xcbf29ce484222325u ^ place.before;  // FNV-1a (Fowler, Noll, Vo, 1991)
   for (std::size_t i = 0; i < length; ++i) hash = (hash ^ code.words[place.at + i]) * 0x100000001b3u;
-  hash *= 0x9e3779b97f4a7c15u;  // numbers that are near each other must not lie near each other
+  hash *= 0x9e3779b97f4a7c15u;  // spreads similar hashes over the table
   for (std::size_t at = hash >> 32;; ++at) {
     const std::size_t index = at & (slots_.size() - 1);
     const Slot& slot = slots_[index];

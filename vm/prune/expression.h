@@ -1,5 +1,5 @@
-// A program read as an expression: which instruction made each operand. Stack code is easy to run and awkward to cut;
-// this is the same code with its operands found, for what cuts it (vm/prune/specialise.h).
+// The def-use graph of a program: each instruction with the instructions that make its operands. Stack code is easy
+// to run but hard to prune, so vm/prune/specialise.h prunes this form.
 // Tested by: tests/vm/prune/specialise_test.cpp
 #pragma once
 
@@ -11,25 +11,24 @@
 
 namespace fathom::vm {
 
-// An instruction and where its operands come from; nodes are numbered as the instructions are.
+// An instruction and the nodes of its operands. A node has the number of its instruction.
 struct ExpressionNode {
-  std::uint32_t at;  // of the opcode word
-  // The instructions whose values are its operands: of a Unary a, of a Binary a and b, of a Ternary all, of a joined
-  // Shape a (b is the shape itself), of drop, tee, load and tag a; kNone for a coordinate or a constant. A local's
-  // value is its tee's.
+  std::uint32_t at;  // offset of the opcode word
+  // Nodes of the operands: a of a Unary, a and b of a Binary, all of a Ternary, a of a joined Shape (b is the shape
+  // itself), a of drop, tee, load and tag. kNone for a coordinate or a constant. A local's node is its tee.
   std::uint32_t a = kNone, b = kNone, c = kNone;
-  std::uint32_t point = kNone;   // of drop: the Point instruction whose point it forgets
-  std::uint32_t choice = kNone;  // its number, in program order, when it is a choice
+  std::uint32_t point = kNone;   // for a drop: node of the Point instruction whose point is dropped
+  std::uint32_t choice = kNone;  // for a choice: its number, in program order
 };
 
 class Expression {
  public:
-  // Reads `code` anew; false when it is not an expression: a value computed at one point is used at another, or a
-  // point is dropped at which nothing was computed.
+  // Reads `code`, replacing the code read before. Returns false if the code is not an expression: a value computed at
+  // one point is used at another, or a point at which nothing was computed is dropped.
   bool read(const Code& code);
 
   const std::vector<ExpressionNode>& nodes() const { return nodes_; }
-  const std::vector<std::uint32_t>& choices() const { return choices_; }  // [choice] its node
+  const std::vector<std::uint32_t>& choices() const { return choices_; }  // [choice] node
   const std::vector<std::uint32_t>& tees() const { return tees_; }        // nodes, in program order
   std::uint32_t root() const { return static_cast<std::uint32_t>(nodes_.size() - 1); }
   std::uint32_t locals() const { return locals_; }
@@ -48,20 +47,20 @@ class Expression {
   std::vector<ExpressionNode> nodes_;
   std::vector<std::uint32_t> choices_, tees_;
   std::uint32_t locals_ = 0;
-  // While reading. A place is a point as a chain of Point instructions makes it; equal chains are one place.
+  // State while reading. A place is the chain of Point instructions that makes a point; equal chains are one place.
   std::vector<Value> values_;
   std::size_t height_ = 0;  // of values_
   struct Point {
     std::uint32_t node, place;
   };
   std::vector<Point> points_;
-  std::vector<std::uint32_t> defined_;   // [local] its latest tee
+  std::vector<std::uint32_t> defined_;   // [local] node of its latest tee
   std::vector<std::uint32_t> place_of_;  // [node]
   struct Place {
-    std::uint32_t before, at;  // the place it is made of, and the instruction
+    std::uint32_t before, at;  // place before the last Point instruction of the chain; offset of that instruction
   };
   std::vector<Place> places_;
-  // Places by hash, at the first free slot from theirs; a slot of another reading is free.
+  // Hash table of places with linear probing. Slots filled by an earlier reading are free.
   struct Slot {
     std::uint32_t reading = 0, place = 0;
   };

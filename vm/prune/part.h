@@ -1,4 +1,4 @@
-// A part of a program, and how one is written (vm/prune/specialise.h).
+// A part of a program, the result of pruning (vm/prune/specialise.h), and a writer of parts.
 // Tested by: tests/vm/prune/specialise_test.cpp
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace fathom::vm {
 
-// A shorter program and where its instructions are in the whole one.
+// A pruned program, and the position of its instructions in the whole program.
 struct Part {
   std::vector<std::uint32_t> words;
   std::vector<double> wide;            // [word]
-  std::vector<std::uint32_t> sources;  // [instruction] offset of the opcode word it came from, in the whole program
+  std::vector<std::uint32_t> sources;  // [instruction] offset of its opcode word in the whole program
   std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
-  std::uint64_t cost = 0;  // multiply-adds per point, by the table's estimate
+  std::uint64_t cost = 0;  // multiply-adds per point, as vm/program/opcodes.def estimates
 
   std::size_t bytes() const {
     return words.size() * (sizeof(std::uint32_t) + sizeof(double)) + sources.size() * sizeof(std::uint32_t);
@@ -27,21 +27,22 @@ struct Part {
   operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 
-// The whole program as a part of itself.
+// Returns the whole program as a part of itself.
 Part whole(const Code& code);
 
-// Writes a part of a program from its last instruction to its first, as cutting comes upon them.
+// Writes a part of a program from the last instruction to the first, the order in which pruning visits them.
 class PartWriter {
  public:
-  // The program must outlive what is written of it.
+  // Starts a part of `program`, which must live until finish().
   void begin(const Part& program) {
     program_ = &program;
     at_ = words_.size(), source_at_ = sources_.size();
-    values_ = most_values_ = points_ = most_points_ = 1;  // as at the end
+    values_ = most_values_ = points_ = most_points_ = 1;  // heights of the stacks at the end of a program
     cost_ = 0, choices_ = 0;
   }
 
-  // An opcode word and `count` immediates, which are at `from` in the program; made of its instruction `node`.
+  // Writes an opcode word and `count` immediates, which are at `from` in the program. `node`: the program's
+  // instruction from which this one derives.
   void put(std::uint32_t node, std::uint32_t word, std::uint32_t from, std::uint32_t count) {
     const OpcodeRow& row = row_of(word);
     if (is_function(row.form)) return put_function(node, word, row, from, count);
@@ -52,7 +53,7 @@ class PartWriter {
     most_values_ = std::max(most_values_, values_), most_points_ = std::max(most_points_, points_);
   }
 
-  // The same of a function, the row of the word; most of a formula.
+  // Like put(), for a Unary or Binary, the most frequent instructions of a formula. `row` is the row of `word`.
   void put_function(std::uint32_t node, std::uint32_t word, const OpcodeRow& row, std::uint32_t from,
                     std::uint32_t count) {
     write(node, word, from, count);
@@ -62,7 +63,7 @@ class PartWriter {
     most_values_ = std::max(most_values_, values_);
   }
 
-  // What was written, from its beginning.
+  // Copies the written instructions to `out`.
   void finish(std::uint32_t locals, Part& out) const;
 
  private:
@@ -76,15 +77,15 @@ class PartWriter {
     sources_[--source_at_] = program_->sources[node];
   }
 
-  // For so many words and an instruction before what is written.
+  // Makes room for `words` words and one instruction before the written ones.
   void make_room(std::size_t words);
 
   const Part* program_ = nullptr;
   std::vector<std::uint32_t> words_;
   std::vector<double> wide_;
   std::vector<std::uint32_t> sources_;
-  std::size_t at_ = 0, source_at_ = 0;  // where what is written begins
-  // Heights of the stacks before the instruction written last, and the most of them.
+  std::size_t at_ = 0, source_at_ = 0;  // begin of the written words and sources
+  // Heights of the stacks before the instruction written last, and their maxima.
   std::int64_t values_ = 1, most_values_ = 1, points_ = 1, most_points_ = 1;
   std::uint64_t cost_ = 0;
   std::uint32_t choices_ = 0;

@@ -1,4 +1,4 @@
-// Settling choices, compiled once for each instruction set (Highway's foreach_target).
+// Settles choices; compiled once per instruction set (Highway's foreach_target).
 #include "vm/prune/settle.h"
 
 #include <limits>
@@ -35,7 +35,8 @@ class Settling {
     const Batch none = Batch::broadcast(kInfinity);
     for (std::size_t j = 0; j < count; ++j) {
       const bool always = links_[j].always;
-      kept_[j] = {static_cast<std::uint16_t>(always ? 0xffff : 0), 0};  // a: where it is needed, till it is settled
+      // Until choice j is settled, kept_[j].a holds the boxes in which the choice is needed.
+      kept_[j] = {static_cast<std::uint16_t>(always ? 0xffff : 0), 0};
       for (std::size_t r = 0; r < kRegisters; ++r) {
         (always ? -none : none).store(interest_[j].lo + r * kLanes);
         (always ? none : -none).store(interest_[j].hi + r * kLanes);
@@ -43,10 +44,10 @@ class Settling {
     }
   }
 
-  // Widens the interest in an operand, in the boxes of `bits`, to what one of its users has there.
+  // Widens the interest in an operand to include [lo, hi], the interest of one of its users, in the boxes of `bits`.
   HWY_INLINE void pass_on(ChoiceLink::Operand operand, std::size_t r, std::uint32_t bits, Batch lo, Batch hi) {
     if (operand.choice == kNone || bits == 0) return;
-    if (operand.less != 0) {  // and the rounding of what takes it off
+    if (operand.less != 0) {  // includes the rounding error of the subtraction
       const Batch less = Batch::broadcast(operand.less), error = Batch::broadcast(0x1p-21f);
       lo = lo + less - error * (abs(lo) + abs(less));
       hi = hi + less + error * (abs(hi) + abs(less));
@@ -60,7 +61,8 @@ class Settling {
     needed = static_cast<std::uint16_t>(needed | bits << (r * kLanes));
   }
 
-  // All is turned so that the least wins: the greatest of a and b is minus the least of -a and -b.
+  // Settles choice j, whose users are settled. Signs are changed so that the lesser operand always wins: the maximum
+  // of a and b is minus the minimum of -a and -b.
   HWY_INLINE void settle(std::size_t j) {
     const std::uint32_t needed = kept_[j].a;
     if (needed == 0) return;
@@ -94,14 +96,15 @@ class Settling {
     const Interest& interest = interest_[j];
     const Batch lo = turn_a ? -Batch::load(interest.hi + at) : Batch::load(interest.lo + at);
     const Batch hi = turn_a ? -Batch::load(interest.lo + at) : Batch::load(interest.hi + at);
-    // A blend of two that are both above T + 5/4 width is above T: it lowers their least by a quarter of its width.
+    // A blend whose operands are both above T + 5/4 width is above T, because a blend is at most a quarter of its
+    // width below the lesser operand.
     const Batch width = Batch::broadcast(link.width), reach = Batch::broadcast(link.width * 1.2501f);
     const Batch limit = min(hi, min(a_hi, b_hi)), all = Batch::broadcast(kInfinity);
-    // What may be NaN is not left alone: the other operand may be what the choice gives then.
+    // An operand that may be NaN is never the only one kept, because the choice may then return the other operand.
     const BatchMask number_a = (a_lo > -all) | (a_hi < all), number_b = (b_lo > -all) | (b_hi < all);
     const BatchMask no_a = is_over(a_lo, b_hi, width) | (is_over(a_lo, limit, reach) & number_b);
     const BatchMask no_b = is_over(b_lo, a_hi, width) | (is_over(b_lo, limit, reach) & number_a);
-    const BatchMask a_first = a_lo <= b_lo;  // where neither matters one stays, to be above the limit
+    const BatchMask a_first = a_lo <= b_lo;  // if neither matters, one stays to put the result above the limit
     keep_a &= bits_of((!no_a) | (no_b & a_first));
     keep_b &= bits_of((!no_b) | (no_a & !a_first));
     const Batch most = limit + reach + error_of(limit, reach);
@@ -113,7 +116,7 @@ class Settling {
     if (error_ == 0) return Batch::broadcast(0.0f);
     return Batch::broadcast(error_) + Batch::broadcast(kSettleShare) * (abs(a) + abs(b));
   }
-  // Whether a is above b by more than the margin. A rounded difference is above a float only where the true one is.
+  // True if a is above b by more than the margin. A rounded difference is above a float only if the exact one is.
   HWY_INLINE BatchMask is_over(Batch a, Batch b, Batch margin) const { return a - b > margin + error_of(a, b); }
 
   const ChoiceLink* links_;
@@ -151,7 +154,7 @@ void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_
   for (std::size_t j = 0; j < count; ++j) {
     const ChoiceLink& link = links[j];
     const ChoiceRange& of = ranges[j];
-    float a_over_b = -1, b_over_a = -1;  // at least
+    float a_over_b = -1, b_over_a = -1;  // lower bounds on a - b and b - a
     if (link.rule != ChoiceRule::Keep) {
       const float b_lo = link.opposite ? -of.b_hi : of.b_lo, b_hi = link.opposite ? -of.b_lo : of.b_hi;
       a_over_b = of.a_lo - b_hi, b_over_a = b_lo - of.a_hi;

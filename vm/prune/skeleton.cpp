@@ -7,10 +7,10 @@
 namespace fathom::vm {
 namespace {
 
-// What a skeleton is made of.
+// An instruction of a skeleton.
 struct Step {
-  std::uint32_t word, instruction;
-  std::uint32_t at;  // its word in the part
+  std::uint32_t word, instruction;  // opcode word in the skeleton; number of the part's instruction
+  std::uint32_t at;                 // offset of the part's opcode word
 };
 
 bool is_outline(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Outline; }
@@ -20,12 +20,12 @@ bool is_any_shape(std::uint32_t word) {
   return row.form == Form::Shape && can_be_any_shape(row.opcode, row.immediate_names, row.cost);
 }
 
-// The opcode word a skeleton has for this one.
+// Returns the opcode word that a skeleton has for a part's opcode word.
 std::uint32_t as_laid_out(std::uint32_t word) {
   return is_any_shape(word) ? opcode_word(Opcode::RoundBox, operand_of(word) | kMoved | kAnyShape) : word;
 }
 
-// Of an instruction's constants as they are laid out.
+// Returns the number of quads of an instruction's constants.
 std::uint32_t quads_of(std::uint32_t word) {
   if (is_outline(word)) return 0;
   if (is_any_shape(word)) return 2;
@@ -36,8 +36,7 @@ Opcode opcode_of(std::uint32_t word) { return static_cast<Opcode>(word & 0xff); 
 bool is_shape(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Shape; }
 bool is_joined_shape(std::uint32_t word) { return is_shape(word) && (operand_of(word) & kJoined) != 0; }
 
-// The part's instructions but for the tags, each shape that is only there for the least of it and what was before
-// joined to it.
+// Returns the part's instructions except tags. A shape followed by a min becomes one instruction with kJoined.
 std::vector<Step> untagged(const Part& part) {
   std::vector<Step> steps;
   std::uint32_t instruction = 0;
@@ -55,7 +54,8 @@ std::vector<Step> untagged(const Part& part) {
   return steps;
 }
 
-// A union does not mind its order: programs that begin with the same shapes in other orders are one skeleton.
+// Sorts the union of shapes with which a program begins by opcode words. The order of a union does not matter, so
+// programs that begin with the same shapes in different orders share a skeleton.
 void sort_union(std::vector<Step>& steps) {
   if (steps.empty() || !is_shape(steps[0].word)) return;
   auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined_shape(s.word); });
@@ -66,7 +66,7 @@ void sort_union(std::vector<Step>& steps) {
   steps[0].word &= ~kJoinedBit;
 }
 
-// Whether the words after an opcode word are the skeleton's: counts, and outlines' corners.
+// True if immediate i belongs to the skeleton: integers, and the corners of outlines.
 bool keeps_immediate(std::uint32_t word, std::size_t i) {
   const OpcodeInfo& row = *find_opcode(word & 0xff);
   if (is_outline(word)) return true;
@@ -85,14 +85,14 @@ void append_instruction(const Part& part, std::uint32_t word, std::size_t at, st
   }
 }
 
-// In the order in which a skeleton has them.
+// Returns the steps of a part in the order of its skeleton.
 std::vector<Step> distance_steps(const Part& part) {
   std::vector<Step> steps = untagged(part);
   sort_union(steps);
   return steps;
 }
 
-// The number of the one with the same words; kNone when there is none.
+// Returns the number of the item with the words and wide constants of `wanted`, or kNone.
 template <class Item>
 std::uint32_t find(const std::unordered_multimap<std::uint64_t, std::uint32_t>& index, const std::vector<Item>& items,
                    const Item& wanted) {
@@ -249,7 +249,7 @@ std::uint32_t Skeletons::add(Frame&& frame) {
 
 std::uint32_t Skeletons::number_of(Skeleton&& skeleton) {
   if (const std::uint32_t known = find(skeleton_at_, skeletons_, skeleton); known != kNone) {
-    Skeleton& other = skeletons_[known];  // of other frames: as much as any needs
+    Skeleton& other = skeletons_[known];  // shared by several frames, so its sizes are their maxima
     other.locals = std::max(other.locals, skeleton.locals);
     other.max_values = std::max(other.max_values, skeleton.max_values);
     other.max_points = std::max(other.max_points, skeleton.max_points);

@@ -1,17 +1,17 @@
 // Skeletons: programs without their constants.
 //
-// The machine runs one instruction for many points. Where every cell of a scene has a program of its own
-// (runtime/field/regions.h) few points share one; but programs cut from one scene differ in little else than their
-// constants. Without those many are the same, and so a lane takes a point, with the constants of the point's own
-// program, and the lanes are full again.
+// The interpreter runs one instruction for many points. If every cell of a scene has its own program
+// (runtime/field/regions.h), few points share a program. But programs pruned from one scene differ in little else
+// than their constants, and without these many programs are the same. So each lane takes a point and the constants of
+// the point's own program, and the lanes are full again.
 //
-//     const Constants constants(whole);                       // of all programs that are cut from it
+//     const Constants constants(whole);                       // of all programs that are pruned from `whole`
 //     std::uint32_t at = skeletons.pack(part, constants, pool);
-//     evaluate_skeleton(skeletons[pool[at]], constants, pool.data(), jobs, points, distance, workspace);
-//     skeletons.unpack(whole, constants, pool.data(), at, part);  // the part again
+//     evaluate_skeleton(skeletons[pool[at]], constants, pool.data(), jobs, distance, workspace);
+//     skeletons.unpack(whole, constants, pool.data(), at, part);  // restores the part
 //
-// A skeleton is what distances take: it has no tags, its unions are in the order of their opcodes, and small shapes
-// are all one, which is another in every lane. What a part has beside that is its frame.
+// A skeleton has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
+// become one instruction that evaluates a different shape in every lane. A part's frame holds the rest of the part.
 //
 // Tested by: tests/vm/prune/skeleton_test.cpp
 #pragma once
@@ -28,7 +28,7 @@
 
 namespace fathom::vm {
 
-// Of words that may be equal to others.
+// Hash of words, to find equal words.
 inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
   std::uint64_t hash = words.size();
   for (const std::uint32_t word : words) {
@@ -38,28 +38,31 @@ inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
   return hash;
 }
 
-inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is a whole number of quads
+inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an integer number of quads
 
-// Whether a shape is laid out as any shape: where it is moved to, its immediates, its opcode.
+// True if a shape can be laid out as any shape (kAnyShape): its translation, up to kAnyShapeImmediates immediates,
+// its opcode.
 inline constexpr std::size_t kAnyShapeImmediates = 4;
 constexpr bool can_be_any_shape(Opcode opcode, std::string_view immediates, int cost) {
-  constexpr int kMostCost = 64;  // of a dear one the other lanes should be spared
+  constexpr int kMostCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
   const auto count = static_cast<std::size_t>(count_names(immediates));
   return count > 0 && count <= kAnyShapeImmediates && immediates.find(':') == std::string_view::npos &&
          opcode != Opcode::Constant && cost <= kMostCost;
 }
 
-// The constants of a whole program by instruction, as the lanes want them. Where there are both spheres and boxes
-// they are laid out as round boxes, which have the same distances bit for bit (but for the sign of a zero).
+// Constants of a whole program by instruction, in the layout that lanes load. In a program with both spheres and
+// boxes, these are laid out as round boxes, which have the same distances bit for bit (except for the sign of a
+// zero).
 class Constants {
  public:
   explicit Constants(const Code& whole);
 
-  std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }  // in quads
+  // Converts the offset of an opcode word to the row of its constants, in quads, and back.
+  std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }
   std::uint32_t source(std::uint32_t row) const { return source_of_[row]; }
   const float* values() const { return values_.data(); }
   std::size_t bytes() const;
-  void forget_rows() { row_at_ = {}; }  // once all is packed
+  void forget_rows() { row_at_ = {}; }  // frees memory; call after the last pack()
 
  private:
   Opcode laid_out(Opcode opcode) const;
@@ -73,25 +76,26 @@ class Constants {
 
 struct Skeleton {
   std::vector<std::uint32_t> words;  // float immediates are 0
-  std::vector<double> wide;          // [word]; of one with outlines, whose constants are its own
+  std::vector<double> wide;          // [word] constants of outlines, which belong to the skeleton; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
-  std::vector<std::uint8_t> quads;  // of each instruction that has constants
+  std::vector<std::uint8_t> quads;  // number of quads of each instruction that has constants
 
   operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 
-// The skeletons of many parts, and their frames. A part in a pool is its skeleton's number, its frame's, the rows of
-// the constants of its skeleton's instructions that have any, and the places in the whole program of the others.
+// Skeletons and frames of many parts. A part in a pool consists of its skeleton's number, its frame's number, the
+// rows of constants of the skeleton's instructions that have constants, and the offsets in the whole program of the
+// part's other instructions.
 class Skeletons {
  public:
-  // Appends the part to the pool; where it begins.
+  // Appends the part to the pool. Returns the index of its first entry.
   std::uint32_t pack(const Part& part, const Constants& constants, std::vector<std::uint32_t>& pool);
   void unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool, std::uint32_t at,
               Part& out) const;
-  // A part that others have packed becomes one of these.
+  // Renumbers a part that `others` packed, so that it refers to the skeletons and frames of this object.
   void adopt(const Skeletons& others, std::uint32_t* pool, std::uint32_t at);
 
-  // Asks for what evaluate_skeleton() will read of the part.
+  // Prefetches the constants of the part that evaluate_skeleton() will read.
   void prefetch(const Constants& constants, const std::uint32_t* pool, std::uint32_t at) const {
     const std::size_t rows = skeletons_[pool[at]].quads.size();
     for (std::size_t i = 0; i < rows; ++i) __builtin_prefetch(constants.values() + kQuad * pool[at + 2 + i]);
@@ -103,9 +107,9 @@ class Skeletons {
 
  private:
   struct Frame {
-    std::vector<std::uint32_t> words;  // the part's, but float immediates and tags' surfaces are 0
-    std::vector<double> wide;          // [word]; of one with outlines
-    std::vector<std::uint32_t> place;  // [instruction] in the pool, after the two numbers
+    std::vector<std::uint32_t> words;  // the part's, except that float immediates and tags' surfaces are 0
+    std::vector<double> wide;          // [word] constants of outlines; empty without outlines
+    std::vector<std::uint32_t> place;  // [instruction] index of its entry in the pool, after the two numbers
     std::uint32_t skeleton, locals, max_values, max_points, choices;
     std::uint64_t cost;
   };
@@ -121,12 +125,13 @@ class Skeletons {
   Frame looked_for_;
 };
 
-// A point in a program of a pool.
+// A point to evaluate, and its program.
 struct alignas(32) SkeletonJob {
   float x, y, z, most;
-  std::uint32_t at, point;  // the program in the pool; which of the distances
+  std::uint32_t at, point;  // index of the program in the pool; index of the result in `distance`
 };
-// distance[job.point] = the lesser of the program's distance there and job.most, for programs of one skeleton.
+// Computes distance[job.point] = min(distance of the job's program at x, y, z, job.most). All programs have the
+// skeleton `skeleton`.
 void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
                        std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace);
 

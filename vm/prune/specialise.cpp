@@ -12,7 +12,7 @@ namespace {
 
 static_assert(kEnclosedBoxes == 16);
 
-// The rule of the choice at a word; its operands are not filled in.
+// Returns the link of the choice at word `at`, without the operands.
 ChoiceLink link_of(const Code& code, std::uint32_t at) {
   const std::uint32_t word = code.words[at];
   const auto link = [&](ChoiceRule rule, bool opposite, bool blends) {
@@ -51,7 +51,7 @@ bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& works
 SlopeBound Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   program_ = &program;
   pairwise_ = true;
-  is_read_ = false;  // most of those who ask want the bound alone
+  is_read_ = false;  // decide() calls read(), because most callers want only the bound
   return enclose_slope(program, lo, hi, ranges_, workspace);
 }
 
@@ -74,7 +74,7 @@ void Specialiser::link_pairs() {
   for (const std::uint32_t id : expression_.choices()) link_choice(id);
 }
 
-// The choice at a node, its operands' choices not filled in.
+// Adds the link of the choice at node `id`, without the choices of its operands.
 ChoiceLink& Specialiser::link_choice(std::uint32_t id) {
   const std::uint32_t at = expression_.nodes()[id].at, word = program_->words[at];
   const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
@@ -144,8 +144,7 @@ void Specialiser::part(std::size_t box, Part& out) {
   writer_.finish(locals_, out);
 }
 
-// Where the value of a node comes from once the choices on the way are settled; the node itself when it computes
-// something still.
+// Follows choices that return a kept operand unchanged. Returns the first node from `id` on that computes something.
 std::uint32_t Specialiser::resolve(std::uint32_t id) const {
   while (true) {
     const ExpressionNode& node = expression_.nodes()[id];
@@ -157,8 +156,8 @@ std::uint32_t Specialiser::resolve(std::uint32_t id) const {
   }
 }
 
-// How often each local is used in each box; its first use in the order of the code is its definition. Users come
-// after what they use, so one pass from the last node to the first sees all uses of a node before it.
+// Counts the uses of each local per box. The first use in the order of the code becomes the local's definition. Users
+// come after what they use, so one pass from the last node to the first sees all uses of a node before that node.
 void Specialiser::count_uses() {
   const auto& nodes = expression_.nodes();
   needed_.assign(nodes.size(), 0);
@@ -188,7 +187,7 @@ void Specialiser::count_uses() {
   is_counted_ = true;
 }
 
-// The value at its place on the stack.
+// Marks the value of `node` as needed at its place on the stack.
 void Specialiser::need(std::uint32_t node, std::uint32_t boxes) {
   needed_[node] = static_cast<std::uint16_t>(needed_[node] | boxes);
   const bool tee = row_of(program_->words[expression_.nodes()[node].at]).opcode == Opcode::Tee;
@@ -227,7 +226,7 @@ void Specialiser::emit(std::uint32_t id) {
   if (row.opcode == Opcode::Drop) push(node.point, Task::Instruction);
   if (node.a != kNone) push(node.a, Task::Value);
   if (row.form != Form::Ternary) return;
-  push(node.b, Task::Value);  // what comes last in the code is written first
+  push(node.b, Task::Value);  // pushed later and so written first, because the code is written backwards
   push(node.c, Task::Value);
 }
 
@@ -236,7 +235,7 @@ void Specialiser::emit_whole(std::uint32_t id) {
   writer_.put(id, word, at + 1, immediates_of(word));
 }
 
-// A function of numbers, or a choice of which one operand is left that lies on no stack or changes its sign.
+// Emits a Unary or Binary, or the remaining operand of a choice, if that is not on the stack or changes its sign.
 void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word,
                                 const OpcodeRow& row) {
   if (node.choice != kNone) {
@@ -246,7 +245,7 @@ void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, st
   Sources sources = sources_of(word);
   const std::uint32_t immediates =
       static_cast<std::uint32_t>(row.immediates) + (sources.a == Source::Constant) + (sources.b == Source::Constant);
-  // What comes last in the code is taken first, and written first.
+  // The code is written backwards, so the operand that comes last in the code is taken and written first.
   std::uint32_t local = 0;
   const std::size_t first = waiting_;
   if (row.form == Form::Binary) sources.b = take(sources.b, node.b, local);
@@ -256,7 +255,7 @@ void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, st
   writer_.put_function(id, (word & 0xff) | operand_of(sources) << 8, row, node.at + 1, immediates);
 }
 
-// The operand that is left of a choice.
+// Emits the remaining operand of a choice, `a` if `first`, else b.
 void Specialiser::emit_lone(std::uint32_t id, bool first) {
   const ExpressionNode& node = expression_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
@@ -281,7 +280,8 @@ void Specialiser::emit_lone(std::uint32_t id, bool first) {
   }
 }
 
-// Where an operator takes an operand from now: a local that is used nowhere before is computed in its place.
+// Returns the source of an operator's operand in the part. A local that is not used earlier in the code is computed
+// in place, on the stack.
 Source Specialiser::take(Source source, std::uint32_t operand, std::uint32_t& local) {
   if (source == Source::Local) {
     Local& l = local_[number_[operand]];

@@ -1,23 +1,25 @@
-// Specialising: the part of a program that can matter in a box.
+// Specialises a program to a box: finds the part of the program that can matter there.
 //
-// Where one operand of a choice (min, max and their smooth kin) is proved to lose all over the box, it and the choice
-// go: a thousand blended balls are three of them nearly everywhere. Beside that a caller may name limits, beyond
-// which it does not matter what the value is. For every f32 point of the box the part then gives
+// If interval bounds prove that one operand of a choice (min, max and their smooth variants) loses all over the box,
+// the Specialiser removes that operand and the choice. So a thousand blended balls become three nearly everywhere. In
+// addition, a caller may give limits beyond which values need not be exact. For every f32 point of the box the part
+// then returns
 //
-//     the f32 machine's own bits of the whole program, where its value is within the limits, ends included;
-//     a value beyond the same limit, where the whole program's is.
+//     the same bits as the whole program in f32, where the whole program's value is within the limits, ends included;
+//     a value beyond the same limit, where the whole program's value is beyond a limit.
 //
-// (A zero may change its sign.) The same holds of gradients and surfaces. Bounds on the operands are vm/range/enclose.h's.
+// (A zero may change its sign.) The same holds for gradients and surfaces. The bounds on operands are those of
+// vm/range/enclose.h.
 //
 //     Specialiser specialiser;
 //     specialiser.look(code, boxes, workspace);      // kEnclosedBoxes boxes at once
 //     specialiser.decide(least, most);
-//     specialiser.part(3, part);                     // of the fourth box; itself a Code, to be specialised further
+//     specialiser.part(3, part);                     // for the fourth box; can be specialised further
 //
 // Sources: Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid
 // geometry", 1992; Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces", 2020; Barbier et
-// al., "Lipschitz Pruning: Hierarchical Simplification of Primitive-Based SDFs", 2025. Tested by:
-// tests/vm/prune/specialise_test.cpp
+// al., "Lipschitz Pruning: Hierarchical Simplification of Primitive-Based SDFs", 2025.
+// Tested by: tests/vm/prune/specialise_test.cpp
 #pragma once
 
 #include <array>
@@ -35,39 +37,41 @@ namespace fathom::vm {
 
 class Specialiser {
  public:
-  // Encloses the program over the boxes; keeps a reference to it until the next look(). False when the program is not
-  // an expression (vm/prune/expression.h) and cannot be cut.
+  // Encloses the program over the boxes, and keeps a reference to the program until the next look(). Returns false if
+  // the program is not an expression (vm/prune/expression.h) and cannot be pruned.
   bool look(const Part& program, const Boxes& boxes, Workspace& workspace);
-  // The same over one box, which is number 0, for the exact function as well: a part for limits of -infinity and
-  // infinity equals the whole, exactly and in f32, wherever every operation of the whole is defined, so that what
-  // holds of the one holds of the other. The program is an expression; returned is what it does in the box. Operands
-  // are cut that lose to the other one: that others lie beyond what matters further down would make the part shorter,
-  // but it may be what narrows a range, and the bounds of parts are to be as good as the whole's.
+  // Encloses the program over one box, number 0, so that parts are valid for the exact function as well. With limits
+  // of -infinity and infinity, a part equals the whole program, exactly and in f32, wherever every operation of the
+  // whole program is defined. So bounds of one hold for the other. The program must be an expression. Returns the
+  // program's bounds in the box. Pruning only removes operands that lose to the other operand of their choice.
+  // Removing operands because of choices further down would make the part shorter, but such operands may narrow a
+  // range, and the bounds of parts must be as good as those of the whole program.
   SlopeBound look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
-  // What the value can be in box i.
+  // Bounds of the program's value in a box.
   float lo(std::size_t box) const { return lo_[box]; }
   float hi(std::size_t box) const { return hi_[box]; }
 
-  // Settles the choices for the limits of all boxes; -infinity and infinity ask for the value everywhere, 0 and 0 for
-  // its sign. With an `error` above 0 parts hold in double, too, of the unrounded constants: it is how far f32 may be
-  // from that in the boxes, beside kSettleShare of the values.
+  // Settles the choices of all boxes for the limits `least` and `most`. Limits of -infinity and infinity preserve the
+  // value everywhere, limits of 0 and 0 its sign. With an `error` above 0, parts are also valid in double with
+  // unrounded constants: `error`, plus kSettleShare of the values, is the maximum difference of f32 from double in
+  // the boxes.
   void decide(float least, float most, float error = 0);
-  // Instructions of the part for `box`, roughly: the choices that stay, and one.
+  // Returns the number of choices that keep both operands in `box`. The part has roughly one instruction more.
   std::uint32_t choices_left(std::size_t box) const;
   void part(std::size_t box, Part& out);
 
  private:
-  // What is still to be written, in the order of a stack.
+  // Entry of the stack of nodes that are still to be written.
   struct Task {
     std::uint32_t node;
-    // Its value; the value of the local that it, a tee, defines; or the instruction alone.
+    // Part of the node to write: its value, the value of the local that a tee defines, or the instruction alone.
     enum What : std::uint8_t { Value, Local, Instruction } what;
   };
-  // What uses a tee's local.
+  // Uses of a tee's local.
   struct Uses {
-    std::array<std::uint32_t, kEnclosedBoxes> count;  // [box] the tee's own place on the stack counts, too
-    std::uint32_t boxes;                              // a bit for each in which it is used elsewhere
+    std::array<std::uint32_t, kEnclosedBoxes> count;  // [box] including the tee's own place on the stack
+    std::uint32_t boxes;                              // one bit per box in which the local is used elsewhere
   };
   struct Local {
     std::uint32_t left;  // uses not yet written
@@ -102,27 +106,27 @@ class Specialiser {
 
   const Part* program_ = nullptr;
   Expression expression_;
-  bool is_read_ = false;                    // the expression and the links are those of the program
-  bool pairwise_ = false;                   // no choice's limits are those of what uses it
+  bool is_read_ = false;                    // true if expression_ and links_ are those of program_
+  bool pairwise_ = false;                   // true if each choice is settled by itself, without limits of its users
   std::vector<ChoiceBounds> bounds_;        // [choice]
-  std::vector<ChoiceRange> ranges_;         // [choice] in their place where choices are settled by pairs
-  std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value it hands on, if it does
+  std::vector<ChoiceRange> ranges_;         // [choice] replaces bounds_ if pairwise_
+  std::vector<ChoiceLink::Operand> under_;  // [node] the choice whose value the node returns, or kNone
   std::vector<ChoiceLink> links_;           // [choice]
   std::vector<Interest> interest_;          // [choice]
   std::vector<KeptOperands> kept_;          // [choice]
   struct HandsOn {
-    bool a, b;  // as they are, from the stack
+    bool a, b;  // true if the operand comes from the stack and keeps its sign
   };
-  std::vector<HandsOn> hands_on_;  // [choice] which operand's value is its own where only that one is kept
+  std::vector<HandsOn> hands_on_;  // [choice] operands that the choice returns unchanged if kept alone
   alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
 
-  // Counted once for the parts of all boxes, which differ in what they need.
+  // Uses of nodes and locals, counted once for the parts of all boxes.
   bool is_counted_ = false;
-  std::vector<std::uint32_t> number_;  // [node] of a tee, its number among them
-  std::vector<std::uint16_t> needed_;  // [node] a bit for each box
+  std::vector<std::uint32_t> number_;  // [node] for a tee: its number among all tees
+  std::vector<std::uint16_t> needed_;  // [node] one bit per box in which the value is needed on the stack
   std::vector<Uses> uses_;             // [tee]
 
-  // While a part is made: from the root down, so that the code comes out backwards.
+  // State of part(), which visits the nodes from the root down and writes the code backwards.
   std::uint32_t box_ = 0;
   std::vector<Task> tasks_;
   std::size_t waiting_ = 0;

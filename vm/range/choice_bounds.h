@@ -1,13 +1,13 @@
-// Bounds of the operands that a program's choices choose from, over boxes of points.
+// Bounds of the operands of a program's choices over boxes of points.
 #pragma once
 
 #include <cstddef>
 
 namespace fathom::vm {
 
-inline constexpr std::size_t kEnclosedBoxes = 16;  // that enclose() takes at once (vm/range/enclose.h)
+inline constexpr std::size_t kEnclosedBoxes = 16;  // number of boxes per call of enclose() (vm/range/enclose.h)
 
-// The ranges of a choice's operands, `b` being the upper one of the stack, or a joined shape. [box]
+// Ranges of a choice's operands. `b` is the upper operand on the stack, or a joined shape. [box]
 struct ChoiceBounds {
   alignas(64) float a_lo[kEnclosedBoxes];
   alignas(64) float a_hi[kEnclosedBoxes];
@@ -15,7 +15,7 @@ struct ChoiceBounds {
   alignas(64) float b_hi[kEnclosedBoxes];
 };
 
-// The same in one box.
+// Ranges of a choice's operands in one box.
 struct ChoiceRange {
   float a_lo, a_hi, b_lo, b_hi;
 };

@@ -1,4 +1,4 @@
-// The enclosing evaluator. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
+// The evaluator of f32 ranges over boxes. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
 #include "vm/range/enclose.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +19,7 @@ HWY_AFTER_NAMESPACE();
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// Points are finite: an infinite side of a box is one at the largest number.
+// Returns a coordinate's range. Points are finite, so infinite bounds are clamped to the largest float.
 HWY_INLINE Enclosure coordinate(const Boxes& boxes, std::size_t axis, std::size_t at) {
   return {max(-largest(), Batch::load(boxes.lo[axis] + at)), min(largest(), Batch::load(boxes.hi[axis] + at))};
 }

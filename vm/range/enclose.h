@@ -1,13 +1,13 @@
-// What the f32 machine can compute over boxes of points, sixteen boxes at once: for the result and for the operands
-// of every choice, so that a program can be cut down to what matters in a box without changing a bit.
+// Bounds of the f32 results over boxes of points, sixteen boxes at once: of the program's result and of the operands
+// of every choice. With these bounds a program can be pruned to a box without changing a bit of its results.
 //
 //     vm::enclose(program, boxes, lo, hi, choices, workspace);
-//     if (choices[i].a_hi[box] < choices[i].b_lo[box]) ...    // of a min only a matters in that box
+//     if (choices[i].a_hi[box] < choices[i].b_lo[box]) ...    // only a matters if choice i is a min
 //
-// The bounds hold for the machine's own rounded results, at every finite f32 point of the closed box. What may be NaN
-// at one of them, and what nothing is known of, has the bounds [-inf, inf]. No bound is NaN; -0 and 0 count as equal.
-// Boxes may be unbounded and flat, not empty. Same bits on every instruction set. Source: Moore, "Interval Analysis",
-// 1966.
+// The bounds hold for the rounded f32 results at every finite f32 point of the closed box. A value that may be NaN at
+// one of these points, or is unknown, has the bounds [-inf, inf]. No bound is NaN; -0 and 0 count as equal. Boxes may
+// be unbounded or flat, but not empty. Bounds have the same bits on every instruction set. Source: Moore, "Interval
+// Analysis", 1966.
 //
 // Tested by: tests/vm/range/enclosure_test.cpp, tests/vm/prune/choices_test.cpp
 #pragma once
@@ -21,14 +21,14 @@
 
 namespace fathom::vm {
 
-// Arrays of kEnclosedBoxes, scene units. [axis][box]
+// Corners of kEnclosedBoxes boxes in scene units. [axis][box]
 struct Boxes {
   const float* lo[3];
   const float* hi[3];
 };
 
-// The result is within [lo[box], hi[box]], arrays of kEnclosedBoxes. `choices` gets one entry for each instruction
-// that is_choice() (vm/program/opcode.h), in program order; kept between calls, it is not allocated anew.
+// Computes the bounds [lo[box], hi[box]] of the result, in arrays of kEnclosedBoxes. `choices` gets one entry per
+// instruction with is_choice() (vm/program/opcode.h), in program order; reuse the vector to save allocations.
 void enclose(const Code& program, const Boxes& boxes, float* lo, float* hi, std::vector<ChoiceBounds>& choices,
              Workspace& workspace);
 

@@ -1,5 +1,5 @@
-// The machine over boxes, Machine<Enclosure>: the meanings that an enclosure needs in a form of its own, what its
-// point stack holds, and who sees what is chosen from.
+// The interpreter over boxes, Machine<Enclosure>: opcode functions with a separate form for Enclosure, the entries of
+// the point stack, and the observer of choices.
 #if defined(FATHOM_VM_ENCLOSED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ENCLOSED_INL
 #undef FATHOM_VM_ENCLOSED_INL
@@ -15,10 +15,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// A ball's bounds are trusted up to here, scene units: further out squares may overflow and angles are unknown.
+// Maximum distance from the origin, in scene units, at which a ball's bounds are used. Further out, squares may
+// overflow and angles are unknown.
 inline constexpr float kBallReach = 1e12f;
 
-// A range of cells can hold any of 0..288; a little more in float, and beyond 2^20 nothing is known.
+// A range of several cells gives all of 0..288, widened by one for float errors. Beyond 2^20 the result is unknown.
 HWY_INLINE Enclosure permute(const Enclosure& n) {
   const Batch one_cell = permute(n.lo);
   const BatchMask known = magnitude(sizes(n)) < Batch::broadcast(0x1p20f), one = n.lo == n.hi;
@@ -26,8 +27,9 @@ HWY_INLINE Enclosure permute(const Enclosure& n) {
       !known, {select(one, one_cell, Batch::broadcast(-1.0f)), select(one, one_cell, Batch::broadcast(290.0f))});
 }
 
-// They rise in both operands where 2 k inv4k is at most 1, so the ends give the range, where the meaning's formula
-// would use each operand several times. Rounding errs by less than 2^-22 of result and width, twice.
+// Range of a smooth minimum or maximum `at` of width k. Both are nondecreasing in both operands if 2 k inv4k is at
+// most 1, so the operands' ends give the range; the generic formula would use each operand several times. Rounding
+// errs by less than 2^-22 of result and width, twice.
 template <class Blend>
 HWY_INLINE Enclosure blend(const Enclosure& a, const Enclosure& b, Batch k, const Blend& at) {
   const auto slack = [&](Batch end) HWY_ATTR { return (abs(end) + k) * Batch::broadcast(0x1p-21f); };
@@ -41,7 +43,7 @@ HWY_INLINE Enclosure smooth_max(const Enclosure& a, const Enclosure& b, Batch k,
   return blend(a, b, k, [&](Batch x, Batch y) HWY_ATTR { return smooth_max(x, y, k, inv4k); });
 }
 
-// As for Interval: of the nearest and the farthest corner, each with its rounding errors.
+// As for Interval: the values at the nearest and the farthest corner, each with its rounding error.
 HWY_INLINE Enclosure ellipse(const Vec3<Enclosure>& p, const Batch* k) {
   const Enclosure x = abs(p.x), y = abs(p.y);
   const Batch reach = max(Batch::broadcast(1.0f), x.hi + y.hi + k[0]);
@@ -50,14 +52,14 @@ HWY_INLINE Enclosure ellipse(const Vec3<Enclosure>& p, const Batch* k) {
   return whole_where(!(reach < Batch::broadcast(kBallReach)), {lo - slack, hi + slack});
 }
 
-// A ball about `centre` that holds all f32 points that the boxes' points can become.
+// A ball that contains all f32 points to which the program can map the box's points.
 struct Ball {
   Vec3<Batch> centre;
   Batch radius;
 };
 HWY_INLINE Batch taxicab(const Vec3<Batch>& p) { return abs(p.x) + abs(p.y) + abs(p.z); }
-// The least one about a box; its radius is NaN or infinite where the box has no end, and never so small that squares
-// that vanish in float could matter.
+// Returns the smallest ball around a box. The radius is NaN or infinite for an unbounded box, and never so small that
+// squares which vanish in float could matter.
 HWY_INLINE Ball ball_around(const Vec3<Enclosure>& box) {
   const Batch half = Batch::broadcast(0.5f);
   const auto middle = [&](const Enclosure& a) HWY_ATTR { return a.lo * half + a.hi * half; };
@@ -73,20 +75,22 @@ HWY_INLINE Ball smaller(const Ball& a, const Ball& b) {
           pick(a.radius, b.radius)};
 }
 
-// By the noise in the middle of the box and how fast it changes; both values are rounded.
+// Range of noise: the value in the middle of the box, plus or minus the maximum change within the box and the
+// rounding errors of both values.
 HWY_INLINE Enclosure noise(const Enclosure& x, const Enclosure& y, const Enclosure& z) {
   const Ball ball = ball_around({x, y, z});
   const Batch error = Batch::broadcast(0x1p-18), most = Batch::broadcast(kNoiseRange) + error;
-  static_assert(2 * kNoiseUnits * 0x1p-24 < 0x1p-18 - 0x1p-20);  // and what is rounded here
+  static_assert(2 * kNoiseUnits * 0x1p-24 < 0x1p-18 - 0x1p-20);  // 2^-20 is for the rounding errors here
   const Batch value = noise(ball.centre.x, ball.centre.y, ball.centre.z);
   const Batch spread = ball.radius * Batch::broadcast(kNoiseSlope * (1 + 0x1p-20)) + error;
-  // Of a box without an end the radius is no number: then the first operand is none, and the second is the bound.
+  // For an unbounded box the radius may be NaN; max and min then return their second operand, the general bound.
   return whole_where(is_whole(x) | is_whole(y) | is_whole(z),
                      {max(value - spread, -most), min(value + spread, most)});
 }
 
-// How much an affine map can lengthen, and how much its terms add up to: the largest singular value is no more than
-// the root of the largest row sum of |M^T M| (Gershgorin), 1 for a rotation; then the root of the sum of squares.
+// Bounds of an affine map M. most: bound on the largest singular value, the root of the largest row sum of |M^T M|
+// (Gershgorin), which is 1 for a rotation. terms: bound on the size of the products of a row, the root of the sum of
+// squares of M.
 struct Stretch {
   double most, terms;
 };
@@ -103,9 +107,9 @@ HWY_INLINE Stretch stretch_of(const Batch* k) {
   return {std::sqrt(most), std::sqrt(trace)};
 }
 
-// A shape's value where its point can be anywhere in the ball about `centre`, by its value there. Rounding errs, at
-// either place, by what vm/program/opcodes.def promises, where `size` is that of features far from the origin, and by 2^-24
-// of the point where the shape was moved; together by 22 units of 2^-24, of 32 here.
+// Returns the range of a 1-Lipschitz shape over the ball about `centre`, from its value there. Rounding errs, at the
+// centre and at the point, by the bound of vm/program/opcodes.def, where `size` is the size of features far from the
+// origin, and by 2^-24 of the point for a moved shape. Together these are 22 units of 2^-24; 32 are used.
 HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value, Batch size, BatchMask& known) {
   const Batch reach = max(Batch::broadcast(1.0f), max(taxicab(centre), abs(value))) + (size + radius);
   const Batch slack = radius + reach * Batch::broadcast(0x1p-19f);
@@ -113,9 +117,10 @@ HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value
   return {value - slack, value + slack};
 }
 
-// How a shape's range over a box and a ball is found. Formula: over the box alone, of what a ball says nothing of or
-// less. Both: the formula is exact over a box, which holds more than the ball once it has been turned. Against the
-// ball alone that is twice the time, and of 1000 spheres and boxes a fifth to a third fewer are left in a cell.
+// Method for a shape's range over a box and a ball. Formula: the formula over the box, for shapes for which the ball
+// gives no bound or a looser one. Ball: the value at the ball's centre plus or minus the radius. Both: the
+// intersection of the two. The formula is exact over a box, but a rotated point's box contains more than its ball.
+// Both takes twice as long as Ball, and leaves a fifth to a third fewer of 1000 spheres and boxes in a cell.
 enum class Method { Formula, Ball, Both };
 constexpr Method method_of(Opcode opcode) {
   switch (opcode) {
@@ -144,8 +149,8 @@ constexpr Method method_of(Opcode opcode) {
       return is_nonexpansive(opcode) ? Method::Ball : Method::Formula;
   }
 }
-// Shapes whose error grows with features far from the origin while the surface passes it, those to which the node
-// table gives a magnitude (compiler/graph/knowledge.h).
+// True for shapes whose error grows with features far from the origin even if the surface passes the origin: the
+// shapes to which the node table gives a magnitude (compiler/graph/knowledge.h).
 constexpr bool has_far_features(Opcode opcode) {
   return opcode == Opcode::Torus || opcode == Opcode::CappedTorus || opcode == Opcode::Triangle ||
          opcode == Opcode::Quad || opcode == Opcode::Segment || opcode == Opcode::Star ||
@@ -153,7 +158,7 @@ constexpr bool has_far_features(Opcode opcode) {
          opcode == Opcode::Horseshoe || opcode == Opcode::Moon;
 }
 
-// A point is a box and a ball, both of which hold it.
+// An entry of the point stack is a box and a ball, both of which contain the point.
 template <>
 struct PointTraits<Enclosure> {
   struct Place : Vec3<Enclosure> {
@@ -181,7 +186,7 @@ struct PointTraits<Enclosure> {
     } else {
       Batch size = Batch::broadcast(0.0f);
       if constexpr (has_far_features(Op::kOpcode)) {
-        constexpr int kSizes = Op::kOpcode == Opcode::Star ? Count - 1 : Count;  // a star's last is none
+        constexpr int kSizes = Op::kOpcode == Opcode::Star ? Count - 1 : Count;  // a star's last is not a size
         for (int i = 0; i < kSizes; ++i) size = max(size, abs(k[i]));
       }
       const Vec3<Batch> centre = TranslateOp::apply(p.ball.centre, by);
@@ -200,7 +205,7 @@ struct PointTraits<Enclosure> {
                                       const std::uint32_t* w) {
     return Op::apply(TranslateOp::apply(box, by), k, w);
   }
-  // For the boxes without an end, which are few.
+  // formula() as a function of its own, for the few boxes that are unbounded or beyond kBallReach.
   template <class Op>
   static HWY_NOINLINE Enclosure formula_apart(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
                                               const std::uint32_t* w) {
@@ -220,8 +225,8 @@ struct PointTraits<Enclosure> {
   }
 
  private:
-  // Of a map that lengthens nothing or is affine. f32 errs by a few units of 2^-24 of the terms, the largest of which
-  // is no more than what it is made of and what it makes together.
+  // Returns the image of a ball under a nonexpansive or affine map. f32 errs by a few units of 2^-24 of the map's
+  // terms, the largest of which is at most the sum of the sizes of operand and result.
   template <class Op>
   static HWY_INLINE Ball image(const Ball& ball, const Batch* k) {
     constexpr bool kTranslate = Op::kOpcode == Opcode::Translate;
@@ -235,7 +240,7 @@ struct PointTraits<Enclosure> {
   }
 };
 
-// What enclose() takes at once.
+// One slot holds all boxes of a call of enclose().
 template <>
 inline constexpr std::size_t kSlot<Enclosure> = kEnclosedBoxes / kLanes;
 template <>

@@ -9,8 +9,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// A float that is less. Widths of blends are double here and f32 where choices are settled (vm/prune/settle.h): operands so
-// far apart that they do not mix differ by more than the rounding of the width, once each gives way by 2^-22.
+// Returns a float below `value`, by at least 2^-22 of `value`. Widths of blends are double here and f32 in
+// vm/prune/settle.h. The margins of both operands outweigh the rounding of the width, so operands that settle_pairs()
+// finds too far apart to blend do not blend in double either.
 inline float below(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max(), kShare = 0x1p-22, kLeast = 0x1p-126;
   const double lower = value - (std::fabs(value) * kShare + kLeast);
@@ -20,7 +21,7 @@ inline float below(double value) {
 
 template <>
 struct ChoiceObserver<Slope> {
-  ChoiceRange* range = nullptr;  // none wanted
+  ChoiceRange* range = nullptr;  // null if the ranges are not wanted
 
   void see(std::size_t, const Slope& a, const Slope& b) {
     if (range == nullptr) return;

@@ -1,5 +1,6 @@
-// Slopes: the values, the slope and the float error that a program has over one box of exact numbers, and the ranges
-// that its choices choose from. Tested by: tests/vm/interpret/formula_test.cpp, tests/vm/prune/specialise_test.cpp
+// Bounds of a program over one box of exact numbers: of its values, its slope, its float error and its choices'
+// operands.
+// Tested by: tests/vm/interpret/formula_test.cpp, tests/vm/prune/specialise_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -10,17 +11,17 @@
 
 namespace fathom::vm {
 
-// The bounds that a program keeps over the box [lo, hi]: vm/number/slope-inl.h has the rules. Bounds are infinite
-// where nothing is known, as where the value may jump.
+// Bounds of a program over the box [lo, hi], by the rules of vm/number/slope-inl.h. Unknown bounds are infinite, for
+// example where the value may jump.
 struct SlopeBound {
   Range value;
   double lipschitz;    // |f(p) - f(q)| <= lipschitz |p - q| in the box
-  double float_error;  // |f32 value - exact value| at f32 points of the box, scene units
+  double float_error;  // bound on |f32 value - exact value| at f32 points of the box, in scene units
 };
 SlopeBound evaluate_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace);
 
-// evaluate_slope(), and the ranges of every choice's operands. These hold for f32 as above and for the exact
-// values, the program's constants unrounded; both at points where every operation of the program is defined.
+// Computes evaluate_slope() and the ranges of every choice's operands. The ranges hold for f32 values and for exact
+// values with unrounded constants, at points where every operation of the program is defined.
 SlopeBound enclose_slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, std::vector<ChoiceRange>& choices,
                          Workspace& workspace);
 

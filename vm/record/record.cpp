@@ -17,7 +17,7 @@ std::vector<Recorded<Like>> parameters(std::size_t first, std::size_t count) {
   return result;
 }
 
-// The elementary functions call their coefficients by type; of all else the precision makes no difference.
+// The type selects only the coefficients of the elementary functions; an opcode's formula is the same for all types.
 using Number = Recorded<Batch>;
 
 Vec3<Number> point_parameter() { return {Number::parameter(0), Number::parameter(1), Number::parameter(2)}; }
@@ -92,7 +92,7 @@ std::vector<Ref> run_operation(Operation operation) {
       return {sqrt(a * a + b * b).ref};
     case Operation::Length3:
       return {sqrt(a * a + b * b + c * c).ref};
-// The kernel named, and not the call that the same name without <N> would record.
+// `function<N>` runs the kernel; `function` without <N> would record a call instead.
 // clang-format off
 #define UNARY(Name, function) case Operation::Name: return {function<N>(a).ref};
 #define BINARY(Name, function) case Operation::Name: return {function<N>(a, b).ref};

@@ -1,4 +1,4 @@
-// The formulas of the opcodes, written down by running each opcode's one meaning on names instead of numbers
+// Records the formulas of opcodes: runs each opcode's definition on names instead of numbers
 // (vm/record/recorded-inl.h). Tested by: tests/vm/record/record_test.cpp
 #pragma once
 
@@ -10,18 +10,18 @@
 
 namespace fathom::vm {
 
-// What any opcode but a Machine's or an Outline's computes. Its parameters are the coordinates of the point x, y, z
-// (of a Point or a Shape) or the operands a, and b of a Binary; then the row's immediates, in order. `immediates` are
-// their words: of them the integers shape the function and are no parameters in it; of a row without any none are
-// needed.
+// Records any opcode except Machine and Outline rows. The function's parameters are the coordinates x, y, z (Point
+// and Shape) or the operands a, b, c (Unary to Ternary), then the row's immediates, in order. `immediates` are the
+// words of these. Integer immediates determine the function's statements and are not read as parameters. A row
+// without integer immediates needs no words.
 RecordedFunction record(Opcode opcode, std::span<const std::uint32_t> immediates);
 
-// What an Outline row computes of these groups, one after the other. Its parameters are x, y and z: the groups decide
-// which formula it is.
+// Records an Outline row for the concatenated `groups`. The parameters are x, y and z; the groups are constants of
+// the recorded formula.
 RecordedFunction record_outline(Opcode opcode, std::span<const double> groups);
 
-// What an operation computes that is made of others, such as a sine: for float, or `wide` for double, which take
-// other coefficients. Its parameters are the operands.
+// Records an operation that consists of other operations, such as a sine, for float or for double (`wide`), whose
+// coefficients differ. The parameters are the operands.
 RecordedFunction record(Operation operation, bool wide);
 
 }  // namespace fathom::vm

@@ -1,8 +1,8 @@
-// Recorded: a number of which only the name is known. Every operation on it is appended to the function being
-// recorded and gives the name of what it yields, so that running an opcode's meaning writes down its formula.
+// Recorded: a number type that holds a name instead of a value. Every operation on a Recorded is appended to the
+// function being recorded and returns the name of its result. So running an opcode's definition records its formula.
 //
-// Like is the type whose elementary functions are meant, Batch or Real: they differ in their coefficients. Where a
-// meaning asks any(mask) the answer is yes: a loop is recorded to its last pass (vm/record/recorded_function.h).
+// Like is the type whose elementary functions are recorded, Batch or Real, which differ in their coefficients.
+// any(mask) returns true, so a loop is recorded up to its last pass (vm/record/recorded_function.h).
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-// The function that operations are appended to, as long as this lives. Numbers know only their names, so there is one
-// for each thread.
+// Sets the function that operations are appended to during the Recording's lifetime. The function is thread-local,
+// because a Recorded holds only a name and no reference to its function.
 class Recording {
  public:
   explicit Recording(RecordedFunction& into) : outer_(current_) { current_ = &into; }
@@ -74,7 +74,7 @@ RECORD_UNARY(floor, Floor)
 RECORD_UNARY(ceil, Ceil)
 RECORD_UNARY(round_nearest, Nearest)
 RECORD_UNARY(power_of_two, PowerOfTwo)
-// These are calls; their bodies are recorded from their own definitions (vm/record/record.cpp).
+// Functions recorded as calls; vm/record/record.cpp records their bodies from their own definitions.
 RECORD_UNARY(sqr, Square)
 RECORD_BINARY(length, Length2)
 RECORD_UNARY(sin, Sin)

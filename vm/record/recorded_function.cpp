@@ -14,7 +14,7 @@ constexpr OperationInfo kOperations[] = {
 };
 
 // Tries to read statements [begin, begin + count * length) as `count` passes of a loop. The second pass is the
-// pattern: what it takes from the first is what the loop carries.
+// pattern: the values it takes from the first pass are the variables that the loop carries.
 class Passes {
  public:
   Passes(const RecordedFunction& function, std::size_t begin, std::size_t length, std::size_t count)
@@ -40,7 +40,7 @@ class Passes {
  private:
   struct Variable {
     Ref initial;
-    std::size_t offset;  // of the statement of a pass that gives its next value
+    std::size_t offset;  // within a pass, of the statement that gives the variable's next value
   };
 
   static Ref statement_ref(std::size_t index) { return {Ref::Kind::Statement, static_cast<std::uint32_t>(index)}; }
@@ -53,7 +53,7 @@ class Passes {
   }
   bool outside(const Ref& ref) const { return ref.kind != Ref::Kind::Statement || ref.index < begin_; }
 
-  // Whether statement i is the same in all passes; notes what it carries.
+  // True if statement i is the same in all passes. Adds the values it takes from an earlier pass to variables_.
   bool alike(std::size_t i) {
     const Statement& first = from_.statements[begin_ + i];
     const Statement& second = from_.statements[begin_ + length_ + i];
@@ -74,7 +74,7 @@ class Passes {
     }
     return true;
   }
-  // What stands for `ref` that many passes earlier.
+  // Returns the reference that corresponds to `ref` in the pass `passes` earlier.
   Ref back(const Ref& ref, std::size_t passes) const {
     return outside(ref) ? ref : statement_ref(ref.index - passes * length_);
   }
@@ -100,10 +100,11 @@ class Passes {
     }
     return result;
   }
-  // A statement of the second pass where the one pass will be.
+  // Moves a reference to a statement of the second pass to the first, which is the pass that stays.
   Ref moved(const Ref& ref) const { return outside(ref) ? ref : back(ref, 1); }
 
-  // What follows the loop takes of it what it carries, and nothing else.
+  // Appends the statements after the loop. Returns false if one uses a value of the loop that the loop does not
+  // carry.
   bool append_rest(RecordedFunction& result) const {
     for (std::size_t i = begin_ + count_ * length_; i < from_.statements.size(); ++i) {
       Statement statement = from_.statements[i];
@@ -146,7 +147,7 @@ RecordedFunction reroll(RecordedFunction function) {
   }
   if (tests.size() < 2) return function;
   const std::size_t length = tests[1] - tests[0];
-  // A pass begins somewhere before its test.
+  // A pass begins at most length - 1 statements before its test.
   for (std::size_t head = 0; head < length && head <= tests[0]; ++head) {
     if (auto rolled = Passes(function, tests[0] - head, length, tests.size()).roll()) return *std::move(rolled);
   }

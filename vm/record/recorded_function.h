@@ -1,5 +1,5 @@
-// A function as the list of operations that make it: an opcode's meaning, run once on names instead of numbers.
-// vm/record/record.h makes them, compiler/emit/ prints them. Tested by: tests/vm/record/record_test.cpp
+// A function as a list of operations: an opcode's definition, run once on names instead of numbers.
+// vm/record/record.h makes such functions, compiler/emit/ prints them. Tested by: tests/vm/record/record_test.cpp
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ enum class Operation : std::uint8_t {
 #undef OPERATION
 };
 
-// How tightly a text holds together, loosest first.
+// Operator precedence of a text, loosest first.
 enum class Binding : std::uint8_t { Comparison, Sum, Product, Sign, Call };
 enum class ResultType : std::uint8_t { Number, Mask };
 
@@ -33,9 +33,9 @@ const OperationInfo& info(Operation operation);
 // An operand or a result.
 struct Ref {
   enum class Kind : std::uint8_t {
-    Statement,  // what statement `index` gives
-    Number,     // `number`
-    Parameter,  // of the function, number `index`
+    Statement,  // result of statement `index`
+    Number,     // the constant `number`
+    Parameter,  // parameter `index` of the function
     Carried,    // variable `index` of the loop
   };
   Kind kind = Kind::Number;
@@ -47,14 +47,14 @@ struct Ref {
 
 struct Statement {
   Operation operation;
-  std::array<Ref, 3> operands;  // as many as the operation has
+  std::array<Ref, 3> operands;  // [0, count())
 
   std::size_t count() const { return info(operation).operands; }
 };
 
-// Statements [begin, end) are run up to `count` times; their Any is where the loop ends early.
+// Runs statements [begin, end) up to `count` times; the Any statement among them ends the loop early.
 struct Loop {
-  // A variable that is `initial` before the loop and becomes `next` at the end of each pass.
+  // Variable that is `initial` before the loop and becomes `next` at the end of each pass.
   struct Carried {
     Ref initial, next;
   };
@@ -63,15 +63,15 @@ struct Loop {
 };
 
 struct RecordedFunction {
-  std::vector<Statement> statements;  // in order; operands refer to earlier ones
+  std::vector<Statement> statements;  // in order; operands refer to earlier statements
   std::vector<Ref> results;           // one number, or the three coordinates of a point
-  std::optional<Loop> loop;           // none as recorded; see reroll()
+  std::optional<Loop> loop;           // empty after recording; see reroll()
 };
 
-// The same function with its loop found again. A recording runs a loop `while (any(mask))` to its last pass and so
-// holds every pass, one after the other; where they are alike this keeps one and says how often it runs. A function
-// without such a loop, or whose passes differ, comes back as it was: it is right as it stands, for what a mask
-// excludes keeps its value.
+// Returns `function` with its loop restored. A recording runs a loop `while (any(mask))` to its last pass, so it
+// holds every pass in order. If the passes are alike, reroll() keeps one pass and the number of passes. A function
+// without a loop, or with differing passes, is returned unchanged. An unrolled loop is still correct, because lanes
+// excluded by a mask keep their values.
 RecordedFunction reroll(RecordedFunction function);
 
 }  // namespace fathom::vm
