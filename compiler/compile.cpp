@@ -36,17 +36,17 @@ namespace {
 
 using OnPass = std::function<void(std::string_view, const Scene&)>;
 
-constexpr std::string_view kGraph = "graph";    // the graph as it was read
+constexpr std::string_view kGraph = "graph";    // the graph as read
 constexpr std::string_view kOrigin = "origin";  // the first step (compiler/analysis/origin.h)
-constexpr std::string_view kFuse = "fuse";      // the last, over programs
+constexpr std::string_view kFuse = "fuse";      // the last step, over programs
 
-// A camera that no one placed has the whole scene in its picture.
+// Makes a camera that the scene does not place frame the whole scene.
 void place_camera(Elaborated& elaborated, const Box& extent) {
   const Film& film = elaborated.film;
   elaborated.camera = placed(elaborated.camera, extent, static_cast<double>(film.width) / film.height);
 }
 
-// All places of the scene become those of the programs; returns the origin.
+// Moves all places of the scene to the programs' coordinates. Returns the origin.
 glm::dvec3 move_to_origin(Elaborated& elaborated, const std::vector<Knowledge>& known,
                           const std::optional<glm::dvec3>& given) {
   const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, known, elaborated.camera);
@@ -58,7 +58,7 @@ glm::dvec3 move_to_origin(Elaborated& elaborated, const std::vector<Knowledge>& 
   return origin;
 }
 
-// Files named in a scene lie beside it.
+// Looks for the file of the background image, whose path is relative to the scene's folder.
 void find_files(Elaborated& elaborated, const Source& source, const std::string& at_hand, Diagnostics& diagnostics) {
   namespace fs = std::filesystem;
   Background::Image& image = elaborated.background.image;
@@ -96,7 +96,7 @@ bool leaves_float(const Instruction& instruction) {
   return !std::all_of(instruction.immediates.begin(), instruction.immediates.end(), fits_float);
 }
 
-// The first node whose code has numbers beyond those of float.
+// Returns the first node whose code has immediates beyond the range of float.
 std::optional<NodeId> node_beyond_float(const Scene& scene) {
   const std::vector<bool> reached = reachable(scene);
   for (NodeId id = 0; id < scene.graph.size(); ++id) {
@@ -146,12 +146,12 @@ std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& so
   return std::move(sound);
 }
 
-// Whether it takes tags to tell surfaces apart, or where a point is in the coordinates of its node.
+// True if tags are needed to tell surfaces apart, or to map a point to the coordinates of its node.
 bool needs_tags(std::span<const Surface> surfaces) {
   return surfaces.size() > 1 || std::any_of(surfaces.begin(), surfaces.end(), std::mem_fn(&Surface::placed));
 }
 
-// `optimised` is `scene` after the passes, without paint, of which `known` is known; `painted`: whether the surface
+// `optimised` is `scene` after the passes, without Paint, and `known` are its facts. `painted` is true if the surface
 // program needs tags.
 std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised,
                                            const std::vector<Knowledge>& known, bool painted, const Source& source,
@@ -169,7 +169,7 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       all.lipschitz,        all.magnitude,       all.certified};
 }
 
-// `what` of the solids of transparent materials are more than the limit at the scene's `node`.
+// Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
 void report_media(const Graph& graph, NodeId node, std::string_view what, const Limits& limits,
                   Diagnostics& diagnostics) {
   diagnostics.error(
@@ -181,7 +181,7 @@ void report_media(const Graph& graph, NodeId node, std::string_view what, const 
        raise(&Limits::media, 2 * limits.media)});
 }
 
-// The insides of the transparent materials (compiler/analysis/media.h).
+// Compiles the interiors of the transparent materials (compiler/analysis/media.h).
 std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool painted, const Source& source,
                                                  Diagnostics& diagnostics, const CompileOptions& options) {
   const auto most = static_cast<std::size_t>(options.limits.media);
@@ -207,7 +207,7 @@ std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool p
   return media;
 }
 
-// The programs of textures. nullopt when one is too long.
+// Compiles the programs of textures. Returns nullopt if a program is too long.
 std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
                                                              const Limits& limits, Diagnostics& diagnostics) {
   std::vector<vm::VerifiedProgram> programs;
@@ -230,12 +230,13 @@ std::string summarise(std::size_t nodes, Knowledge known, glm::dvec3 origin) {
   return fmt::format("{} {}, {}", nodes, nodes == 1 ? "node" : "nodes", describe(known));
 }
 
-// Warns when float32 knows distances near the surface less well than a ten-thousandth of what the camera looks at.
+// Warns when the float error of distances near the surface exceeds a ten-thousandth of the distance from the camera
+// to its target.
 void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
                           Diagnostics& diagnostics) {
   const double error = vm::kFloatError * known[scene.root].magnitude;
   const double most = 1e-4 * glm::length(camera.target - camera.position);
-  // Numbers up to 1 are reckoned with wherever a ray is (runtime/field/field.h).
+  // Marching allows for numbers up to 1 everywhere (runtime/field/field.h).
   if (error <= most || known[scene.root].magnitude <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {
@@ -247,8 +248,8 @@ void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& know
                       "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
 }
 
-// Warns when all there is to see, and the camera, lie so close together that double, which decides what float cannot,
-// knows places less well than a thousandth of a pixel.
+// Warns when the scene's contents and the camera lie so close together that double, which decides what float cannot,
+// has an error above a thousandth of a pixel.
 void warn_of_smallness(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
                        Diagnostics& diagnostics) {
   constexpr double kLeast = 1e-7;
@@ -277,7 +278,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (options.stage && wants_stage(*read)) {
     CompileOptions bare;
     bare.limits = options.limits;
-    Diagnostics ignored;  // the staged model has the same
+    Diagnostics ignored;  // the staged model has the same diagnostics
     if (const std::optional<CompiledScene> model = compile(source, ignored, bare)) set_stage(*read, *model);
   }
   if (options.on_syntax) options.on_syntax(*read);
@@ -287,7 +288,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   std::optional<Scene> derived = derive(elaborated->scene, elaborated->type_spans, options.limits, diagnostics);
   if (!derived) return std::nullopt;
   elaborated->scene = *std::move(derived);
-  read.reset();  // for the rest of compiling: of 200,000 balls 120 MB
+  read.reset();  // frees memory for the remaining steps: 120 MB for 200,000 balls
   find_files(*elaborated, source, options.file_at_hand, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
 

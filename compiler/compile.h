@@ -1,5 +1,5 @@
-// The compiler's one function: scene text, in any format of read_scene.h, to CompiledScene. compile.cpp reads as the
-// list of passes. Tested by: tests/compiler/passes/passes_test.cpp
+// The compiler's entry point, which turns scene text in any format of read_scene.h into a CompiledScene. compile.cpp
+// reads as the list of passes. Tested by: tests/compiler/passes/passes_test.cpp
 #pragma once
 
 #include <functional>
@@ -18,46 +18,49 @@
 namespace fathom::compiler {
 
 struct CompileOptions {
-  // Stop after the step of this name; "graph" stands for "before the first": the graph as it was read, its origin 0.
+  // Name of the step to stop after. "graph" stops before the first step: the graph is as read, and its origin is 0.
   std::optional<std::string> stop_after;
-  // Called with the distance graph as it was read (as "graph") and after each step.
+  // Called with the distance graph as read (under the name "graph") and after each step.
   std::function<void(std::string_view pass, const Scene& scene)> on_pass;
   Limits limits;
-  // Values for the scene's parameters in place of its own.
+  // Values that replace the defaults of the scene's parameters.
   Definitions definitions;
-  // Reads the files that the scene imports; without it only those that its source has are found.
+  // Reads the files that the scene imports. Without a reader only the files that the source already contains are
+  // found.
   ImportReader imports;
-  // Warn of what is sound but surely not meant, or dear (compiler/analysis/lints.h).
+  // Warn about scenes that are valid but surely not meant, or expensive (compiler/analysis/lints.h).
   bool lint = false;
-  // Warn of what will be seen in the picture, as that no light reaches the camera; `lint` does so, too.
+  // Warn about what the image will show, e.g. that no light reaches the camera. Implied by `lint`.
   bool lint_picture = false;
-  // The file of the background's picture when the caller has the picture: it is not looked for.
+  // File of the background image if the caller has the image already: the compiler does not look for that file.
   std::string file_at_hand = "";
-  // A model from elsewhere gets a ground, a lamp and a camera that has it in the picture (compiler/frontend/stage.h).
+  // Give a model in a foreign format a ground, a light and a camera that frames the model
+  // (compiler/frontend/stage.h).
   bool stage = false;
-  // Called with the source and the files that it imports, in which the spans of all diagnostics are; also when it is
-  // not understood.
+  // Called with the source and its imports, which contain the spans of all diagnostics, even if reading the source
+  // fails.
   std::function<void(const Source& source)> on_source;
-  // The programs' zero in the scene, in place of one chosen for the scene (compiler/analysis/origin.h).
+  // Place in the scene of the programs' zero. By default the compiler chooses a place (compiler/analysis/origin.h).
   std::optional<glm::dvec3> origin;
-  // Called with what the front end read, its stage with it.
+  // Called with the scene that the front end read, including the stage.
   std::function<void(const ReadScene& scene)> on_syntax;
 };
 
-// nullopt exactly when `diagnostics` has errors afterwards.
+// Compiles a scene. Returns nullopt exactly when `diagnostics` has errors afterwards.
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options = {});
 
-// What a graph comes to as it stands, before instructions are fused.
+// Size of a graph before the compiler fuses its instructions.
 struct GraphSize {
-  std::size_t nodes;         // that the root reaches
-  std::size_t instructions;  // of its program
-  std::size_t cost;          // multiply-adds a point
+  std::size_t nodes;         // reachable from the root
+  std::size_t instructions;  // of the graph's program
+  std::size_t cost;          // multiply-adds per point
 };
 
-// nullopt when the graph's program goes beyond a limit of the machine.
+// Returns nullopt if the graph's program exceeds a limit of the machine.
 std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits = {});
 
-// Names of the steps, in order: compiler/analysis/origin.h, those over the graph (compiler/passes/passes.h), compiler/lower/fuse.h.
+// Returns the names of the steps in order: the origin (compiler/analysis/origin.h), the passes over the graph
+// (compiler/passes/passes.h), and fusion (compiler/lower/fuse.h).
 std::vector<std::string_view> pass_names();
 
 }  // namespace fathom::compiler

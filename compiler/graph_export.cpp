@@ -15,7 +15,7 @@ namespace {
 
 using GraphJson = nlohmann::ordered_json;
 
-// What the root reaches, numbered from 0, children first.
+// The nodes that the root reaches, numbered from 0, children first.
 struct NumberedNode {
   std::vector<NodeId> ids;             // [number]
   std::vector<std::size_t> number_of;  // [id]
@@ -81,10 +81,10 @@ GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, co
           {"certified", known.certified}};
 }
 
-// A file's name may be no UTF-8; JSON must be.
+// Prints the JSON. A file's name may be invalid UTF-8, which JSON does not allow, so invalid bytes are replaced.
 std::string print(const GraphJson& json) { return json.dump(-1, ' ', false, GraphJson::error_handler_t::replace); }
 
-// The lines of a node's picture: what it is and is called, its parameters, where it is written.
+// Returns the lines of a node's label: its type and name, its parameters, its place in the source.
 std::vector<std::string> label(const Graph& graph, NodeId id, const Source& source) {
   const Origin& origin = graph.origin(id);
   std::vector<std::string> lines = {std::string(spec(graph.kind(id)).name)};
@@ -100,7 +100,7 @@ std::vector<std::string> label(const Graph& graph, NodeId id, const Source& sour
   return lines;
 }
 
-// `text` with some characters replaced. Names have no control characters: the reader refuses them.
+// Replaces some characters of `text`. Names have no control characters, because the reader refuses them.
 template <typename Replace>
 std::string escape(const std::string& text, const Replace& replace) {
   std::string out;

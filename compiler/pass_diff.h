@@ -1,4 +1,4 @@
-// What each pass of the compiler changed, for `fathom dump --diff`:
+// Difference that each pass of the compiler makes, for `fathom dump --diff`:
 //
 //     ; pass fold: 14 -> 9 nodes, 21 -> 13 ops, cost 95 -> 61
 //     --- unpaint
@@ -6,7 +6,8 @@
 //     @@ -1,3 +1,2 @@
 //     ...
 //
-// The graphs are printed with names by place (compiler/graph/graph.h), so that a node keeps its name when others go.
+// The graphs are printed with names by place (compiler/shapes/print_graph.h), so that a node keeps its name when
+// other nodes vanish.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
@@ -22,13 +23,13 @@ class PassDiff {
  public:
   explicit PassDiff(const Source& source) : source_(source) {}
 
-  // To be called after each pass, and before the first: CompileOptions::on_pass.
+  // Call after each pass and before the first, from CompileOptions::on_pass.
   void add(std::string_view pass, const Scene& scene);
 
-  // To be called last: what fusing made of the last graph's program.
+  // Call last, with the fused program of the last graph.
   void add_fused(const vm::VerifiedProgram& program);
 
-  // One part for each pass that changed something.
+  // Returns one section per pass that changed something.
   std::string text() const;
 
  private:

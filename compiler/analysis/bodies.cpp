@@ -25,7 +25,7 @@ bool is_identity(std::span<const double> transform) {
   return std::equal(kIdentity.begin(), kIdentity.end(), transform.begin());
 }
 
-// Walks the graph from the root to the bodies, a node once for each place and paint that it is reached with.
+// Walks the graph from the root to the bodies. Visits a shared node once per combination of place and Paint.
 class BodyFinder {
  public:
   BodyFinder(const Scene& scene, const std::vector<Painted>& below, std::size_t most)
@@ -54,22 +54,23 @@ class BodyFinder {
 
   struct Part {
     NodeId node;
-    std::uint32_t around;  // in around()
+    std::uint32_t around;  // index for around()
   };
-  // A Transform or Paint node and those around it; the first stands for none.
+  // A Transform or Paint node, linked to the one around it. Entry 0 stands for no node.
   struct Around {
     NodeId node = 0;
     std::uint32_t outer = 0;
     std::uint32_t length = 0;
-    std::uint32_t place = 0;      // the same for the same transforms
-    std::uint32_t paint = kNone;  // the innermost Paint's surface
+    std::uint32_t place = 0;      // equal for equal sequences of transforms
+    std::uint32_t paint = kNone;  // surface of the innermost Paint
   };
   const std::vector<Part>& parts() const { return parts_; }
   const Around& around(std::uint32_t i) const { return around_[i]; }
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  static constexpr std::size_t kWork = 8;  // visits, or uses of Transform and Paint nodes, for each node of the limit
+  // Limit on visits, and on uses of Transform and Paint nodes, per node that the caller allows.
+  static constexpr std::size_t kWork = 8;
 
   static bool divides(Kind kind) { return kind == Kind::Union || kind == Kind::Transform || kind == Kind::Paint; }
 
@@ -86,7 +87,7 @@ class BodyFinder {
     for (std::size_t i = children.size(); i-- > 0;) pending_.push_back({children[i], inner});
   }
 
-  // Within the part's own Transform or Paint.
+  // Returns the entry of around() for the inside of the part's own Transform or Paint.
   std::uint32_t enter(const Part& part) {
     Around next = around_[part.around];
     const std::span<const double> params = graph_.params(part.node);
@@ -108,9 +109,9 @@ class BodyFinder {
   const std::vector<Painted>& below_;
   const std::size_t most_;
   std::vector<Around> around_;
-  std::vector<bool> shared_;  // [node] whether several uses of it are in the graph
+  std::vector<bool> shared_;  // [node] true if the graph uses it more than once
   std::vector<Part> pending_, parts_;
-  std::size_t added_ = 0;  // nodes around the parts
+  std::size_t added_ = 0;  // Transform and Paint nodes around the parts, summed over the parts
   std::set<std::tuple<NodeId, std::uint32_t, std::uint32_t>> visited_;
   std::map<std::pair<std::uint32_t, std::vector<double>>, std::uint32_t> places_;
 };
@@ -151,7 +152,7 @@ std::optional<std::vector<Body>> find_bodies(const Scene& scene, const std::vect
     for (std::uint32_t i = part.around; i != 0; i = finder.around(i).outer) {
       const NodeId outer = finder.around(i).node;
       if (graph.kind(outer) == Kind::Paint) {
-        if (std::exchange(is_painted, true)) continue;  // all below it has a surface
+        if (std::exchange(is_painted, true)) continue;  // the inner Paint left no leaf without a surface
         painted = paint(painted, surfaces[surface_of(graph, outer)].material, materials);
       }
       const Origin origin = graph.origin(outer);

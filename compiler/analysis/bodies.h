@@ -1,5 +1,5 @@
-// The parts of a scene that are of one material each, as far as unions and moves tell parts from each other: what
-// compiler/analysis/media.h makes solids of.
+// Bodies: the parts of a scene with one material each, as far as unions and transforms separate them.
+// compiler/analysis/media.h makes solids of bodies.
 // Tested by: tests/compiler/analysis/media_test.cpp
 #pragma once
 
@@ -16,23 +16,23 @@ namespace fathom::compiler {
 
 inline constexpr std::uint32_t kNoMaterial = std::numeric_limits<std::uint32_t>::max();
 
-// The materials below a node, as far as it matters.
+// Summary of the materials at and below a node.
 struct Painted {
-  std::uint32_t one = kNoMaterial;          // a material found there
-  std::uint32_t transparent = kNoMaterial;  // the first of those that transmit
+  std::uint32_t one = kNoMaterial;          // any material found there
+  std::uint32_t transparent = kNoMaterial;  // the transparent material with the lowest index
   bool several = false;
-  bool bare = false;  // some leaf has none, and will get that of the next Paint above
+  bool bare = false;  // some leaf has no material yet and gets that of the next Paint above
 
   bool uneven() const { return several || (bare && one != kNoMaterial); }
 };
 
-// The index of the surface that a Paint node gives.
+// Returns the index of the surface that a Paint node refers to.
 std::size_t surface_of(const Graph& graph, NodeId paint);
 
-// What `below` becomes under a Paint of the material, which it gives to what has none.
+// Returns `below` as seen above a Paint of `material`: the Paint gives its material to bare leaves.
 Painted paint(Painted below, std::uint32_t material, std::span<const Material> materials);
 
-// [node]
+// Summarises the materials of every node. [node]
 std::vector<Painted> painted_below(const Scene& scene, std::span<const Surface> surfaces,
                                    std::span<const Material> materials);
 
@@ -42,9 +42,9 @@ struct Body {
   bool transparent;
 };
 
-// Takes the union apart, in the order of the file; a body that the graph shows twice in one place is listed once.
-// Adds the Transform and Paint nodes around each body to `graph`, a copy of the scene's. nullopt when these or the
-// bodies are more than `most`, or it takes too many steps to tell.
+// Splits the scene's union into bodies, in file order. A body that the graph shows twice in one place is listed once.
+// Adds the Transform and Paint nodes around each body to `graph`, a copy of the scene's. Returns nullopt when the
+// added nodes or the bodies are more than `most`, or the search takes too many steps.
 std::optional<std::vector<Body>> find_bodies(const Scene& scene, const std::vector<Painted>& below,
                                              std::span<const Surface> surfaces, std::span<const Material> materials,
                                              std::size_t most, Graph& graph);

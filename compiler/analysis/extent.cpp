@@ -6,7 +6,7 @@
 namespace fathom::compiler {
 namespace {
 
-// The box of a node's parts that end, given those of its children.
+// Returns the bounding box of a node's finite parts, given those of its children.
 Box finite_part(const Graph& graph, NodeId id, const Knowledge& known, const std::vector<Box>& parts) {
   if (known.box.finite()) return known.box;
   const std::span<const NodeId> children = graph.children(id);

@@ -1,4 +1,4 @@
-// How large a scene is: the box of its solids that end.
+// Extent of a scene: the bounding box of its finite solids.
 // Tested by: tests/compiler/analysis/extent_test.cpp
 #pragma once
 
@@ -10,9 +10,9 @@
 
 namespace fathom::compiler {
 
-// The box round all parts of the scene that end; empty when there are none. Planes, endless copies and other parts
-// without an end are left out. What is cut from one of them counts: a pit is what there is to see of a ground.
-// `known` is of analyse() (compiler/shapes/bounds.h).
+// Returns the bounding box of all finite parts of the scene; empty when there are none. Planes, endless copies and
+// other infinite parts are left out. A solid cut from an infinite part counts: a pit is the visible part of a ground.
+// `known` is the result of analyse() (compiler/shapes/bounds.h).
 Box extent(const Scene& scene, const std::vector<Knowledge>& known);
 
 }  // namespace fathom::compiler

@@ -23,19 +23,19 @@ bool is_shape(Kind kind) {
          kind == Kind::Quad;
 }
 
-// What leaves the surfaces of its children where they are, but for moving them.
+// True for nodes that keep their children's surfaces, except for placing them.
 bool is_way(Kind kind) {
   return kind == Kind::Union || kind == Kind::Transform || kind == Kind::Scaled || kind == Kind::Paint;
 }
 
-// A map into a space turned, moved and scaled: q = R^T (p - t) / s.
+// A similarity transform into a lamp's space: q = R^T (p - t) / s.
 struct LampPlacement {
   dmat3 rotation;
   dvec3 translation;
   double scale;
 };
 
-// nullopt when the map stretches directions differently.
+// Returns nullopt when the map scales directions differently.
 std::optional<LampPlacement> placement_of(const Affine& to_local) {
   constexpr double kTolerance = 1e-9;
   const std::array<dvec3, 3>& rows = to_local.rows;
@@ -48,7 +48,7 @@ std::optional<LampPlacement> placement_of(const Affine& to_local) {
                    1 / length};
 }
 
-// Its plane becomes the xy plane of the lamp's space, its middle the origin.
+// Sets the lamp's space: the quad's plane becomes the xy plane, the quad's centre the origin.
 void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place) {
   std::array<dvec3, 4> v;
   dvec3 middle(0);
@@ -57,7 +57,7 @@ void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place)
     middle += 0.25 * v[i];
   }
   const dvec3 x = glm::normalize(v[1] - v[0]);
-  // Of a convex quad, twice the area along the normal: the diagonals' cross product.
+  // The cross product of a convex quad's diagonals is twice its area along the normal.
   const dvec3 z = glm::normalize(glm::cross(v[2] - v[0], v[3] - v[1]));
   lamp.rotation = dmat3(x, glm::cross(z, x), z);
   lamp.translation = middle;
@@ -93,10 +93,10 @@ std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& 
   return lamp;
 }
 
-// Visits beyond one of each node. Of a node under an uneven scale there can be any number and no lamp.
+// Visits beyond one per node. A non-uniform scale can lead to any number of visits and to no lamp.
 constexpr std::size_t kMaxVisits = 8 * kMaxLamps;
 
-// Tells lamps in the same place apart from others; the same shape under another transform is rare enough to pass.
+// Identifies lamps in the same place. Equal lamps that different transforms place there are rare and count twice.
 using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
 
 class Finder {
@@ -120,10 +120,10 @@ class Finder {
   struct Task {
     NodeId node;
     Affine to_local;
-    std::optional<std::uint32_t> surface;  // of what is not painted further in
+    std::optional<std::uint32_t> surface;  // given by the innermost Paint above the node
   };
 
-  // A node that several use is visited once under each map and surface.
+  // A shared node is visited once per combination of surface and transform.
   using Visited = std::tuple<NodeId, std::optional<std::uint32_t>, std::array<double, 12>>;
 
   bool glows(std::uint32_t surface) const {
@@ -132,7 +132,7 @@ class Finder {
   }
   std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
 
-  // Which nodes hold lamps, painted from outside by a glowing surface or not: a DAG is walked to those only.
+  // Marks the nodes that hold lamps, with and without a glowing Paint above them. The walk enters only marked nodes.
   void mark() {
     holds_.resize(graph_.size());
     for (NodeId id = 0; id < graph_.size(); ++id) {
@@ -169,7 +169,7 @@ class Finder {
     if (kind == Kind::Transform)
       inner.to_local = compose(Affine::from_params(graph_.params(task.node)), task.to_local);
     const std::span<const NodeId> children = graph_.children(task.node);
-    for (std::size_t i = children.size(); i > 0; --i) {  // the first on top
+    for (std::size_t i = children.size(); i > 0; --i) {  // the first child ends on top
       inner.node = children[i - 1];
       tasks_.push_back(inner);
     }
@@ -189,8 +189,8 @@ class Finder {
   const Graph& graph_;
   const std::span<const Surface> surfaces_;
   const std::span<const Material> materials_;
-  std::vector<std::array<bool, 2>> holds_;  // [node][whether a glowing surface is around it]
-  std::vector<bool> shared_;                // [node] whether several nodes use it
+  std::vector<std::array<bool, 2>> holds_;  // [node][1 below a glowing Paint] true if it holds lamps
+  std::vector<bool> shared_;                // [node] true if several nodes use it
   std::vector<Task> tasks_;
   std::set<Visited> visited_;
   std::set<LampPlace> taken_;

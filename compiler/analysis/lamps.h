@@ -1,10 +1,10 @@
-// Glowing shapes that light can be sampled on, found in the graph.
+// Finds lamps (area lights): emissive shapes in the graph whose surface can be sampled.
 //
-// A lamp is a sphere, box, cylinder, capsule or quad with an emissive material that unions alone join to the scene
-// and that transforms only move, turn and scale alike along all axes. What is cut, blended, bent or repeated is none:
-// its light is found by rays that hit it. Where other objects hide part of a lamp it stays one: no ray arrives from
-// there. What light may pass is none, either: within its like, or what outranks it, it has no surface and hides
-// nothing.
+// A lamp is a sphere, box, cylinder, capsule or quad with an emissive material. Only unions join a lamp to the scene,
+// and transforms above a lamp only move, rotate and scale uniformly. An emissive shape that is cut, blended, bent or
+// repeated is not a lamp: only rays that hit the shape find its light. A lamp that other objects hide in part stays a
+// lamp, because shadow rays to the hidden part are blocked. A transparent shape is not a lamp: within a body of the
+// same material, or of one that outranks it, the shape has no surface and blocks no rays.
 //
 // Tested by: tests/compiler/analysis/lamps_test.cpp
 #pragma once
@@ -18,10 +18,10 @@
 
 namespace fathom::compiler {
 
-// A DAG can stand for any number of lamps: the first so many are sampled.
+// Maximum number of lamps. A DAG can stand for any number of lamps, and only the first ones are sampled.
 inline constexpr std::size_t kMaxLamps = 65536;
 
-// In the order of the file; of lamps in the same place the first.
+// Returns the lamps in file order. Only the first of several lamps in the same place is listed.
 std::vector<Lamp> find_lamps(const Scene& scene, std::span<const Surface> surfaces,
                              std::span<const Material> materials);
 

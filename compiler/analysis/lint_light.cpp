@@ -30,7 +30,7 @@ bool uses_emission(const Scene& scene, const SceneTables& tables) {
   return false;
 }
 
-// Whether a place is inside a solid that light does not pass.
+// True if a point is inside an opaque solid.
 bool is_buried(glm::dvec3 place, const SceneTables& tables, const vm::VerifiedProgram& surface,
                vm::Workspace& workspace) {
   const vm::SurfaceValue value = vm::evaluate_surface(surface, place, workspace);
@@ -45,7 +45,7 @@ void lint_light(const Scene& scene, const SceneTables& tables, const vm::Verifie
                 Diagnostics& diagnostics) {
   if (!is_black(tables.background) || uses_emission(scene, tables)) return;
   vm::Workspace workspace;
-  // A camera in the same solid may see what the light within shines on.
+  // A camera in the same solid may see surfaces that the enclosed light shines on.
   const bool outside = !is_buried(tables.camera.position, tables, surface, workspace);
   std::size_t buried = 0;
   for (const Light& light : tables.lights) {

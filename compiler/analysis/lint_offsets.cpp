@@ -21,13 +21,13 @@ namespace {
 
 constexpr NodeId kNone = std::numeric_limits<NodeId>::max();
 
-// A node whose value near its surface is less than the distance: at most `most` times less, on the average over the
-// surface `mean` times.
+// Factors by which a node's value near its surface is less than the distance: at most `most`, on average over the
+// surface `mean`.
 struct Shortfall {
   double most, mean;
 };
 
-// The gradient's bound, sqrt 3, over its least length on the surface and over its mean length there.
+// Ratios of the gradient's bound, sqrt 3, to its minimum and to its mean length on the surface.
 std::optional<Shortfall> shortfall_of_periodic(Kind kind) {
   switch (kind) {
     case Kind::Gyroid:
@@ -55,7 +55,7 @@ class OffsetLinter {
       }
       if (short_of[id] == kNone || !measures(id)) continue;
       warn(id, short_of[id]);
-      short_of[id] = kNone;  // said once
+      short_of[id] = kNone;  // reported once
     }
   }
 
@@ -74,7 +74,7 @@ class OffsetLinter {
            field_.graph().params(id)[0] > kLeastBlend;
   }
 
-  // Whether the transform keeps the axes at right angles, as a scale does and a shear does not.
+  // True if the transform keeps the axes at right angles, as a scale does and a shear does not.
   bool keeps_angles(NodeId id) const {
     const Affine map = Affine::from_params(field_.graph().params(id));
     const Affine back = inverse(map);
@@ -138,7 +138,7 @@ class OffsetLinter {
 
   const FieldGraph field_;
   Diagnostics& diagnostics_;
-  std::set<std::uint32_t> warned_;  // where this stands already
+  std::set<std::uint32_t> warned_;  // begins of spans with this warning
 };
 
 }  // namespace

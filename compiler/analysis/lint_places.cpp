@@ -16,15 +16,15 @@
 namespace fathom::compiler {
 namespace {
 
-// Coordinates this many times a part's thickness leave four bits of a float for the part.
+// Ratio of coordinates to thickness at which a float has four bits left for the part.
 constexpr double kMost = 0x1p20;
-// Of a node that is used in more places, the first are looked at.
+// Maximum number of places checked per node.
 constexpr std::size_t kMostPlaces = 256;
-// Places of all nodes beyond the first of each.
+// Maximum number of places of all nodes together, not counting the first place of each node.
 constexpr std::size_t kMostInAll = 1 << 18;
 
-// Where nodes stand: [node] the maps from its own space to the scene's. Below what folds, bends or repeats space a
-// node has no one place.
+// Computes the places of nodes: [node] the maps from the node's own space to the scene's. A node below a fold, bend
+// or repetition has no unique place.
 std::vector<std::vector<Affine>> places_of(const FieldGraph& field) {
   const Graph& graph = field.graph();
   std::vector<std::vector<Affine>> places(graph.size());
@@ -41,7 +41,7 @@ std::vector<std::vector<Affine>> places_of(const FieldGraph& field) {
         places[child].push_back(compose(place, up));
       }
     }
-    places[id] = {};  // only the primitives' are asked for, which have no children
+    places[id] = {};  // only places of primitives are read, and primitives have no children
   }
   return places;
 }
@@ -84,7 +84,7 @@ class PlaceLinter {
   const FieldGraph field_;
   const glm::dvec3 origin_;
   Diagnostics& diagnostics_;
-  std::set<std::uint32_t> said_;  // where a warning like this stands already
+  std::set<std::uint32_t> said_;  // begins of spans with W0506 or W0512
 };
 
 }  // namespace

@@ -21,10 +21,10 @@
 namespace fathom::compiler {
 namespace {
 
-// Steps this many times shorter are reported.
+// Factor of step shortening from which the compiler warns.
 constexpr double kSteep = 20;
 
-// Alterations that move, turn or repeat what they hold, or only name it: nothing stays nothing, thin stays thin.
+// True for alterations that only move, rotate, repeat or name their child: empty stays empty, thin stays thin.
 bool rearranges(Kind kind) {
   switch (kind) {
     case Kind::Paint:
@@ -40,7 +40,7 @@ bool rearranges(Kind kind) {
   }
 }
 
-// Extents along the axes on which the box ends; an outline has none along z.
+// Returns the box's smallest side greater than 0. An outline has no extent along z.
 double least_extent(const Box& box) {
   double least = kInfinity;
   for (int i = 0; i < 3; ++i) {
@@ -83,14 +83,15 @@ class Linter {
 
   std::string word(NodeId id) const { return describe(field_.place(id)); }
 
-  // Equal nodes in one place, as of a named node that is used often, are one warning.
+  // Warns once per place in the file: a named node that is used often gives equal nodes in one place.
   void warn(const char* code, NodeId at, std::string message, std::string label, std::string help) {
     const Span span = graph_.origin(at).span;
     if (!warned_.insert({code, span.begin}).second) return;
     diagnostics_.warning(code, span, std::move(message), std::move(label), {std::move(help)});
   }
 
-  // Intersections of what never meets, cuts that leave nothing, cuts that cut nothing; what is made of nothing.
+  // Finds nodes without any solid: intersections of disjoint operands, cuts that leave nothing, nodes made of such
+  // nodes. Also warns of cuts that cut nothing.
   void find_vanishing() {
     vanishes_.assign(graph_.size(), false);
     for (NodeId id = 0; id <= scene_.root; ++id) {
@@ -145,7 +146,7 @@ class Linter {
              "make the cut smaller, or leave the node out; the first node is the one that is cut");
         return true;
       }
-      // A blend takes off more than the cut.
+      // A smooth subtraction removes more than the cut.
       if (vanishes_[operands[0]] || is_blend(kind(id)) || !containment_.avoids(graph_, cut, box(operands[0])))
         continue;
       warn("W0503", cut, fmt::format("the {} cuts nothing off", word(cut)), "it does not touch what it is taken from",
@@ -232,8 +233,8 @@ class Linter {
              : "make the node narrower as seen from the axis, move it further out, or make fewer copies");
   }
 
-  // A blend of width k moves the surface by up to k/4, a cut edge by up to k/2: beyond half a part's thickness
-  // nothing of its shape is left. A union only adds, and only near the other part: a long thin one keeps its shape.
+  // A blend of width k moves the surface by up to k/4, a cut edge by up to k/2. A move beyond half a part's thickness
+  // leaves nothing of its shape. A union only adds, and only near the other part: a long thin part keeps its shape.
   void check_blend(NodeId id) {
     if (!is_blend(kind(id))) return;
     const double width = graph_.params(id)[0];
@@ -268,7 +269,7 @@ class Linter {
          "rays take that many times longer here", help);
   }
 
-  // Whether what is thin below is as thin above.
+  // True if a thin child makes the node as thin.
   static bool keeps_thinness(Kind kind) {
     switch (kind) {
       case Kind::Union:
@@ -282,7 +283,8 @@ class Linter {
     }
   }
 
-  // What is thinner than 16 times the float error at its distance from the camera. Nearest and largest uses count.
+  // Warns of nodes thinner than 16 times the float error at their distance from the camera or the origin. The nearest
+  // and the largest use of a node count.
   void check_thinness() {
     constexpr double kErrors = 16;
     std::vector<double> scale(graph_.size(), 0), away(graph_.size(), kInfinity);  // [node]
@@ -339,8 +341,8 @@ class Linter {
   Diagnostics& diagnostics_;
   Containment containment_;
   std::vector<bool> vanishes_;     // [node]
-  std::vector<bool> holds_clear_;  // [node] whether light passes some of it, which then shows what it holds
-  std::vector<bool> is_lamp_;      // [node] whether all of it is lamps, by the outermost paint
+  std::vector<bool> holds_clear_;  // [node] true if light passes some of it, so that its contents show
+  std::vector<bool> is_lamp_;      // [node] true if it consists of lamps alone, by the outermost Paint
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 

@@ -14,10 +14,10 @@
 namespace fathom::compiler {
 namespace {
 
-// Boxes that are looked at, for each node that the limit allows, to find bodies that overlap.
+// Limit on box tests per allowed node, in the search for overlapping bodies.
 constexpr std::size_t kLooksPerNode = 64;
 
-// Whether `a` is what shows where it overlaps `b`, which is transparent and of another material.
+// True if `a` shows where it overlaps `b`, a transparent body of another material.
 bool outranks(const Body& a, const Body& b, std::span<const Material> materials) {
   if (!a.transparent) return true;
   const int first = materials[a.material].priority, second = materials[b.material].priority;
@@ -26,7 +26,7 @@ bool outranks(const Body& a, const Body& b, std::span<const Material> materials)
 
 }  // namespace
 
-// Where the bodies are.
+// Bounding boxes of the bodies.
 struct MediaMaker::Places {
   explicit Places(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {}
   const std::vector<Box> boxes;  // [body]
@@ -64,7 +64,7 @@ MediaMaker::MediaMaker(const Scene& scene, std::span<const Surface> surfaces, st
   }
 }
 
-// The bodies `own` of a material, without what outranks them and may be where they are.
+// Collects the bodies `own` of a material, and the bodies that outrank them and may overlap them.
 MediaMaker::Medium MediaMaker::medium(std::span<const std::uint32_t> own, const Places& places) {
   const Body& sample = bodies_[own[0]];
   Medium medium{sample.material, {}, {}};
@@ -83,7 +83,7 @@ MediaMaker::Medium MediaMaker::medium(std::span<const std::uint32_t> own, const 
   return medium;
 }
 
-// The nodes below the medium's bodies, in ascending order; valid until the next call.
+// Returns the nodes at and below the medium's bodies, in ascending order. The result is valid until the next call.
 const std::vector<NodeId>& MediaMaker::reached(const Medium& medium) {
   ++walk_;
   reached_.clear();
@@ -104,7 +104,7 @@ MediumScene MediaMaker::make(std::size_t i) {
   const Medium& medium = media_[i];
   const std::vector<NodeId>& nodes = reached(medium);
   Scene scene;
-  const auto copied = [&](NodeId node) {  // nodes are added in their order, each once
+  const auto copied = [&](NodeId node) {  // nodes are added in order, each once
     return static_cast<NodeId>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
   };
   std::vector<NodeId> children;
@@ -127,7 +127,7 @@ void mark_mixed(const Scene& scene, std::span<const Material> materials, std::sp
   const Graph& graph = scene.graph;
   const std::vector<bool> reached = reachable(scene);
   const std::vector<Painted> below = painted_below(scene, surfaces, materials);
-  // Bodies of one material have coordinates of their own each, where that counts.
+  // Bodies of one material can have different texture coordinates, if a texture is placed with the node.
   std::vector<bool> placed_below(scene.root + 1);
   for (NodeId id = 0; id <= scene.root; ++id) {
     placed_below[id] = graph.kind(id) == Kind::Paint && surfaces[surface_of(graph, id)].placed;
@@ -137,7 +137,7 @@ void mark_mixed(const Scene& scene, std::span<const Material> materials, std::sp
     return (below[id].uneven() || placed_below[id]) && (is_blend(graph.kind(id)) || graph.kind(id) == Kind::Morph);
   };
   const auto mark = [&](NodeId paint) { surfaces[surface_of(graph, paint)].mixed = true; };
-  // Upwards: what is bare in such a blend is of the next Paint above it.
+  // Upwards: a bare leaf in a mixing node gets the surface of the next Paint above.
   std::vector<bool> bare_in_mix(scene.root + 1);
   for (NodeId id = 0; id <= scene.root; ++id) {
     if (!reached[id]) continue;
@@ -147,7 +147,7 @@ void mark_mixed(const Scene& scene, std::span<const Material> materials, std::sp
     if (some && paints) mark(id);
     bare_in_mix[id] = some && !paints;
   }
-  // Downwards: all that is painted within one.
+  // Downwards: every Paint within a mixing node is mixed.
   std::vector<bool> within(scene.root + 1);
   for (NodeId id = scene.root + 1; id-- > 0;) {
     if (!reached[id]) continue;

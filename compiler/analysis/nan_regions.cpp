@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMostBoxes = 4096;
 
-// Finite floats within a finite box, cut in eight again and again where the machine may compute what is no number.
+// Searches the finite floats of a finite box for a NaN or an infinity. Boxes in which the machine may compute either
+// are cut into eight, again and again.
 class Search {
  public:
   Search(const vm::VerifiedProgram& program, const Box& box) : program_(program), boxes_{{box}} {}
@@ -30,7 +31,7 @@ class Search {
   }
 
  private:
-  // At the nearest boxes of those that wait.
+  // Tests the first boxes of the queue.
   std::optional<glm::dvec3> look() {
     const std::size_t count = std::min(boxes_.size(), vm::kEnclosedBoxes);
     std::array<Box, vm::kEnclosedBoxes> taken;
@@ -57,7 +58,7 @@ class Search {
     vm::enclose(program_, boxes, lo_.data(), hi_.data(), choices_, workspace_);
   }
 
-  // The middle and the corners, a little inwards.
+  // Evaluates the centre, and the corners moved slightly inwards.
   std::optional<glm::dvec3> try_points(const Box& box) {
     std::array<std::array<float, 9>, 3> p;
     std::array<float, 9> value;
@@ -85,14 +86,14 @@ class Search {
   }
 
   const vm::VerifiedProgram& program_;
-  std::deque<Box> boxes_;  // the largest first
+  std::deque<Box> boxes_;  // queue, largest boxes first
   alignas(64) std::array<std::array<std::array<float, vm::kEnclosedBoxes>, 3>, 2> ends_;
   alignas(64) std::array<float, vm::kEnclosedBoxes> lo_, hi_;
   std::vector<vm::ChoiceBounds> choices_;
   vm::Workspace workspace_;
 };
 
-// Where rays go: all of the scene where it ends, else what is between its parts and the camera.
+// Returns the box that rays pass through: a finite scene's bounding box, else the box of its contents and the camera.
 Box looked_at(const CompiledField& field, const Camera& camera) {
   if (field.bound.finite()) return field.bound;
   Box box = field.contents;
@@ -103,7 +104,7 @@ Box looked_at(const CompiledField& field, const Camera& camera) {
   return box;
 }
 
-// Of the node that the place's instruction comes from.
+// Returns the span of the node that the place's instruction comes from.
 Span span_of(const Scene& scene, const Source& source, const NanPlace& place) {
   for (NodeId id = 0; id <= scene.root; ++id) {
     const Span span = scene.graph.origin(id).span;

@@ -20,19 +20,20 @@ namespace {
 
 using glm::dvec3;
 
-// The largest power of two up to `value` > 0.
+// Returns the largest power of two up to `value` > 0.
 double power_of_two(double value) {
   int exponent;
   std::frexp(value, &exponent);
   return std::ldexp(1.0, exponent - 1);
 }
 
-// The box's middle, rounded, where it is far from zero for the box's size; else 0, for each axis.
+// Returns the box's centre, rounded, along axes where the centre is far from zero relative to the box's size; 0 along
+// other axes.
 dvec3 middle_if_far(const Box& box) {
   if (box.empty()) return dvec3(0);
   constexpr double kFar = 8, kLeast = 0x1p-20;
   const dvec3 middle = (box.lo + box.hi) * 0.5;
-  // Of what has next to no size, a millionth of its distance.
+  // A box with almost no size counts as a millionth of its distance from zero.
   const double size = std::max(glm::length(box.hi - box.lo) / 2, kLeast * largest_part(middle)),
                unit = power_of_two(size);
   dvec3 origin(0);
@@ -42,7 +43,7 @@ dvec3 middle_if_far(const Box& box) {
   return origin;
 }
 
-// A sum of whole periods has no effect on what repeats without end; a period of 0 does not repeat.
+// Removes whole periods from `move`, which leave an endless repetition as it is. A period of 0 means no repetition.
 dvec3 without_periods(dvec3 move, dvec3 period) {
   for (int i = 0; i < 3; ++i) move[i] = period[i] > 0 ? std::remainder(move[i], period[i]) : move[i];
   return move;
@@ -53,7 +54,7 @@ class Mover {
   Mover(const Scene& scene, dvec3 origin, std::vector<Surface>& surfaces)
       : scene_(scene), origin_(origin), surfaces_(surfaces), moved_(scene) {}
 
-  // Nodes that are moved are added behind the others, children first, as ever.
+  // Appends moved nodes behind the others, children first as always.
   Scene run() {
     std::vector<bool> wanted(scene_.root + 1, false);
     wanted[scene_.root] = true;
@@ -74,7 +75,7 @@ class Mover {
     return scene_.graph.kind(id) == Kind::Mirror || takes_own_point(scene_.graph, id);
   }
 
-  // The node of `moved_` that is at p what node `id` is at p + origin.
+  // Returns the node of `moved_` whose value at p is the value of node `id` at p + origin.
   NodeId twin(NodeId id) {
     const std::span<const double> old = scene_.graph.params(id);
     std::vector<double> params(old.begin(), old.end());
@@ -108,7 +109,7 @@ class Mover {
     }
   }
 
-  // The surface of a Paint that stands at p for what it was at p + origin.
+  // Returns the surface of a Paint that is at p after the move and was at p + origin before.
   std::uint32_t shifted(std::uint32_t surface) {
     if (surface >= surfaces_.size() || !surfaces_[surface].placed) return surface;
     const auto [found, is_new] = shifted_.try_emplace(surface, static_cast<std::uint32_t>(surfaces_.size()));
@@ -119,7 +120,7 @@ class Mover {
     return found->second;
   }
 
-  // Along the axes on which all copies are alike.
+  // Returns the periods along the axes on which all copies are equal; 0 along other axes.
   static dvec3 endless_periods(std::span<const double> params) {
     dvec3 period(0);
     const bool jitters = params[6] > 0 || params[7] > 0 || params[8] > 0;
@@ -129,7 +130,7 @@ class Mover {
     return period;
   }
 
-  // With `params` in place of its own.
+  // Adds a copy of the node with `params`.
   NodeId add(NodeId id, std::span<const double> params) {
     const std::span<const NodeId> old = scene_.graph.children(id);
     std::vector<NodeId> children(old.begin(), old.end());
@@ -150,11 +151,11 @@ class Mover {
   std::vector<Surface>& surfaces_;
   std::map<std::uint32_t, std::uint32_t> shifted_;
   Scene moved_;
-  std::vector<NodeId> twins_;  // [node]
+  std::vector<NodeId> twins_;  // [node] its node in moved_
 };
 
-// Whether what the move takes off the points' coordinates is at least what it adds to the numbers that cancel: a
-// steep formula multiplies the rounding of coordinates that it cannot be rid of.
+// True if the move reduces the points' coordinates by at least as much as it increases the numbers that cancel. A
+// steep formula multiplies the rounding error of coordinates that it still has to receive unmoved.
 bool pays(const Scene& scene, dvec3 origin, double magnitude) {
   constexpr double kRounding = 1 + 1e-9;
   const Scene there = moved(scene, origin);

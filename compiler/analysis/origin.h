@@ -1,7 +1,9 @@
-// Precision where it is needed: the programs' coordinates begin near what the scene shows, not at the scene's zero.
+// Floating origin: the programs' coordinates begin near what the scene shows, where floats are precise, and not at
+// the scene's zero.
 //
-// A float has 24 bits: at 1e5 neighbouring coordinates are 0.008 apart, and no surface is known better. So a scene
-// far from zero is compiled around an origin of its own: each node is moved by -origin, in double, before the passes.
+// A float has 24 bits: at 1e5 neighbouring coordinates are 0.008 apart, and no surface is located more precisely. The
+// compiler therefore gives a scene far from zero an origin of its own: it moves each node by -origin, in double,
+// before the passes.
 //
 //     const glm::dvec3 origin = choose_origin(scene, analyse(scene.graph), camera);
 //     const Scene local = moved(scene, origin);               // local(p) = scene(p + origin)
@@ -18,20 +20,20 @@
 
 namespace fathom::compiler {
 
-// Scene units. The middle of what the camera looks at, the box of the way to its target, when the target lies within
-// the parts of the scene that end (beside an endless plane, a ball); else the middle of those parts, to which in a
-// scene without an end in some direction the way to the target is added. 0 along axes on which the middle is no
-// farther from zero than 8 times half the box's diagonal, as in most scenes it is not. A multiple of the largest
-// power of two within the latter, so that numbers of few digits stay so. No origin is chosen that would make float
-// errors larger. `known` is of analyse() (compiler/shapes/bounds.h).
+// Returns the origin in scene units, (0, 0, 0) for most scenes. The first candidate is the centre of the view, the
+// box around the camera's position and target. It needs a target within the finite parts of the scene (with a ball on
+// an infinite plane, within the ball). The second candidate is the centre of the finite parts' box, which an infinite
+// scene extends by the view. A coordinate is 0 where the centre is at most 8 times half the box's diagonal from zero.
+// Other coordinates are multiples of the largest power of two within half the diagonal, so that numbers with few
+// digits keep few digits. A candidate that would increase float errors is rejected. `known` is the result of
+// analyse() (compiler/shapes/bounds.h).
 glm::dvec3 choose_origin(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera);
 
-// The scene with `origin` at zero. A move goes through what only combines or changes distances, and ends in the
-// numbers of transforms, planes, triangles and quads, or in a new transform. Below that transform points have the
-// scene's coordinates once more: a formula written for a far place, a twist about a far axis stay as coarse as they
-// were, which Knowledge::magnitude says.
-// A Paint that is moved gives a surface of its own where textures are in the node's coordinates: Surface::shift leads
-// back to these.
+// Returns the scene with `origin` at zero. The move passes through nodes that only combine or change distances. It
+// ends in the numbers of transforms, planes, triangles and quads, or in a new Transform. Below a new Transform points
+// have the scene's coordinates again: a formula written for a far place, or a twist about a far axis, stays as
+// imprecise as before, and Knowledge::magnitude says so.
+// A moved Paint gets a surface of its own if a texture uses the node's coordinates: Surface::shift leads back.
 Scene moved(const Scene& scene, glm::dvec3 origin, std::vector<Surface>& surfaces);
 Scene moved(const Scene& scene, glm::dvec3 origin);
 

@@ -18,14 +18,14 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kLargestSide = 1e17;    // a box's side beyond this stands for one without end
-constexpr std::uint64_t kFewest = 256;   // points of a row
-constexpr std::uint64_t kChunk = 4096;   // points a thread takes at once
+constexpr double kLargestSide = 1e17;    // a box's coordinates beyond this count as infinite
+constexpr std::uint64_t kFewest = 256;   // minimum number of points per row
+constexpr std::uint64_t kChunk = 4096;   // points that a thread takes at once
 constexpr int kWalk = 3;                 // steps towards the surface
-constexpr double kTolerance = 1 + 1e-6;  // what rounding can add to a ratio
-constexpr std::uint64_t kLowering = 64;  // times an instruction could be run while it is made
+constexpr double kTolerance = 1 + 1e-6;  // allows for rounding in a ratio
+constexpr std::uint64_t kLowering = 64;  // cost of lowering an instruction, in runs of it
 
-// SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014), from a point's number.
+// SplitMix64 (Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators", 2014), seeded by row and point.
 class Random {
  public:
   Random(std::uint64_t row, std::uint64_t point) : state_((row + 1) * 0x9E3779B97F4A7C15u ^ (point << 20)) { next(); }
@@ -58,7 +58,7 @@ Box region(const Box& box, double reach) {
   return out;
 }
 
-// One row's points and what they show.
+// Evaluates the points of one row.
 class Prober {
  public:
   Prober(const vm::VerifiedProgram& program, const Box& box, std::uint64_t seed, double magnitude)
@@ -67,7 +67,7 @@ class Prober {
     size_ = std::max({size.x, size.y, size.z, 1e-9});
   }
 
-  // Points [first, last) into `row`.
+  // Adds the results of points [first, last) to `row`.
   void run(std::uint64_t first, std::uint64_t last, ProbeRow& row) {
     for (std::uint64_t i = first; i < last; ++i) {
       Random random(seed_, i);
@@ -102,7 +102,7 @@ class Prober {
 
   void compare(glm::dvec3 p, double at_p, glm::dvec3 q, ProbeRow& row) {
     const double at_q = vm::evaluate_distance(program_, q, workspace_);
-    // Of values in double; a thousand roundings of the largest number in sight.
+    // Allows for rounding in double: a thousand roundings of the largest number involved.
     const double rounding = 1e3 * 0x1p-53 * (std::max({1.0, glm::length(p), std::abs(at_p)}) + magnitude_);
     const double quotient = (std::abs(at_p - at_q) - rounding) / glm::length(p - q);
     if (quotient > row.quotient) {
@@ -119,7 +119,7 @@ class Prober {
   vm::Workspace workspace_;
 };
 
-// Adds what other points of the row showed; `more` holds later points.
+// Adds the results of other points of the row; `more` holds later points.
 void merge(ProbeRow& row, const ProbeRow& more) {
   if (more.seen() > row.seen()) row.at = more.at;
   row.gradient = std::max(row.gradient, more.gradient);
@@ -134,7 +134,7 @@ class Probing {
 
   const FieldGraph& field() const { return field_; }
 
-  // The row of the whole scene takes what `points` of it take, each other one a part of what is left of as much.
+  // Adds a row. The row of the whole scene sets the instruction budget, and each later row takes its part of it.
   void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) {
     const Knowledge& known = field_.known(id);
     ProbeRow& row = rows.emplace_back(ProbeRow{what, id, field_.place(id), known.certified, known.lipschitz});
@@ -144,7 +144,7 @@ class Probing {
     const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), most);
     const std::uint64_t length = program ? program->debug.size() : 0;
     if (first) left_ = std::max(options_.least_work, points * length);
-    // Lowering looks at the graph up to the node.
+    // Lowering visits all nodes up to this one.
     if (!first) take(id + (program ? (points + kLowering) * length : kLowering * most));
     if (!program) return;
     const auto verified = vm::verify(*program, largest_machine());
@@ -152,7 +152,7 @@ class Probing {
   }
 
  private:
-  // In chunks, each with a row of its own, merged in their order.
+  // Runs the points in chunks. Each chunk has its own row, and the rows are merged in order.
   void run(const vm::VerifiedProgram& program, std::uint64_t points, ProbeRow& row) const {
     const Knowledge& known = field_.known(row.node);
     // Nodes below a transform have a zero of their own.
@@ -180,7 +180,7 @@ class Probing {
 
   const FieldGraph field_;
   const ProbeOptions options_;
-  std::uint64_t left_ = 0;  // instructions that the rows to come may run
+  std::uint64_t left_ = 0;  // instructions left to the rows to come
 };
 
 bool has_own_proof(const FieldGraph& field, NodeId id) {
@@ -188,7 +188,7 @@ bool has_own_proof(const FieldGraph& field, NodeId id) {
   return kind != Kind::Scaled && (field.cost(id) > 1 + 1e-9 || kind == Kind::Bounded || spec(kind).derive != nullptr);
 }
 
-// [node] whether a node below is broken.
+// [node] true if a node below is broken.
 std::vector<bool> broken_below(const FieldGraph& field, const std::vector<ProbeRow>& rows) {
   std::vector<bool> broken(field.root() + 1, false), below(field.root() + 1, false);
   for (const ProbeRow& row : rows) broken[row.node] = broken[row.node] || row.broken();
@@ -225,7 +225,7 @@ std::vector<ProbeRow> probe(const Scene& scene, const std::vector<Surface>& surf
   const std::uint64_t share = std::max(kFewest, options.points / std::max<std::size_t>(others.size(), 1));
   for (const auto& [what, id] : others) probing.add(what, id, std::min(share, options.points), rows);
 
-  // Where a constant breaks that no probed node below accounts for: every node below.
+  // Probes every node below a broken row that no probed node below accounts for.
   const std::vector<bool> below = broken_below(field, rows);
   std::vector<bool> suspect(field.root() + 1, false);
   for (const ProbeRow& row : rows) {

@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 namespace {
 
-// Below this a node's cost is rounding.
+// A node's cost below this is only rounding.
 constexpr double kCheap = 1 + 1e-6;
 
 bool is_displacement(const Graph& graph, NodeId id) {

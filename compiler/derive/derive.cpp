@@ -10,7 +10,7 @@
 namespace fathom::compiler {
 namespace {
 
-// Reports nodes that evaluate their child too often, or iterate too long.
+// Reports a node that evaluates its child too often, or iterates too often.
 void check_size(const Graph& graph, NodeId id, Span type_span, const Limits& limits, Diagnostics& diagnostics) {
   const Code code = spec(graph.kind(id)).code(graph.params(id));
   const auto copies = static_cast<double>(code.points.size());
@@ -39,7 +39,8 @@ class Deriver {
           Diagnostics& diagnostics)
       : described_(described), maker_(out), type_spans_(type_spans), limits_(limits), diagnostics_(diagnostics) {}
 
-  // The node of `out` for node `id` of the described graph. After an error, something to go on with.
+  // Returns the node of `out` for node `id` of the described graph. After an error, returns any node to continue
+  // with.
   NodeId make(NodeId id, std::span<const NodeId> children) {
     if (full_) return 0;
     const Kind kind = described_.kind(id);
@@ -69,7 +70,7 @@ class Deriver {
   const std::span<const Span> type_spans_;
   const Limits& limits_;
   Diagnostics& diagnostics_;
-  bool full_ = false;  // the limit of nodes was reached, which was reported
+  bool full_ = false;  // true after check_count() has reported that the limit of nodes is reached
 };
 
 }  // namespace

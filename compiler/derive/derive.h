@@ -1,8 +1,8 @@
-// Derive: the step from nodes as described to nodes with all their numbers.
+// Derive: the step from nodes as a scene describes them to nodes with all their numbers.
 //
-// A described node has the parameters of its row in the node table and no others. Derive expands nodes that are made
-// of others, proves the bounds of formulas (compiler/derive/formula_field.h), computes the numbers that a node takes from
-// its children, such as the radius of a twist, and reports children that a node cannot have.
+// A described node has exactly the parameters of its row in the node table. Derive expands nodes that are composed of
+// other nodes, proves the bounds of formulas (compiler/derive/formula_field.h), computes the numbers that a node
+// takes from its children, such as the radius of a twist, and reports children that a node cannot have.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp, tests/golden (diagnostics E0302, E0312)
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace fathom::compiler {
 
-// nullopt after reporting an error. `type_spans`: [node of `described`] the places of errors; nodes past its end have
-// none and are not checked.
+// Returns nullopt after reporting an error. `type_spans` [node of `described`] are the places of errors. Nodes past
+// the end of `type_spans` have no place, and Derive does not check how often they evaluate or iterate.
 std::optional<Scene> derive(const Scene& described, std::span<const Span> type_spans, const Limits& limits,
                             Diagnostics& diagnostics);
 

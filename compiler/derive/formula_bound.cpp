@@ -27,9 +27,10 @@ constexpr double kCloseEnough = 1.02;
 struct Cell {
   Box box;
   vm::SlopeBound bound;
-  std::shared_ptr<const vm::Part> part;  // what of the formula matters within the box
-  // The steepest on top of the queue. Among those that are as steep but for rounding the smaller, which is nearer to
-  // where that slope is met; among jumps the larger, that many places are seen before one is too small to be cut.
+  std::shared_ptr<const vm::Part> part;  // the part of the formula that matters within the box
+  // Orders the queue by steepness, steepest on top. Among cells that are equally steep except for rounding the
+  // smaller comes first, because it is nearer to the place of that slope. Among jumps the larger comes first, so that
+  // the search visits many places before a cell is too small to split.
   bool operator<(const Cell& other) const {
     const auto slope = static_cast<float>(bound.lipschitz), other_slope = static_cast<float>(other.bound.lipschitz);
     if (slope != other_slope) return slope < other_slope;
@@ -43,15 +44,15 @@ struct Cell {
 
 class Bisection {
  public:
-  // `used`: which coordinates the formula has in it; along the others nothing changes.
+  // `used`: the coordinates that the formula contains. The formula is constant along the others.
   Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
       : length_(static_cast<int>(program.instructions())), cost_(program.cost()), whole_(box), used_(used) {
     add(box, std::make_shared<const vm::Part>(vm::whole(program)));
   }
 
   FormulaBound run() {
-    // Of the formula's length: a tenth of a second at most, were no cell's part shorter. Of one that is so long that
-    // few cells would be left, a second by what its functions cost.
+    // The number of cells depends on the formula's length: at most a tenth of a second even if no cell's part is
+    // shorter. A formula so long that few cells remain gets a second by the cost of its functions.
     const int cells = 4'000'000 / (length_ + 1);
     const int budget =
         cells >= kFew ? std::min(cells, 8192) : std::clamp(static_cast<int>(8'000'000 / (cost_ + 1)), 4, kFew);
@@ -75,7 +76,7 @@ class Bisection {
   }
 
  private:
-  // `part`: of a cell that holds this one.
+  // `part`: the part of an enclosing cell.
   void add(const Box& box, std::shared_ptr<const vm::Part> part) {
     Cell cell{box, specialiser_.look(*part, box.lo, box.hi, workspace_), part};
     if (cell.bound.lipschitz > kCloseEnough * seen_) cell.part = cut(part);
@@ -83,7 +84,7 @@ class Bisection {
     cells_.push(std::move(cell));
   }
 
-  // The slope in the middle of a cell, of the part that is cut for it.
+  // Raises seen_ to the slope in the middle of a cell, evaluated with the cell's part.
   void see(const Cell& cell) {
     const Box& box = cell.box;
     glm::dvec3 middle;
@@ -95,17 +96,18 @@ class Bisection {
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
   }
 
-  // What the cell that was looked at leaves of its part.
+  // Specialises the part for the cell that look() has just bounded.
   std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
     if (part->choices == 0) return part;
     specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
-    if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;  // next to nothing would go
+    // specialising would remove next to nothing
+    if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;
     auto smaller = std::make_shared<vm::Part>();
     specialiser_.part(0, *smaller);
     return smaller;
   }
 
-  // False when the cell has become too small for its slope to be anything but a jump.
+  // Returns false if the cell is too small for its slope to be anything except a jump.
   bool split(const Cell& cell) {
     const glm::dvec3 size = cell.box.hi - cell.box.lo, whole = whole_.hi - whole_.lo;
     int axis = -1;
@@ -135,7 +137,8 @@ class Bisection {
   double seen_ = 0;
 };
 
-// nullopt when no machine runs it; the scene's program, of which it is a part, is refused later.
+// Returns nullopt if no machine runs the formula. A later step then refuses the scene's program, which contains the
+// formula.
 std::optional<vm::VerifiedProgram> program_of(const Graph& graph, NodeId formula) {
   const auto longest = static_cast<std::size_t>(limit_row(&Limits::instructions).largest);
   std::optional<vm::Program> program = lower(graph, formula, Source("", ""), longest);
@@ -171,7 +174,7 @@ NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {
   const Box cell = bound_formula(graph, formula, box).unbounded;
   if (cell.empty()) return formula;
   vm::Workspace workspace;
-  double left = 4e6;  // instructions that may still be evaluated: seconds
+  double left = 4e6;  // budget of instructions to evaluate: seconds
   const auto unbounded = [&](NodeId id) {
     const std::optional<vm::VerifiedProgram> program = program_of(graph, id);
     if (!program || (left -= program->instructions()) < 0) return false;

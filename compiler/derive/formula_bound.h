@@ -1,7 +1,7 @@
-// A bound on how fast a formula changes within a box, proved by interval arithmetic on its derivative.
+// Bounds how fast a formula changes within a box, by interval arithmetic on the formula's derivative.
 //
-// The bound is that of cells the box is cut into, the steepest first, until it is within a few percent of a slope
-// that does occur. A formula that jumps has none. Source: Moore, "Interval Analysis", 1966.
+// The search bisects the box into cells, the steepest cell first, until the bound is within a few percent of a slope
+// that occurs. A formula that jumps has no bound. Source: Moore, "Interval Analysis", 1966.
 // Tested by: tests/compiler/derive/formula_field_test.cpp
 #pragma once
 
@@ -12,17 +12,17 @@ namespace fathom::compiler {
 
 struct FormulaBound {
   double least, most;  // of the values
-  double lipschitz;    // of the formula within the box; infinite when none was found
-  double seen;         // the steepest gradient met while looking
+  double lipschitz;    // of the formula within the box; infinite if the search found no bound
+  double seen;         // the steepest gradient that the search evaluated
   double float_error;  // of an evaluation in float, scene units; may be infinite
-  Box unbounded = {};  // the smallest cell met for which none was found; empty when there is none
+  Box unbounded = {};  // the smallest cell without a bound that the search met; empty if there is none
 };
 
-// `box` may have infinite sides. `formula` is a node that is a number.
+// `box` may have infinite sides. `formula` is a node of numbers.
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box);
 
-// The operation that leaves a formula without a bound: in the smallest cell that has none, each of its operands has
-// one. Of a formula of more than some thousands of operations it may be one further up.
+// Returns the operation that leaves a formula without a bound: in the smallest cell without a bound, each operand of
+// the operation has a bound. In a formula of more than some thousands of operations the result may be one further up.
 NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box);
 
 }  // namespace fathom::compiler

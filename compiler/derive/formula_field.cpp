@@ -11,7 +11,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kInfiniteSide = 1e18;  // stands for an infinite side in the program
+constexpr double kInfiniteSide = 1e18;  // replaces an infinite side in the program
 
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
 
@@ -21,7 +21,7 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   for (const glm::dvec3& corner : {box.lo, box.hi}) {
     for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kInfiniteSide, kInfiniteSide));
   }
-  // A field that does not change at all has its box as its only surface.
+  // A field that does not change has its box as its only surface, so any constant will do.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
   params.insert(params.end(),
                 {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0, certified ? 1.0 : 0.0});
@@ -29,7 +29,7 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   return maker.make(Kind::Bounded, params, children, origin);
 }
 
-// What stands for the constant of a formula that has none.
+// Estimates the Lipschitz constant of a formula without a proved constant.
 double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.seen); }
 
 struct DisplacedBound {
@@ -37,9 +37,9 @@ struct DisplacedBound {
   FormulaBound formula;  // over the box
 };
 
-// Where the displaced solid can be: the child's box grown by g, with g at least as much as the formula lowers the
-// distance within it. What is needed is followed along its slope to where it meets what is given; of a formula that
-// asks for more and more the solid can be anywhere.
+// Returns a box that contains the displaced solid: the child's box grown by g, where g covers the amount by which the
+// formula lowers the distance within the box. The loop extrapolates the needed growth along its slope to where it
+// equals the given growth. If the formula always needs more, the solid can be anywhere.
 DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowledge& child) {
   constexpr int kTries = 8;
   double grown = 0, last_grown = 0, last_needed = 0;

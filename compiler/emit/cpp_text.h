@@ -1,12 +1,12 @@
-// What stands in every emitted C++ header around the scene's own functions: the contract with the lane type, and what
-// float and double need to fulfil it. Patterns of fmt.
+// Fixed text of every emitted C++ header, around the scene's own functions: the requirements on lane types, and the
+// definitions with which float and double meet them. The texts are fmt patterns.
 #pragma once
 
 #include <string_view>
 
 namespace fathom::compiler {
 
-// {0}: the scene, {1}: namespace, {2}: a name for the guard.
+// {0}: the scene, {1}: namespace, {2}: name of the include guard.
 inline constexpr std::string_view kCppHead = R"(// {0}
 //
 //     T {1}::distance(T x, T y, T z)
@@ -51,7 +51,7 @@ inline constexpr std::string_view kCppHead = R"(// {0}
 
 )";
 
-// No pattern.
+// Not a pattern.
 inline constexpr std::string_view kCppPrimitives = R"(// The numbers in a T, and how it is made of one.
 template <class T>
 struct lanes {
@@ -137,7 +137,7 @@ FATHOM_SCENE_INLINE Float exponent(Float x) {
 FATHOM_SCENE_INLINE bool any(bool mask) { return mask; }
 )";
 
-// {0}: float or double. Adding 0 makes -0 into 0.
+// {0}: float or double. Adding 0 turns -0 into 0.
 inline constexpr std::string_view kCppScalar = R"(FATHOM_SCENE_INLINE bool is_nan({0} a) {{ return a != a; }}
 FATHOM_SCENE_INLINE {0} select(bool mask, {0} yes, {0} no) {{ return mask ? yes : no; }}
 FATHOM_SCENE_INLINE {0} min({0} a, {0} b) {{ return a < b ? a : b; }}
@@ -152,7 +152,7 @@ FATHOM_SCENE_INLINE {0} mantissa({0} x) {{ return bits::mantissa(x); }}
 FATHOM_SCENE_INLINE {0} exponent({0} x) {{ return bits::exponent(x); }}
 )";
 
-// No pattern.
+// Not a pattern.
 inline constexpr std::string_view kCppOpen = R"(
 template <class T>
 struct Scene {

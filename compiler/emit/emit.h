@@ -1,9 +1,10 @@
-// A scene's distance function as source code of another language, for use without Fathom: one call an instruction,
-// the functions those call beside it. Every opcode's formula is recorded from its one meaning (vm/record/record.h).
+// Prints a scene's distance function as source code of another language, for use without Fathom: one call per
+// instruction, and the functions called. Every opcode's formula is recorded from its only definition
+// (vm/record/record.h).
 //
-// The function takes places of the scene, scene units, and gives distances in scene units. The text grows with the
-// program and with nothing else. Surfaces and materials are not in it. Tested by: tests/compiler/emit/emit_test.cpp,
-// tests/compiler/emitted_scenes_test.cpp
+// The function maps a point of the scene to a distance, both in scene units. The length of the text depends on the
+// program alone. Surfaces and materials are not part of the text.
+// Tested by: tests/compiler/emit/emit_test.cpp, tests/compiler/emitted_scenes_test.cpp
 #pragma once
 
 #include <string>
@@ -12,16 +13,16 @@
 
 namespace fathom::compiler {
 
-// A C++17 header of the standard library alone: `template <class T> T distance(T x, T y, T z)` in `name_space`, an
-// identifier. T is float, double or lanes of either; the head of the text says what such a type must supply. With
-// contraction off (-ffp-contract=off) it gives the machine's bits.
+// Prints a C++17 header that needs only the standard library: `template <class T> T distance(T x, T y, T z)` in
+// `name_space`, an identifier. T is float, double or a lane type of either; the head of the text states the
+// requirements on lane types. With contraction off (-ffp-contract=off) the function returns the machine's bits.
 std::string emit_cpp(const CompiledScene& scene, const std::string& name_space);
 
-// GLSL ES 3.00 and GLSL 3.30 alike, without #version, precision or main: `float NAME_distance(vec3 p)`, all its
-// functions named NAME_something.
+// Prints `float NAME_distance(vec3 p)` in both GLSL ES 3.00 and GLSL 3.30, without #version, precision or main. All
+// functions of the text are named NAME_something.
 std::string emit_glsl(const CompiledScene& scene, const std::string& name);
 
-// What is wrong with a name for these, or nothing.
+// Returns the problem with a name for the emitted code; empty when there is none.
 std::string problem_with_namespace(std::string_view name);
 std::string problem_with_glsl_name(std::string_view name);
 

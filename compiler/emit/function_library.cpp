@@ -13,13 +13,13 @@ namespace {
 using vm::Form;
 using vm::OpcodeInfo;
 
-// Numbers that a row takes; 0 when it takes a point.
+// Returns how many numbers a row takes; 0 when it takes a point.
 std::size_t numbers_of(const OpcodeInfo& row) {
   return row.form == Form::Unary ? 1 : row.form == Form::Binary ? 2 : row.form == Form::Ternary ? 3 : 0;
 }
 bool takes_point(const OpcodeInfo& row) { return numbers_of(row) == 0; }
 
-// The rows' names of the immediates that are parameters.
+// Returns the names of the row's immediates that become function parameters.
 std::vector<std::string> parameter_names(const Language& language, const OpcodeInfo& row) {
   std::vector<std::string> names;
   if (row.form == Form::Outline) return names;
@@ -29,8 +29,8 @@ std::vector<std::string> parameter_names(const Language& language, const OpcodeI
   return names;
 }
 
-// What stands for the parameters of the recorded function, with `operands` as the first and `floats` for the
-// immediates but for the integers.
+// Returns the texts of the recorded function's parameters: first `operands`, then `floats` for all other immediates
+// than integers.
 std::vector<Expression> parameter_texts(const Language& language, const OpcodeInfo& row,
                                         std::span<const Expression> operands, std::span<const std::string> floats) {
   std::vector<Expression> texts;
@@ -123,7 +123,7 @@ void FunctionLibrary::print_called(const vm::RecordedFunction& function) {
   for (const vm::Operation operation : called_functions(language_, function)) print_operation(operation);
 }
 
-// The name between the @ and the parenthesis.
+// Prints the function of an operation. Its name lies between the @ and the parenthesis of the spelling.
 void FunctionLibrary::print_operation(vm::Operation operation) {
   if (bool& printed = operations_[operation]; std::exchange(printed, true)) return;
   const vm::OperationInfo& row = vm::info(operation);

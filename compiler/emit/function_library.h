@@ -1,4 +1,4 @@
-// The functions an emitted file needs, each printed once and after those it calls.
+// The functions an emitted file needs, each printed once and after the functions it calls.
 #pragma once
 
 #include <map>
@@ -21,11 +21,11 @@ class FunctionLibrary {
  public:
   explicit FunctionLibrary(const Language& language) : language_(language) {}
 
-  // The instruction's result as an expression: a call, or the operation itself where there is only one. `operands`: a
-  // point, or one or two numbers.
+  // Returns the instruction's result as an expression: a call, or the bare operation if the formula has only one.
+  // `operands`: a point, or one to three numbers.
   Expression apply(vm::Opcode opcode, const std::vector<Expression>& operands, const Immediates& immediates);
 
-  // All functions so far.
+  // Returns all functions printed so far.
   const std::string& text() const { return text_; }
 
  private:
@@ -41,9 +41,9 @@ class FunctionLibrary {
   void print_operation(vm::Operation operation);
 
   const Language& language_;
-  std::map<std::vector<double>, Function> functions_;  // by opcode and what shapes the function
-  std::map<vm::Opcode, int> outlines_;                 // how many of them there are
-  std::map<vm::Operation, bool> operations_;           // that are printed
+  std::map<std::vector<double>, Function> functions_;  // by opcode and the immediates that shape the function
+  std::map<vm::Opcode, int> outlines_;                 // number of functions per outline
+  std::map<vm::Operation, bool> operations_;           // true once printed
   std::string text_;
 };
 

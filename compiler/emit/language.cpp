@@ -8,7 +8,7 @@
 namespace fathom::compiler {
 namespace {
 
-// Names that the machine's rows have and that mean something else in these languages, or within an emitted file.
+// Names in the rows of opcodes that mean something else in these languages, or within an emitted file.
 constexpr std::string_view kCppTaken[] = {"and", "or",     "not",    "xor",    "abs",   "any",      "ceil",
                                           "cos", "exp",    "floor",  "length", "log",   "mantissa", "max",
                                           "min", "number", "select", "sin",    "sqrt",  "exponent", "square",
@@ -23,7 +23,7 @@ std::string cpp_literal(double value) {
 }
 Expression cpp_number(std::string_view literal) { return {fmt::format("number({})", literal)}; }
 
-// The fewest digits that give the float, with a point: an integer is no float in GLSL.
+// Returns the fewest digits that give the float, with a point, because an integer is not a float in GLSL.
 std::string glsl_literal(double value) {
   const float rounded = static_cast<float>(value);
   if (std::isinf(rounded)) return rounded > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
@@ -50,7 +50,7 @@ const Language kCpp{
     .number = cpp_number,
     .taken = kCppTaken,
 };
-// In GLSL `const` is for what the compiler can compute.
+// GLSL allows `const` only for values that the compiler can compute.
 const Language kGlsl{
     .spelling = &vm::OperationInfo::glsl,
     .prefix = "scene_",

@@ -1,4 +1,5 @@
-// What the languages that `fathom emit` writes differ in, beside how operations are spelled (vm/record/operations.def).
+// Differences between the languages that `fathom emit` writes, in addition to the spelling of operations
+// (vm/record/operations.def).
 #pragma once
 
 #include <span>
@@ -9,7 +10,7 @@
 
 namespace fathom::compiler {
 
-// A piece of text that stands for a value.
+// The text of a value, and how tightly it binds.
 struct Expression {
   std::string text;
   vm::Binding binding = vm::Binding::Call;
@@ -17,18 +18,18 @@ struct Expression {
 
 struct Language {
   std::string_view vm::OperationInfo::*spelling;
-  std::string prefix;              // of the names of functions
-  std::string_view function_head;  // before a function's type
-  std::string_view constant;       // before the type of a value that does not change
+  std::string prefix;              // of function names
+  std::string_view function_head;  // before a function's return type
+  std::string_view constant;       // before the type of a named value
   std::string_view number_type, mask_type;
-  std::string_view immediate_type;          // of a function's parameters that are numbers of the scene
-  bool has_double;                          // beside float
+  std::string_view immediate_type;          // of function parameters that are numbers of the scene
+  bool has_double;                          // in addition to float
   std::string_view point;                   // pattern that makes a point of {0}, {1}, {2}
-  std::string (*literal)(double value);     // as an argument for such a parameter
-  Expression (*number)(std::string_view);   // a literal or such a parameter as a number
+  std::string (*literal)(double value);     // prints an argument for such a parameter
+  Expression (*number)(std::string_view);   // turns a literal or such a parameter into a number
   std::span<const std::string_view> taken;  // names that parameters and functions cannot have
 
-  // `name`, or one like it that is not taken.
+  // Returns `name`, or a similar name that is not taken.
   std::string free_name(std::string_view name) const;
 };
 

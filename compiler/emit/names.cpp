@@ -1,4 +1,4 @@
-// What names the emitted code can have.
+// Checks the names that a user gives to emitted code.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ constexpr std::string_view kKeywords[] = {
     "using",       "virtual",  "void",       "volatile",  "wchar_t",   "while",        "xor",
     "xor_eq"};
 
-// What is wrong with one name of a namespace, or nothing.
+// Returns the problem with one name of a namespace; empty when there is none.
 std::string problem_with_part(std::string_view name) {
   if (!is_identifier(name)) return "a namespace is made of letters, digits and _, with :: between";
   if (std::find(std::begin(kKeywords), std::end(kKeywords), name) != std::end(kKeywords))

@@ -14,7 +14,7 @@ using vm::Binding;
 using vm::RecordedFunction;
 using vm::Ref;
 
-constexpr std::size_t kLongestInline = 72;  // characters of an expression that is written within another
+constexpr std::size_t kLongestInline = 72;  // maximum number of characters of a nested expression
 
 std::string_view spelling_of(const Language& language, vm::Operation operation) {
   return vm::info(operation).*language.spelling;
@@ -23,7 +23,7 @@ bool is_call(const Language& language, vm::Operation operation) {
   return spelling_of(language, operation).starts_with('@');
 }
 
-// How often each statement's value is used, and each variable's; 0 for what need not be computed.
+// Number of uses of each statement's value, and of each loop variable; 0 for values that need not be computed.
 struct Uses {
   std::vector<int> statements, carried;
 };
@@ -50,7 +50,8 @@ Uses count_uses(const RecordedFunction& function) {
 Expression spell(const Language& language, const vm::Statement& statement, std::array<Expression, 3> operands) {
   const vm::OperationInfo& row = vm::info(statement.operation);
   if (row.binding != Binding::Call) {
-    // A right operand of the same binding is set apart, for floating-point sums are not associative; so is a sign's.
+    // A right operand of equal binding gets parentheses, because floating-point sums are not associative. An equally
+    // binding operand of a sign or a comparison gets them, too.
     for (std::size_t o = 0; o < row.operands; ++o) {
       const bool strictly = o > 0 || row.binding == Binding::Sign || row.binding == Binding::Comparison;
       if (operands[o].binding < row.binding || (strictly && operands[o].binding == row.binding)) {
@@ -99,12 +100,12 @@ class BodyPrinter {
  private:
   static constexpr int kNone = -1;
 
-  // 0 before the loop, 1 in it, 2 after.
+  // Returns 0 before the loop, 1 in the loop, 2 after it.
   int region(std::size_t statement) const {
     if (!function_.loop || statement < function_.loop->begin) return 0;
     return statement < function_.loop->end ? 1 : 2;
   }
-  // Where each value is used; what is used in another place than where it is computed gets a name.
+  // Finds the region in which each value is used. A value used outside of its own region gets a name.
   void find_regions() {
     const auto use = [&](const Ref& ref, int where) {
       if (ref.kind == Ref::Kind::Statement) users_[ref.index] = where;
@@ -114,7 +115,7 @@ class BodyPrinter {
       for (std::size_t o = 0; o < statement.count(); ++o) use(statement.operands[o], region(i));
     }
     for (const Ref& ref : function_.results) use(ref, region(function_.statements.size()));
-    // What is returned needs no name.
+    // A returned value needs no name.
     const Ref& last = function_.results.back();
     if (function_.results.size() == 1 && last.kind == Ref::Kind::Statement) returned_ = last.index;
     if (!function_.loop) return;
@@ -166,7 +167,7 @@ class BodyPrinter {
     line(fmt::format("for (int i = 0; i < {}; ++i) {{", function_.loop->count));
     in_loop_ = true;
   }
-  // All new values have names, so that none is read when it has changed already.
+  // Every new value has a name, so no variable is read after its change.
   void close_loop() {
     for (std::size_t i = 0; i < function_.loop->carried.size(); ++i) {
       if (uses_.carried[i] == 0) continue;

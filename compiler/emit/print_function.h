@@ -1,5 +1,5 @@
-// Recorded functions as text: nested expressions where a value is used once, named values elsewhere, a loop as a
-// loop.
+// Prints recorded functions. A value that is used once is nested in the expression that uses it, other values get
+// names, and a loop stays a loop.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 
 namespace fathom::compiler {
 
-// The lines between a function's braces, each ended and indented by `indent`; what it returns, too. `parameters` are
-// the texts of the function's parameters.
+// Returns the lines between a function's braces, including the return statement. Each line begins with `indent` and
+// ends with a newline. `parameters` are the texts of the function's parameters.
 std::string print_body(const Language& language, const vm::RecordedFunction& function,
                        std::span<const Expression> parameters, const std::string& indent);
 
-// The function's result as one expression, if it is no more than one operation.
+// Returns the function's result as one expression, if the function has at most one operation.
 std::optional<Expression> as_expression(const Language& language, const vm::RecordedFunction& function,
                                         std::span<const Expression> parameters);
 
-// The operations in it that call functions printed beside it, each once.
+// Returns the operations that call functions which the library must print, too, each once.
 std::vector<vm::Operation> called_functions(const Language& language, const vm::RecordedFunction& function);
 
 }  // namespace fathom::compiler

@@ -12,7 +12,8 @@ using vm::Form;
 using vm::Opcode;
 using vm::OpcodeInfo;
 
-// Text for the rest of a line: what could end a comment, or lengthen it as \ and the trigraph ??/ do, is replaced.
+// Returns text for the rest of a line. Replaces characters that could end a comment, or extend it as \ and the
+// trigraph ??/ do.
 std::string comment_text(std::string_view text) {
   std::string result(text);
   for (char& c : result) {
@@ -21,7 +22,7 @@ std::string comment_text(std::string_view text) {
   return result;
 }
 
-// Runs the program on names: both stacks and the locals hold the texts that stand for what the machine's would hold.
+// Runs the program on names: both stacks and the locals hold the texts of the values that the machine's would hold.
 class ProgramPrinter {
  public:
   ProgramPrinter(const Language& language, const vm::Program& program, FunctionLibrary& functions)
@@ -88,7 +89,7 @@ class ProgramPrinter {
 
   void function(const OpcodeInfo& row, std::uint32_t word, const Immediates& immediates) {
     const vm::Sources sources = vm::sources_of(word);
-    // The value of b is the top one, the constant of a the first.
+    // An operand b on the stack is the top value. A constant operand a is the first constant.
     std::vector<Expression> operands;
     const bool stack = row.form == Form::Binary && sources.b == vm::Source::Stack;
     const Expression top = stack ? pop() : Expression{};
@@ -115,7 +116,7 @@ class ProgramPrinter {
     }
   }
 
-  // What belongs to which surface is nothing to the distance.
+  // Instructions that tell surfaces apart do not affect the distance.
   void machine(const OpcodeInfo& row, std::uint32_t word) {
     if (row.opcode == Opcode::Drop) points_.pop_back();
     if (row.opcode == Opcode::Tee) locals_[vm::operand_of(word)] = values_.back();
@@ -127,7 +128,7 @@ class ProgramPrinter {
     values_.pop_back();
     return top;
   }
-  // A coordinate or a constant is its own name.
+  // A coordinate or a constant needs no name.
   void push(Expression value) {
     const bool plain = value.text.find_first_of(" (,") == value.text.npos || value.text.starts_with("number(");
     values_.push_back(plain ? std::move(value) : name_value(value));
@@ -151,7 +152,7 @@ class ProgramPrinter {
   std::vector<Expression> points_, values_, locals_;
   std::size_t at_ = 0, leading_ = 0;
   std::string out_;
-  std::string comment_;  // the instruction's symbol, when someone gave it a name
+  std::string comment_;  // the instruction's symbol, if the scene gives it a name
   int value_names_ = 0, point_names_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// A program as the body of a function: one named value an instruction, in the program's order.
+// Prints a program as the body of a function: one named value per instruction, in the program's order.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,12 +9,12 @@
 
 namespace fathom::compiler {
 
-// The lines between the braces of a function of the point `p`, a place of the scene whose `origin` is the program's
-// zero. The functions it calls are added to `functions`.
+// Returns the lines between the braces of a function of the point `p`, in scene coordinates. `origin` is the
+// program's zero in scene coordinates. Adds the functions that the lines call to `functions`.
 std::string print_program(const Language& language, const vm::VerifiedProgram& program, const glm::dvec3& origin,
                           FunctionLibrary& functions);
 
-// The scene's file and what is known of its field, for a comment of one line.
+// Describes the scene's file and its field, for a comment of one line.
 std::string describe(const CompiledScene& scene);
 
 }  // namespace fathom::compiler

@@ -1,5 +1,5 @@
-// Scenes that move: a scene that declares the parameter `time`, in seconds, or `frame`, a whole number, is animated.
-// Nothing else about the two is special: a still has their defaults, and -D sets them like any other.
+// Animated scenes. A scene is animated if it declares the parameter `time` (in seconds) or `frame` (a whole number).
+// The two parameters are otherwise ordinary: a still uses their defaults, and -D sets them.
 //
 //     auto animation = read_animation(source, diagnostics);
 //     compile(source, diagnostics, {.definitions = moment(*animation, 37, 37 / animation->fps)});   // frame 37
@@ -18,18 +18,19 @@
 
 namespace fathom::compiler {
 
-// What a scene says of its animation, at its parameters' defaults.
+// Animation settings of a scene, read with the parameters at their defaults.
 struct Animation {
-  bool time = false, frame = false;  // whether it declares that parameter
+  // True if the scene declares the parameter of that name.
+  bool time = false, frame = false;
   std::optional<int> frames;
-  double fps = kUsualFps;  // frames a second
+  double fps = kUsualFps;  // frames per second
 };
 
-// nullopt when `diagnostics` has errors afterwards. What a text imports is added to the source.
+// Returns nullopt if `diagnostics` contains errors afterwards. Adds the imports of a text scene to `source`.
 std::optional<Animation> read_animation(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
                                         const Definitions& definitions = {}, const ImportReader& imports = {});
 
-// The values of those of the two parameters that the scene declares, at a time in seconds.
+// Returns values for `time` (in seconds) and `frame`, each only if the scene declares that parameter.
 Definitions moment(const Animation& animation, int frame, double time);
 
 }  // namespace fathom::compiler

@@ -15,7 +15,8 @@ namespace fathom::compiler {
 
 namespace {
 
-// A scene of another format as text. It is checked by itself, so that what is wrong with it is said of its own lines.
+// Converts a scene of another format to text. Checks that scene separately first, so that error messages refer to its
+// own lines.
 TextMaker text_maker(const Limits& limits) {
   return [&limits](const Source& scene, Diagnostics& diagnostics) -> std::optional<std::string> {
     Source source = scene;
@@ -56,7 +57,7 @@ std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, co
   std::optional<syntax::File> file = read_json(source, diagnostics, limits);
   if (!file) return std::nullopt;
   if (!is_nested_nodes(*file)) return ReadScene{SceneFormat::Scene, std::move(*file)};
-  // What is already wrong, such as a property given twice, must not be lost.
+  // Keep errors that are already reported, such as a duplicate property.
   if (diagnostics.has_errors()) return std::nullopt;
   std::optional<syntax::File> scene = from_nested_nodes(*file, diagnostics);
   if (!scene) return std::nullopt;

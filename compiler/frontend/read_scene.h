@@ -1,4 +1,4 @@
-// The front ends together: which of the formats a text is in, and the scene it describes.
+// Entry point of the front ends: detects the format of a source and reads the scene in it.
 // Tested by: tests/compiler/frontend/formats/expression_list_test.cpp, tests/compiler/frontend/formats/nested_nodes_test.cpp
 #pragma once
 
@@ -16,15 +16,16 @@ enum class SceneFormat { Scene, Text, ExpressionList, NestedNodes };
 
 struct ReadScene {
   SceneFormat format;
-  syntax::File file;  // what an ordinary scene file would have said
-  std::optional<Scope> parameters = {};  // of a text, which is read with their values
+  syntax::File file;  // the scene as a JSON scene file would describe it
+  // Text scenes only: the parameters, whose values the text was evaluated with.
+  std::optional<Scope> parameters = {};
 };
 
-// nullopt after reporting an error. What a text imports is added to the source.
+// Returns nullopt after reporting an error. Adds the imports of a text scene to `source`.
 std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
                                     const Definitions& definitions = {}, const ImportReader& imports = {});
 
-// A text as a JSON scene that keeps its parameters (frontend/text/read_text.h).
+// Reads a text scene as a JSON scene that keeps its parameters (frontend/text/read_text.h).
 std::optional<KeptScene> read_kept(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
                                    const ImportReader& imports = {});
 

@@ -9,7 +9,8 @@
 namespace fathom::compiler {
 namespace {
 
-// Of a lamp behind the camera's left shoulder: the way to it, what it gives to what faces it, and half of its disc.
+// Light behind the camera's left shoulder: direction towards it, irradiance on a surface that faces it, and half the
+// angle that its disc subtends, in degrees.
 constexpr glm::dvec3 kToLamp{-0.4, 1, 0.7};
 constexpr double kIrradiance = 2.5, kHalfDisc = 6;
 constexpr double kGroundColor = 0.4;
@@ -47,7 +48,8 @@ bool wants_stage(const ReadScene& scene) {
 
 void set_stage(ReadScene& scene, const CompiledScene& compiled) {
   if (!wants_stage(scene) || compiled.extent.empty()) return;
-  // The box of nested nodes is that of their primitives; a formula's is the format's, whatever it fills of it.
+  // For nested nodes `extent` is the bounding box of the primitives. For an expression list it is the fixed box of
+  // the format, however little of it the solid fills, so search for the lowest point.
   const Box& box = compiled.extent;
   const double bottom = scene.format == SceneFormat::ExpressionList ? lowest(compiled.distance, box) : box.lo.y;
   add_stage(scene.file, bottom + compiled.origin.y);

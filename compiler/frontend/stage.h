@@ -1,6 +1,7 @@
-// What a model from elsewhere is looked at with, since its format has none of it: a ground that it stands on, a lamp
-// with soft shadows, and a camera that has all of it in the picture. A drawing, which is seen from the front without
-// perspective, needs nothing. Tested by: tests/compiler/frontend/stage_test.cpp, tests/runtime/cli/input/cli_import_test.cpp
+// Default staging of an imported model, whose file format describes only geometry: a ground plane under the model, a
+// directional light with soft shadows, and a camera that frames the whole model. A drawing (seen from the front
+// without perspective) needs no staging.
+// Tested by: tests/compiler/frontend/stage_test.cpp, tests/runtime/cli/input/cli_import_test.cpp
 #pragma once
 
 #include "compiler/frontend/read_scene.h"
@@ -8,11 +9,11 @@
 
 namespace fathom::compiler {
 
-// Whether it is a model from elsewhere, and no drawing.
+// True if the scene is an imported model, not a drawing.
 bool wants_stage(const ReadScene& scene);
 
-// Adds the ground, below `compiled`, which is the model alone, and the lamp to what a front end made of it, and takes
-// its camera out. Nothing where the model has no end or is a drawing.
+// Adds the ground and the light to the scene that a front end read, and removes its camera. `compiled` is the model
+// alone: the ground goes below its lowest point. Does nothing if the model is unbounded or a drawing.
 void set_stage(ReadScene& scene, const CompiledScene& compiled);
 
 }  // namespace fathom::compiler

@@ -59,8 +59,8 @@ Box image(const Affine& a, const Box& box) {
 
 namespace {
 
-// The largest singular value, by Jacobi's method on the symmetric matrix of the rows' dot products (Golub & Van Loan,
-// "Matrix Computations", 8.5).
+// Returns the largest singular value, by Jacobi's method on the symmetric matrix of the rows' dot products (Golub &
+// Van Loan, "Matrix Computations", 8.5).
 double most_stretch(const Affine& a) {
   double m[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -90,7 +90,8 @@ double most_stretch(const Affine& a) {
 
 }  // namespace
 
-// The least through the inverse: squaring loses the digits of a small singular value beside a large one.
+// Computes the smallest singular value from the inverse: squaring loses the digits of a small singular value next to
+// a large one.
 Stretch stretch(const Affine& a) { return {1 / most_stretch(inverse(a)), most_stretch(a)}; }
 
 bool is_axis_aligned(const Affine& a) {

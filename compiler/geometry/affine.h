@@ -22,18 +22,19 @@ struct Affine {
 
 inline const Affine kIdentity{{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)}, glm::dvec3(0)};
 
-// a after b: p -> a(b(p)).
+// Returns a after b: p -> a(b(p)).
 Affine compose(const Affine& a, const Affine& b);
-// The linear part must be invertible.
+// Returns the inverse map. The linear part must be invertible.
 Affine inverse(const Affine& a);
-// The smallest axis-aligned box around the image of `box`; infinite sides stay infinite only along axes they reach.
+// Returns the smallest axis-aligned box around the image of `box`. An infinite side makes only those axes infinite
+// that it maps to.
 Box image(const Affine& a, const Box& box);
-// Smallest and largest stretch of the linear part (its extreme singular values).
+// Smallest and largest factor by which the linear part stretches a vector (its extreme singular values).
 struct Stretch {
   double least, most;
 };
 Stretch stretch(const Affine& a);
-// Whether every row has a single non-zero entry: boxes map to boxes.
+// True if every row has a single non-zero entry, so that boxes map to boxes.
 bool is_axis_aligned(const Affine& a);
 
 }  // namespace fathom::compiler

@@ -6,8 +6,8 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::uint32_t kLeaf = 8;  // boxes that are looked at one by one
-constexpr double kEndless = 1e100;  // stands for an infinite side
+constexpr std::uint32_t kLeaf = 8;  // maximum number of boxes in a leaf, which are tested one by one
+constexpr double kEndless = 1e100;  // replaces an infinite side
 
 double middle(const Box& box, int axis) {
   return std::clamp(box.lo[axis], -kEndless, kEndless) + std::clamp(box.hi[axis], -kEndless, kEndless);
@@ -20,7 +20,7 @@ BoxTree::BoxTree(std::span<const Box> boxes) : boxes_(boxes) {
   if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
-// Halves the boxes by their middles, along the axis on which these are spread most.
+// Splits the boxes into halves at the median of their centres, along the axis on which the centres are spread most.
 void BoxTree::build(std::uint32_t first, std::uint32_t count) {
   const std::size_t self = nodes_.size();
   nodes_.push_back({{}, first, count, 0});

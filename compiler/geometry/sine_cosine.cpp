@@ -5,7 +5,7 @@
 
 namespace fathom::compiler {
 
-// The angle's rest from the nearest quarter turn, at most pi/4, goes through the Taylor series, whose terms fall
+// Evaluates the Taylor series at the angle's difference from the nearest quarter turn, at most pi/4. The terms fall
 // below 2^-53 after x^18/18!.
 SineCosine sine_cosine(double degrees) {
   const double turned = std::fmod(degrees, 360.0);

@@ -1,4 +1,4 @@
-// Sine and cosine of an angle in degrees, the same on every machine, which libm's are not.
+// Sine and cosine of an angle in degrees, the same on every machine, unlike those of libm.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace fathom::compiler {
 
-inline constexpr double kDegree = std::numbers::pi / 180;  // radians
+inline constexpr double kDegree = std::numbers::pi / 180;  // radians per degree
 
 struct SineCosine {
   double sine, cosine;

@@ -8,7 +8,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr NodeId kFree = 0xffffffff;  // no node, in the table
+constexpr NodeId kFree = 0xffffffff;  // marks a free entry of the table
 
 std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   // The finaliser of splitmix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -29,7 +29,8 @@ std::uint64_t hash_of(Kind kind, std::span<const double> params, std::span<const
 }  // namespace
 
 NodeId Graph::add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const Origin& origin) {
-  // Copies: the spans may point into this graph, whose storage is about to move. Adding 0.0 turns -0.0 into 0.0.
+  // Copies the spans, which may point into this graph, because the graph's storage is about to move. Adding 0.0 turns
+  // -0.0 into 0.0.
   new_params_.assign(params.begin(), params.end());
   for (double& param : new_params_) param += 0.0;
   new_children_.assign(children.begin(), children.end());
@@ -73,7 +74,7 @@ bool Graph::equal(NodeId id, Kind kind, std::span<const double> params, std::spa
   const Node& node = nodes_[id];
   if (node.kind != kind || node.param_count != params.size() || node.child_count != children.size()) return false;
   for (std::size_t i = 0; i < params.size(); ++i) {
-    // By bits, so that a NaN equals itself.
+    // Compares bits, so that a NaN equals itself.
     if (std::bit_cast<std::uint64_t>(params_[node.first_param + i]) != std::bit_cast<std::uint64_t>(params[i])) {
       return false;
     }

@@ -1,11 +1,11 @@
 // The scene's DAG: hash-consed nodes, each a kind, its parameters and its children.
 //
-// add() is the only way to make a node and returns the existing one when an equal one is there, so equal subtrees are
-// one node whatever names the scene gave them. Children are always made before their parents: a loop over ids in
-// ascending order sees every child first, and no pass needs recursion.
+// add() is the only way to make a node, and returns the existing node if the graph has an equal one. Equal subtrees
+// are therefore one node whatever names the scene gave them. Children are always made before their parents: a loop
+// over ids in ascending order visits every child first, and no pass needs recursion.
 //
-// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three); what
-// the compiler derives for the row follows them.
+// Parameters are doubles in the order of the kind's row in compiler/shapes/node_table.h (a vector takes three),
+// followed by the numbers that the compiler derives for the row.
 // Tested by: tests/compiler/graph/graph_test.cpp
 #pragma once
 
@@ -99,17 +99,17 @@ enum class Kind : std::uint8_t {
   Taper,
   Displacement,
   Expression,
-  // Transform: 12 numbers, rows of the affine map from the parent's space to the child's, then the factor the child's
-  // distance is multiplied by. Written in files as the properties scale, rotate and translate.
+  // Transform: 12 numbers, the rows of the affine map from the parent's space to the child's, then the factor of the
+  // child's distance. Scene files write it as the properties scale, rotate and translate.
   Transform,
-  // Displaced: a distance plus a formula. An Add whose operands keep their order, for the surface is the first's.
+  // Displaced: a distance plus a formula. Unlike Add it keeps its operands' order, because the first has the surface.
   Displaced,
-  // Bounded: a formula as a distance, within a box (shapes/functions.cpp); what Displacement and Expression become.
+  // Bounded: a formula as a distance within a box (shapes/functions.cpp). Displacement and Expression become Bounded.
   Bounded,
-  // Scaled: the child's distance times params[0] > 0, so that it is a distance again where the child's changes
-  // faster.
+  // Scaled: the child's distance times params[0] > 0, which makes it a distance again if the child's changes faster
+  // than a distance.
   Scaled,
-  // combinators; n children, all but the hard ones fold from the left
+  // combinators of n children, which all except the hard ones fold from the left
   Union,
   Intersection,
   Subtraction,
@@ -127,7 +127,8 @@ enum class Kind : std::uint8_t {
   StairsIntersection,
   StairsSubtraction,
   Morph,
-  // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless painted further in.
+  // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless a Paint further in says
+  // otherwise.
   Paint,
   // functions of numbers, for formulas
   X,
@@ -170,12 +171,12 @@ enum class Kind : std::uint8_t {
 
 inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;
 
-// A blend narrower than this changes no float and counts as none.
+// A blend narrower than this changes no float, so the compiler treats it as no blend.
 inline constexpr double kLeastBlend = 1e-30;
 
 using NodeId = std::uint32_t;
 
-// Where a node was first written, and the name the scene gave it ("" when none).
+// Place where the scene first writes a node, and the name that the scene gives it ("" when none).
 struct Origin {
   Span span;
   std::string name;
@@ -204,9 +205,10 @@ class Graph {
   std::vector<Node> nodes_;
   std::vector<double> params_;
   std::vector<NodeId> children_;
-  // By hash, twice as many places as nodes or more: a node is at the first free place from that of its hash.
+  // Hash table with linear probing and at least twice as many entries as nodes: a node is in the first entry, from
+  // that of its hash on, that was free when the node was added.
   std::vector<NodeId> table_;
-  std::vector<double> new_params_;  // of the node that add() is asked for
+  std::vector<double> new_params_;  // copy of the arguments of add()
   std::vector<NodeId> new_children_;
 };
 

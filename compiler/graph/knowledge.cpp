@@ -19,7 +19,7 @@ std::string_view name(Exactness exactness) {
 }
 
 std::string describe(const Box& box) {
-  // Four digits, and more of a side that is far from zero for its length.
+  // Prints four digits, and more for a side that is far from zero compared with its length.
   const auto side = [](double lo, double hi) {
     int digits = 4;
     for (double ratio = std::max(std::abs(lo), std::abs(hi)) / (hi - lo); ratio >= 100 && digits < 17; ratio /= 10) {

@@ -1,4 +1,4 @@
-// The frame of every pass: rebuilds what the root reaches, children before parents, each node through one function.
+// The loop of every pass: rebuilds the nodes that the root reaches, children before parents, by one function.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace fathom::compiler {
 
-// Which nodes the root reaches. [node]
+// [node] True if the root reaches the node.
 inline std::vector<bool> reachable(const Scene& scene) {
   std::vector<bool> reached(scene.graph.size(), false);
   reached[scene.root] = true;
@@ -18,8 +18,8 @@ inline std::vector<bool> reachable(const Scene& scene) {
   return reached;
 }
 
-// make(out, id, children) returns the node of `out` that takes the place of node `id` of `in`; `children` are those
-// of `id` as already rebuilt.
+// make(out, id, children) returns the node of `out` that replaces node `id` of `in`. `children` are the rebuilt
+// children of `id`.
 template <class Make>
 Scene rewrite(const Scene& in, const Make& make) {
   Scene out;
@@ -35,7 +35,7 @@ Scene rewrite(const Scene& in, const Make& make) {
   return out;
 }
 
-// The node as it was, with its rebuilt children.
+// Adds the node unchanged, with its rebuilt children.
 inline NodeId keep(const Scene& in, Graph& out, NodeId id, const std::vector<NodeId>& children) {
   return out.add(in.graph.kind(id), in.graph.params(id), children, in.graph.origin(id));
 }

@@ -32,14 +32,14 @@ std::vector<Step> steps_of(vm::Program& program) {
       const bool integer = i >= own && vm::is_integer_immediate(row, static_cast<int>(i - own));
       step.immediates.push_back(integer ? program.words[i] : program.wide[i]);
     }
-    if (row.form == Form::Outline) step.operand = 0;  // append counts the groups
+    if (row.form == Form::Outline) step.operand = 0;  // append() counts the groups
     steps.push_back(std::move(step));
     at = end;
   }
   return steps;
 }
 
-// What can stand for the value that the step pushes; Stack when nothing can.
+// Returns the operand source that can replace the value that the step pushes, or Stack if none can.
 vm::Source source_of(const Step& step) {
   switch (step.opcode) {
     case Opcode::X:
@@ -77,7 +77,7 @@ class Fusing {
     return step.form() == Form::Shape && (step.operand & without) == 0;
   }
 
-  // Of translate, shape, drop: the shape, moved.
+  // Fuses translate, shape, drop into a moved shape.
   bool move_shape() {
     if (!is_shape(1, vm::kMoved | vm::kJoined) || out_.size() < 2) return false;
     if (out_[out_.size() - 2].opcode != Opcode::Translate) return false;
@@ -90,7 +90,7 @@ class Fusing {
     return true;
   }
 
-  // Of shape, min: the shape, joined.
+  // Fuses shape, min into a joined shape.
   bool join_shape() {
     if (!is_shape(1, vm::kJoined) || source_of(out_.back()) != vm::Source::Stack) return false;
     out_.back().operand |= vm::kJoined;
@@ -104,14 +104,16 @@ class Fusing {
     step.operand = vm::operand_of(sources);
   }
 
-  // The operand that the last step pushes, taken out of the program if something can stand for it.
+  // Removes the last step from the program if another source can replace the operand that the step pushes. Returns
+  // the operand's source.
   vm::Source take_operand(Step& step, vm::Sources& sources) {
     if (out_.empty()) return vm::Source::Stack;
     const Step& last = out_.back();
     const vm::Source source = source_of(last);
     if (source == vm::Source::Stack) return source;
     if (source == vm::Source::Local) {
-      if (sources.b == vm::Source::Local && sources.local != last.operand) return vm::Source::Stack;  // room for one
+      // an instruction has room for one local
+      if (sources.b == vm::Source::Local && sources.local != last.operand) return vm::Source::Stack;
       sources.local = last.operand;
     }
     step.immediates.insert(step.immediates.begin(), last.immediates.begin(), last.immediates.end());

@@ -20,7 +20,7 @@ namespace {
 
 using vm::Opcode;
 
-// Where a value is wanted: a node at one of the points. Points are numbered; 0 is the caller's.
+// A node's value at one of the points. Points are numbered, and number 0 is the caller's point.
 struct Use {
   NodeId node;
   std::uint32_t point;
@@ -32,20 +32,21 @@ struct UseHash {
   }
 };
 
-// A value of the program to be, and what is known of it before code is made for it.
+// A value of the future program, with the facts that are known before its code is emitted.
 struct LoweredValue {
   Use use;
   std::uint32_t uses = 0;
-  std::uint32_t height = 1;                               // value slots its evaluation needs, fused
-  std::uint32_t first_operand = 0, operand_count = kNew;  // in the table of operands
+  // stack slots for values that the evaluation needs after fusion
+  std::uint32_t height = 1;
+  std::uint32_t first_operand = 0, operand_count = kNew;  // range of Lowering::operands_
   std::optional<std::uint32_t> local = std::nullopt;
 
-  static constexpr std::uint32_t kNew = 0xffffffff;  // not yet looked into
+  static constexpr std::uint32_t kNew = 0xffffffff;  // the operands are not listed yet
 };
 using ValueId = std::uint32_t;
 
-// How the nodes of one lowering are evaluated. Without parameters all nodes of a kind are alike, as the functions of
-// formulas are, of which there are thousands.
+// Code of the nodes of one lowering. Nodes of a kind without parameters share their code, e.g. the functions of
+// formulas, of which a scene can have thousands.
 class Codes {
  public:
   explicit Codes(const Graph& graph) : graph_(graph), shared_(kKindCount) {}
@@ -67,9 +68,9 @@ class Codes {
   std::vector<std::shared_ptr<const Code>> shared_;  // [kind]
 };
 
-// Whether a program has more than `most` values: pairs of a node and a point. Points are told apart by a hash of how
-// they were made, which takes a tenth of the time and of the memory that Lowering takes; a text of a few lines can
-// ask for any number.
+// True if a program has more than `most` values, which are pairs of a node and a point. A hash of the instructions
+// that made a point identifies the point, which takes a tenth of the time and of the memory that Lowering takes. A
+// text of a few lines can ask for any number of values.
 class ValueCounter {
  public:
   ValueCounter(const Graph& graph, std::size_t most) : graph_(graph), most_(most) {}
@@ -141,9 +142,9 @@ class ValueCounter {
   const Graph& graph_;
   const std::size_t most_;
   std::size_t count_ = 0;
-  std::unordered_map<NodeId, std::unique_ptr<Chains>> chains_;  // of those with one child, once asked for
+  std::unordered_map<NodeId, std::unique_ptr<Chains>> chains_;  // of nodes with one child, made on demand
   std::vector<std::pair<NodeId, std::uint64_t>> pending_;
-  std::vector<std::uint64_t> table_;  // hashes of the values so far; 0 is a free place
+  std::vector<std::uint64_t> table_;  // hashes of the values so far; 0 marks a free entry
 };
 
 class Lowering {
@@ -162,8 +163,8 @@ class Lowering {
   }
 
  private:
-  // Counts uses and computes heights, operands before operators; stops early when there are too many. The DAG may be
-  // as deep as it has nodes, so neither this nor emit() recurses.
+  // Counts uses and computes heights, operands before operators. Stops early if there are too many values. The DAG
+  // may be as deep as its number of nodes, so neither plan() nor emit() recurses.
   void plan(ValueId root) {
     struct PlanStep {
       ValueId value;
@@ -191,7 +192,7 @@ class Lowering {
     }
   }
 
-  // A coordinate or a constant is as near as a local that holds it, and can be an operand (compiler/lower/fuse.h).
+  // True for a coordinate or a constant, which is as cheap as a local and can be an operand (compiler/lower/fuse.h).
   bool is_free(NodeId node, const Code& code) const {
     return graph_.children(node).empty() && code.after.size() == 1 && vm::info(code.after[0].opcode).cost == 0;
   }
@@ -200,11 +201,11 @@ class Lowering {
     order_evaluation(code, operands);
     std::uint32_t result = 1;
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      // After the first, a fold holds one value while it evaluates the next.
+      // After its first operand, a fold holds one value while it evaluates the next.
       const auto held = static_cast<std::uint32_t>(code.all_at_once ? i : std::min<std::size_t>(i, 1));
       result = std::max(result, values_[order_[i]].height + held);
     }
-    // What follows may push one value of its own.
+    // The instructions after the operands may push one value.
     const bool pushes = std::any_of(code.after.begin(), code.after.end(),
                                     [](const Instruction& i) { return vm::info(i.opcode).effect.values_change > 0; });
     return std::max(result, pushes && !operands.empty() ? 2u : 1u);
@@ -216,7 +217,7 @@ class Lowering {
     return entry->second;
   }
 
-  // A combinator's children at the caller's point; an only child at each of the node's points.
+  // Lists a combinator's children at the caller's point, or an only child at each of the node's points.
   void list_operands(ValueId id, const Code& code) {
     const Use use = values_[id].use;
     const auto first = static_cast<std::uint32_t>(operands_.size());
@@ -235,7 +236,7 @@ class Lowering {
     return std::span(operands_).subspan(values_[id].first_operand, values_[id].operand_count);
   }
 
-  // The number of the point that a chain of instructions makes of `point`.
+  // Returns the number of the point that a chain of instructions makes of `point`.
   std::uint32_t mapped(std::uint32_t point, const std::vector<Instruction>& chain) {
     for (const Instruction& instruction : chain) {
       const auto next = static_cast<std::uint32_t>(points_.size() + 1);
@@ -244,9 +245,9 @@ class Lowering {
     return point;
   }
 
-  // Puts the operands into the order of their evaluation. The one that needs most stack first keeps the stack low
-  // (Sethi & Ullman, "The generation of optimal code for arithmetic expressions", 1970); what folds from the left
-  // keeps its order but for the first two, of which true says that they are swapped.
+  // Puts the operands into the order of their evaluation. Evaluating the operand with the largest stack first keeps
+  // the stack low (Sethi & Ullman, "The generation of optimal code for arithmetic expressions", 1970). A fold from
+  // the left keeps its order, except that its first two operands may be swapped. Returns true if they are swapped.
   bool order_evaluation(const Code& code, std::span<const ValueId> operands) {
     order_.assign(operands.begin(), operands.end());
     const auto higher = [&](ValueId a, ValueId b) { return values_[a].height > values_[b].height; };
@@ -259,13 +260,13 @@ class Lowering {
     return swapped;
   }
 
-  // What is still to be done, in the order of a stack: evaluate the value; append `instructions` of its code; forget
-  // the points that these made; take the least of two values; or remember the value in a local.
+  // Kinds of pending tasks, which form a stack: evaluate the value; append `instructions` of its code; drop the
+  // points that these instructions made; take the minimum of two values; store the value in a local.
   enum class Step { PlanStep, Append, Drop, Least, Share };
   struct Task {
     ValueId value;
     Step step = Step::PlanStep;
-    std::shared_ptr<const Code> code = nullptr;  // keeps the instructions
+    std::shared_ptr<const Code> code = nullptr;  // keeps the instructions alive
     const std::vector<Instruction>* instructions = nullptr;
   };
 
@@ -309,7 +310,7 @@ class Lowering {
       alter(id, code);
     }
     if (value.uses > 1 && !is_free(node, *code)) tasks_.push_back({id, Step::Share});
-    std::reverse(tasks_.begin() + first, tasks_.end());  // the first on top
+    std::reverse(tasks_.begin() + first, tasks_.end());  // puts the first task on top
   }
 
   void alter(ValueId id, const std::shared_ptr<const Code>& code) {
@@ -321,7 +322,7 @@ class Lowering {
       if (!chain.empty()) tasks_.push_back({id, Step::Drop, code, &chain});
       if (i > 0) tasks_.push_back({id, Step::Least});
     }
-    // A combinator of one is that one.
+    // A combinator of one operand is that operand.
     const bool combinator = spec(graph_.kind(values_[id].use.node)).category == Category::Combinator;
     if (!combinator) tasks_.push_back({id, Step::Append, code, &code->after});
   }
@@ -358,7 +359,7 @@ class Lowering {
   std::vector<LoweredValue> values_;
   std::vector<ValueId> operands_;  // of all values
   std::unordered_map<Use, ValueId, UseHash> ids_;
-  std::vector<ValueId> order_;  // as order_evaluation() left it
+  std::vector<ValueId> order_;  // result of order_evaluation()
   std::vector<Task> tasks_;
   std::map<std::tuple<std::uint32_t, Opcode, std::vector<double>>, std::uint32_t> points_;
   vm::Program program_;

@@ -17,7 +17,7 @@ namespace {
 
 using Children = std::span<const NodeId>;
 
-// What a function makes of constants, computed by the machine itself: folding changes no bit.
+// Evaluates a function of constants on the machine itself, so that folding changes no bit.
 double evaluate(Kind kind, std::span<const double> operands) {
   vm::Program program;
   for (const double operand : operands) program.append(vm::Opcode::Constant, 0, {operand}, {});
@@ -37,7 +37,7 @@ class Rules {
  public:
   Rules(Graph& graph, const Origin& origin) : graph_(graph), origin_(origin) {}
 
-  // The node that stands for the function, which may be an operand.
+  // Returns the node that replaces the function, which may be an operand.
   NodeId make(Kind kind, Children operands) {
     std::vector<double> constants;
     for (const NodeId operand : operands) {
@@ -45,7 +45,7 @@ class Rules {
     }
     if (!operands.empty() && constants.size() == operands.size()) {
       const double value = evaluate(kind, constants);
-      // What is not finite cannot stand in a program; it is left to happen where it is used.
+      // A program cannot contain a constant that is not finite, so the operation stays in the graph.
       if (fits_float(value)) return constant_node(value);
     }
     const std::optional<NodeId> simpler =
@@ -61,7 +61,7 @@ class Rules {
   bool is(NodeId id, double value) const { return constant(id) == value; }
   NodeId constant_node(double value) { return graph_.add(Kind::Constant, std::array<double, 1>{value}, {}, origin_); }
   NodeId node(Kind kind, std::initializer_list<NodeId> operands) { return make(kind, std::vector<NodeId>(operands)); }
-  // The operand of `id` when it is a `kind`.
+  // Returns the operand of `id` if `id` is of the given kind.
   std::optional<NodeId> under(Kind kind, NodeId id) const {
     if (graph_.kind(id) != kind) return std::nullopt;
     return graph_.children(id)[0];

@@ -12,7 +12,7 @@
 namespace fathom::compiler {
 namespace {
 
-// Operands with more instructions than this are not run to see whether they hold another.
+// Maximum instructions of an operand that is evaluated to see if it contains another operand.
 constexpr std::size_t kLongestProgram = 256;
 
 }  // namespace

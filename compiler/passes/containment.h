@@ -1,5 +1,5 @@
-// Which operands of hard combinators change nothing, as far as boxes and one look with intervals show: what
-// passes/cull.cpp leaves out and compiler/analysis/lints.cpp warns of.
+// Operands of hard combinators that change nothing, as far as boxes and one interval evaluation show. passes/cull.cpp
+// removes these operands, and compiler/analysis/lints.cpp warns about them.
 // Tested by: tests/compiler/passes/passes_test.cpp, tests/golden/diagnostics (W0501, W0502, W0503)
 #pragma once
 
@@ -14,27 +14,27 @@
 
 namespace fathom::compiler {
 
-// Of one graph, which may grow between calls.
+// Works on one graph, which may grow between calls.
 class Containment {
  public:
-  // Pairs of operands are compared in lists up to this long; longer ones are left to the renderer.
+  // Maximum length of a list whose operands are compared in pairs; the renderer deals with longer lists.
   static constexpr std::size_t kLongestList = 512;
 
-  // An arm of a union that lies wholly inside another.
+  // An arm of a union that lies wholly inside another arm.
   struct Hidden {
     NodeId arm, within;
   };
   std::vector<Hidden> hidden_arms(const Graph& graph, std::span<const NodeId> arms);
 
-  // Operands of a subtraction, after the first, that do not reach its box.
+  // Returns the operands of a subtraction, after the first, that do not reach the box of the first.
   std::vector<NodeId> idle_cuts(const Graph& graph, std::span<const NodeId> operands);
 
-  // An intersection's operands without those that hold all the others' box and cut nothing off.
+  // Returns an intersection's operands without those that contain the whole box of the others and so cut nothing off.
   std::vector<NodeId> without_idle_limits(const Graph& graph, std::span<const NodeId> operands);
 
-  // Whether the solid's inside contains the whole box; false when that is not seen at one look.
+  // True if the solid's inside contains the whole box. False if one interval evaluation cannot prove so.
   bool holds(const Graph& graph, NodeId solid, const Box& box);
-  // Whether the solid keeps out of the whole box; false likewise.
+  // True if the solid avoids the whole box. False if one interval evaluation cannot prove so.
   bool avoids(const Graph& graph, NodeId solid, const Box& box);
 
   const Knowledge& known(const Graph& graph, NodeId id);

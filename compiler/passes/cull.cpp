@@ -24,7 +24,7 @@ class Culling {
   }
 
  private:
-  // Arms of a union that lie wholly inside another do not show.
+  // Removes the arms of a union that lie wholly inside another arm, which never show.
   std::vector<NodeId> without_hidden(const Graph& graph, const std::vector<NodeId>& arms) {
     std::vector<NodeId> hidden;
     for (const Containment::Hidden& pair : containment_.hidden_arms(graph, arms)) hidden.push_back(pair.arm);
@@ -32,7 +32,7 @@ class Culling {
     return kept.empty() ? arms : kept;
   }
 
-  // Cuts that do not reach what is left.
+  // Removes the cuts that do not reach the base.
   std::vector<NodeId> without_idle_cuts(const Graph& graph, const std::vector<NodeId>& operands) {
     std::vector<NodeId> kept =
         without({operands.begin() + 1, operands.end()}, containment_.idle_cuts(graph, operands));
@@ -40,7 +40,7 @@ class Culling {
     return kept;
   }
 
-  // `some` lists what to leave out, in the order of `all`.
+  // Returns `all` without `some`, which are in the order of `all`.
   static std::vector<NodeId> without(const std::vector<NodeId>& all, const std::vector<NodeId>& some) {
     std::vector<NodeId> kept;
     auto next = some.begin();
@@ -56,7 +56,7 @@ class Culling {
 
   const Scene& scene_;
   const std::vector<bool> free_;
-  Containment containment_;  // of the graph that is made
+  Containment containment_;  // of the graph being made
 };
 
 }  // namespace

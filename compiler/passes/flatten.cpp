@@ -6,13 +6,13 @@
 namespace fathom::compiler {
 namespace {
 
-// Whether operand number `i` of such a node may stand among its own operands where it is of the same kind.
+// True if a node of this kind may replace its operand number `i`, when of the same kind, by that operand's operands.
 bool takes_up(Kind kind, std::size_t i) {
   return kind == Kind::Union || kind == Kind::Intersection || (kind == Kind::Subtraction && i == 0);
 }
 
-// The nodes that go up into the only one that uses them. What several use stays: otherwise a list could hold one node
-// as often as there are ways to it, which n nodes can have 2^n of. [node]
+// [node] True if the node merges into its only user. A node with several users stays: otherwise a list could hold the
+// node as often as there are paths to the node, and n nodes can have 2^n paths.
 std::vector<bool> taken_up(const Scene& scene, const std::vector<bool>& reached) {
   std::vector<std::uint32_t> uses(scene.graph.size(), 0);
   std::vector<bool> taken(scene.graph.size(), false);

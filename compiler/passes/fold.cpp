@@ -13,7 +13,7 @@ bool is_identity_transform(std::span<const double> transform) {
   return std::equal(kIdentityParams.begin(), kIdentityParams.end(), transform.begin());
 }
 
-// An offset of `child` by `radius`.
+// Makes an offset of `child` by `radius`.
 NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId child) {
   if (radius == 0) return child;
   const Origin& origin = in.graph.origin(id);

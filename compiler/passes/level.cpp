@@ -10,7 +10,7 @@ namespace fathom::compiler {
 
 Scene level(const Scene& scene) {
   const std::vector<bool> free = only_sign_counts(scene);
-  std::vector<Knowledge> known;  // of the graph that is made
+  std::vector<Knowledge> known;  // of the graph being made
   const auto lipschitz = [&](const Graph& graph, NodeId id) {
     while (known.size() <= id) known.push_back(know(graph, static_cast<NodeId>(known.size()), known));
     return known[id].lipschitz;

@@ -1,6 +1,6 @@
 // The passes over the DAG. One pass = one file = one function = one name for `fathom dump --after`.
-// Each leaves the field as it was, but for rounding in double; level and cull leave its sign, and its being a
-// distance. Tested by: tests/compiler/passes/passes_test.cpp
+// Each pass keeps the field except for rounding in double. Level and cull keep only the field's sign and the fact
+// that the field is a distance. Tested by: tests/compiler/passes/passes_test.cpp
 #pragma once
 
 #include <span>
@@ -13,40 +13,42 @@ namespace fathom::compiler {
 struct Pass {
   std::string_view name;
   Scene (*run)(const Scene&);
-  enum class Leaves { Field, Sign } leaves = Leaves::Field;  // what of the scene stays as it was
+  // property of the scene that the pass keeps
+  enum class Leaves { Field, Sign } leaves = Leaves::Field;
 };
 
-// What is done to the distance, in order. The surface program keeps its Paint and takes the others.
+// Returns the passes over the distance graph, in order. The surface program keeps its Paint and takes the other
+// passes.
 std::span<const Pass> passes();
 
-// Divides the operands of unions, intersections and cuts by their Lipschitz constants where these differ, so that the
-// steep one of them slows no ray down but its own. Only where the sign of the value is all that counts: below an
-// offset or a blend the values are left as they are.
+// Divides the operands of unions, intersections and cuts by their Lipschitz constants if these differ, so that a
+// steep operand slows down only its own rays. Applies only where nothing but the value's sign matters: level leaves
+// the values below an offset or a blend unchanged.
 Scene level(const Scene& scene);
 
-// Removes Paint: what the distance alone needs.
+// Removes Paint, which the distance does not need.
 Scene unpaint(const Scene& scene);
 
-// Computes what constants decide: offsets of 0 or of offsets, blends of width 0, combinators of one node, the
-// transform that changes nothing, the offset of a sphere, the complement of a complement, factors of factors.
+// Simplifies nodes whose parameters make them trivial: offsets of 0 or of offsets, blends of width 0, combinators of
+// one node, the identity transform, the offset of a sphere, the complement of a complement, factors of factors.
 Scene fold(const Scene& scene);
 
-// Computes functions of constants and leaves out what changes no number: a + 0, 1 * a, -(-a), a + -b, (-a)^2.
+// Computes functions of constants and removes operations that change no number: a + 0, 1 * a, -(-a), a + -b, (-a)^2.
 Scene arithmetic(const Scene& scene);
 
 // Multiplies nested transforms into one.
 Scene affine(const Scene& scene);
 
-// Merges unions of unions, intersections of intersections, and subtractions whose base is a subtraction. Never smooth
-// ones: their result depends on the order.
+// Merges unions of unions, intersections of intersections, and subtractions whose base is a subtraction. Never merges
+// smooth combinators, whose result depends on the order.
 Scene flatten(const Scene& scene);
 
-// Leaves out what changes no sign: arms of a union wholly inside another, cuts that do not reach what they cut,
-// limits that hold all they limit. Distances further away may grow; they stay distances.
+// Removes operands that change no sign: arms of a union wholly inside another arm, cuts that do not reach the base,
+// limits that contain everything they limit. Distances further away may grow, but they stay distances.
 Scene cull(const Scene& scene);
 
 // Puts the operands of unions, intersections and cuts in one order and drops repeated ones, so that equal nodes
-// become one node, which is evaluated once. Likewise of sums, products, minima and maxima of numbers.
+// become one node, which is evaluated once. Also orders the operands of sums, products, minima and maxima of numbers.
 Scene share(const Scene& scene);
 
 }  // namespace fathom::compiler

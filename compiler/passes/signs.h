@@ -1,5 +1,5 @@
-// Which nodes count by the sign of their value alone, and by its being a distance: not those that a blend or an offset
-// measures. Operands of these may be scaled, or left out where they change no sign.
+// Nodes whose value matters only by its sign and by being a distance, because no blend or offset measures the value.
+// A pass may scale the operands of such a node, or remove operands that change no sign.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ inline bool keeps_signs(Kind kind) {
   return kind == Kind::Union || kind == Kind::Intersection || kind == Kind::Subtraction || kind == Kind::Xor;
 }
 
-// [node]; true for what the root does not reach.
+// [node] True if only the sign of the node's value matters, or if the root does not reach the node.
 inline std::vector<bool> only_sign_counts(const Scene& scene) {
   std::vector<bool> free(scene.graph.size(), true);
   const std::vector<bool> reached = reachable(scene);

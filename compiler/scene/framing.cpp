@@ -13,13 +13,13 @@ namespace {
 
 using glm::dvec3;
 
-// Of what has next to no size, a millionth of its distance from zero is shown.
+// Minimum size of the framed box as a share of its distance from zero, for a box of next to no size.
 constexpr double kLeastSize = 1e-6;
-// What is nearer to the camera than this share of the box's size is not in the box.
+// Minimum distance of the box from the camera as a share of the box's size, so that the camera stays outside the box.
 constexpr double kClearance = 0.01;
 
 struct Axes {
-  dvec3 right, up, forward;  // of the camera, unit length
+  dvec3 right, up, forward;  // unit vectors of the camera
 };
 
 Axes axes_of(const Camera& camera) {
@@ -33,7 +33,7 @@ double tangent(double angle) {
   return s.sine / s.cosine;
 }
 
-// Half the picture's width and height, less the margins, at unit distance.
+// Returns half the image's width and height without the margins, at unit distance.
 glm::dvec2 slopes(const Camera& camera, double aspect) {
   glm::dvec2 half;
   if (camera.vertical_fov) {
@@ -55,13 +55,13 @@ std::array<dvec3, 8> corners_of(const Box& box) {
   return corners;
 }
 
-// Where the eye is along one axis of the picture, and the depth at or before which it has all corners in view.
+// The eye's position along one axis of the image, and the maximum depth from which the eye sees all corners.
 struct Fit {
   double side, depth;
 };
 
-// A corner c is in view along an axis when |dot(c - eye, axis)| <= slope * dot(c - eye, forward): two half planes, of
-// which the outermost of each kind hold, and these meet where the eye is as near as it may be.
+// A corner c is in view along an axis when |dot(c - eye, axis)| <= slope * dot(c - eye, forward). Each corner gives
+// two half planes. The outermost half planes of either kind hold, and they meet where the eye is as near as possible.
 Fit fit(const std::array<dvec3, 8>& corners, dvec3 axis, dvec3 forward, double slope) {
   double above = -kInfinity, below = -kInfinity;
   for (const dvec3 corner : corners) {
@@ -87,7 +87,7 @@ Sides sides_along(const std::array<dvec3, 8>& corners, dvec3 axis) {
   return sides;
 }
 
-// The eye in the camera's axes, seen from the middle of the corners, which are about zero.
+// Returns the eye in the camera's axes, relative to the middle of the corners, which is zero.
 dvec3 eye_for(const Camera& camera, const std::array<dvec3, 8>& corners, const Axes& axes, double size,
               double aspect) {
   const double front = sides_along(corners, axes.forward).lo;

@@ -1,4 +1,4 @@
-// A camera that has the whole of a box in its picture, as large as it goes.
+// Camera that shows a whole box as large as possible.
 // Tested by: tests/compiler/scene/framing_test.cpp
 #pragma once
 
@@ -10,20 +10,21 @@
 
 namespace fathom::compiler {
 
-// Of the picture's width and height, at each side. On the two sides that hold the box in, no more.
+// Margin at each side, as a share of the image's width or height. The two sides that limit the box have exactly this
+// margin.
 inline constexpr double kFrameMargin = 0.06;
 
-// From what is looked at to a camera that no one placed: from three quarters, above.
+// Direction from the target to a camera that the scene does not place: three-quarter view from above.
 inline constexpr glm::dvec3 kThreeQuarters{0.55, 0.5, 0.67};
 
-// The camera, moved so that all of the box is within its picture; direction, up, projection and field of view stay.
-// An orthographic camera's width becomes what is needed. A panorama, which shows everything, is put in front of the
-// box. A lens is focused on the box's middle. `aspect` is the picture's width over its height. nullopt when the box
-// is empty, does not end, or is of a size or at a distance for which there are no numbers.
+// Moves the camera so that the whole box is within its image. Direction, up, projection and field of view stay. An
+// orthographic camera gets the width that it needs. A panorama, which shows everything, moves in front of the box. A
+// lens focuses on the box's middle. `aspect` is the image's width over its height. Returns nullopt if the box is
+// empty or infinite, or if its size or distance is out of range.
 std::optional<Camera> framed(const Camera& camera, const Box& box, double aspect);
 
-// A camera that is automatic, framing the scene's extent from three quarters above; any other, and one of a scene
-// that has no extent, as it is.
+// Makes an automatic camera frame the scene's extent in a three-quarter view from above. Any other camera, and any
+// camera of a scene without an extent, stays unchanged.
 Camera placed(const Camera& camera, const Box& extent, double aspect);
 
 }  // namespace fathom::compiler

@@ -9,11 +9,11 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr int kPoints = 64;  // of a grid, along each axis
+constexpr int kPoints = 64;  // grid points along each axis
 
 double place(double lo, double hi, int i) { return lo + (hi - lo) * (i + 0.5) / kPoints; }
 
-// The lowest layer of the box's grid that has a point inside.
+// Returns the lowest layer of the box's grid that has a point inside the solid.
 std::optional<int> lowest_layer(const vm::Code& program, const Box& box, vm::Workspace& workspace) {
   using Layer = std::array<float, kPoints * kPoints>;
   Layer x, y, z, distance;

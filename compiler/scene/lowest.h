@@ -1,4 +1,4 @@
-// How far down a solid reaches. Tested by: tests/compiler/frontend/stage_test.cpp
+// Lowest point of a solid. Tested by: tests/compiler/frontend/stage_test.cpp
 #pragma once
 
 #include "compiler/geometry/box.h"
@@ -6,8 +6,9 @@
 
 namespace fathom::compiler {
 
-// The height of the lowest point inside a solid, of those of a grid over a finite box, and of a finer one right below
-// it; scene units. Parts narrower than a 64th of the box may be passed over. The box's lowest where nothing is solid.
+// Returns the height of the lowest point inside a solid, scene units, among the points of a grid over a finite box
+// and of a finer grid right below the lowest such point. May miss parts narrower than a 64th of the box. Returns the
+// box's lowest height if no grid point is inside.
 double lowest(const vm::Code& program, const Box& box);
 
 }  // namespace fathom::compiler

@@ -6,7 +6,7 @@ namespace fathom::compiler {
 
 std::vector<bool> in_object_space(std::span<const Material> materials, std::span<const Texture> textures) {
   std::vector<bool> textured, result;
-  for (const Texture& texture : textures) {  // a pattern comes after what it mixes
+  for (const Texture& texture : textures) {  // a pattern comes after the textures that it mixes
     bool object = false;
     if (const auto* formula = std::get_if<TextureFormula>(&texture)) object = formula->space == TextureSpace::Object;
     if (const auto* pattern = std::get_if<Pattern>(&texture)) {

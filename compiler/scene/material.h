@@ -1,7 +1,7 @@
-// Materials as the compiler hands them over: plain numbers, and textures for those that vary over space.
+// Materials as the compiler's output: plain numbers, and textures for the numbers that vary over space.
 //
-// Names and meanings after OpenPBR 1.1 (Academy Software Foundation, "OpenPBR Surface", 2024). A material without a
-// texture is its numbers and nothing else.
+// Names and meanings follow OpenPBR 1.1 (Academy Software Foundation, "OpenPBR Surface", 2024). A material without a
+// texture consists of its numbers alone.
 // Tested by: tests/compiler/frontend/elaborate/materials_test.cpp
 #pragma once
 
@@ -18,11 +18,11 @@
 
 namespace fathom::compiler {
 
-// Colours are linear sRGB in [0,1] unless said; a parameter at its default costs nothing.
+// Colours are linear sRGB in [0,1] unless stated otherwise. A parameter at its default costs nothing.
 struct MaterialNumbers {
   double base_weight = 1;  // factor of `color`
-  glm::dvec3 color{0.8};   // diffuse: albedo; specular: reflectance; transparent: tint of each crossing;
-                           // emissive: albedo of the lamp's own surface; principled: base_color
+  glm::dvec3 color{0.8};   // diffuse: albedo; specular: reflectance; transparent: tint per crossing;
+                           // emissive: albedo of the emitting surface; principled: base_color
   double diffuse_roughness = 0, metalness = 0;
   double specular_weight = 1;
   glm::dvec3 specular_color{1};
@@ -30,7 +30,7 @@ struct MaterialNumbers {
   double ior = 1.5;         // index of refraction, relative to vacuum
   double transmission = 0;  // transmission_weight
   glm::dvec3 transmission_color{1};
-  double transmission_depth = 0;  // scene units: after so much transmission_color is left; 0: tint of each crossing
+  double transmission_depth = 0;  // scene units, after which transmission_color is left; 0: tint per crossing
   double coat_weight = 0;
   glm::dvec3 coat_color{1};
   double coat_roughness = 0, coat_ior = 1.6;
@@ -43,26 +43,26 @@ struct MaterialNumbers {
 using MaterialNumber = double MaterialNumbers::*;
 using MaterialColor = glm::dvec3 MaterialNumbers::*;
 
-// A parameter that a texture gives at each place.
+// A parameter whose value a texture gives at each place.
 struct TexturedParameter {
   std::variant<MaterialNumber, MaterialColor> parameter;
   std::uint32_t texture;  // index into SceneTables::textures
-  double least, most;     // what the texture gives is clamped to this
+  double least, most;     // the texture's values are clamped to this range
 };
 
-// How a surface scatters light.
+// Scattering and emission of a surface.
 struct Material : MaterialNumbers {
   enum class Type { Diffuse, Emissive, Specular, Transparent, Principled };
   std::string name;
   Type type = Type::Diffuse;
   bool thin_walled = false;
-  int priority = 0;  // of two solids at the same place, the medium is that of the higher
-  // Of these the numbers above are stand-ins: the mean of the ends of a pattern, the default for a formula. They are
-  // used where the texture is not a number.
+  int priority = 0;  // where two solids overlap, the medium is that of the higher priority
+  // Parameters with a texture. Their numbers above are stand-ins, which are used where the texture is NaN: the mean
+  // of a pattern's ends, or the default for a formula.
   std::vector<TexturedParameter> textured;
 };
 
-// Whether light may come from it, at some place.
+// True if the material may emit light at some place.
 inline bool emits(const Material& material) {
   bool color = material.emission != glm::dvec3(0), luminance = material.emission_luminance != 0;
   for (const TexturedParameter& row : material.textured) {
@@ -73,7 +73,7 @@ inline bool emits(const Material& material) {
   return can && color && luminance;
 }
 
-// Whether a path may get into what is of it, at some place.
+// True if a path may enter a body of the material at some place.
 inline bool transmits(const Material& material) {
   if (material.type == Material::Type::Transparent) return true;
   if (material.type != Material::Type::Principled) return false;
@@ -85,24 +85,24 @@ inline bool transmits(const Material& material) {
   return may;
 }
 
-// Whose coordinates a texture is evaluated in: the scene's, wherever the body was moved to, or those of the node that
-// the material was given to, before that node's scale, rotate and translate.
+// Coordinates in which a texture is evaluated: those of the scene, wherever the body is moved to, or those of the
+// node that has the material, before the node's scale, rotate and translate.
 enum class TextureSpace { World, Object };
 inline constexpr std::array<std::string_view, 2> kTextureSpaces = {"world", "object"};  // [TextureSpace]
 
-// Formulas in the coordinates of their space, not the programs': indices into CompiledScene::formulas of red, green
-// and blue; three times the same where it is a number or a grey.
+// Indices into CompiledScene::formulas of the programs for red, green and blue, all three equal for a number or a
+// grey. The formulas take the coordinates of their space, not the programs'.
 struct TextureFormula {
   std::array<std::uint32_t, 3> programs;
   TextureSpace space = TextureSpace::World;
 };
 
-// Two textures mixed by a number t of each place: a (1 - t) + b t. What t is, runtime/material/pattern.h says.
+// Two textures mixed by a number t per place: a (1 - t) + b t. runtime/material/pattern.h defines t.
 struct Pattern {
   struct Checker {};
   struct Stripes {
     glm::dvec3 axis;         // unit length, across the stripes
-    double width, softness;  // share of the period that is a; of the narrower stripe, how much is transition
+    double width, softness;  // share of the period that is a; share of the narrower stripe that is transition
   };
   struct Gradient {
     glm::dvec3 from, to;
@@ -113,8 +113,8 @@ struct Pattern {
     std::uint64_t seed;
   };
   struct Bricks {
-    double width, height;  // of a brick with its mortar
-    double mortar, shift;  // how wide; share of a brick by which each row is moved against the one below
+    double width, height;  // of a brick including its mortar
+    double mortar, shift;  // width; share of a brick by which each row is shifted against the row below
   };
   std::variant<Checker, Stripes, Gradient, Noise, Bricks> kind;
   Affine to_pattern;   // from the coordinates of its space to the pattern's
@@ -122,10 +122,10 @@ struct Pattern {
   TextureSpace space = TextureSpace::World;
 };
 
-// A colour (grey where a number is wanted), or what varies.
+// A colour (grey for a number), or a texture that varies.
 using Texture = std::variant<glm::dvec3, TextureFormula, Pattern>;
 
-// Whether some texture of each material is evaluated in the coordinates of its node. [material]
+// [material] True if a texture of the material is evaluated in the coordinates of its node.
 std::vector<bool> in_object_space(std::span<const Material> materials, std::span<const Texture> textures);
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// Bodies about the y axis, as the domain operators' rows need them.
+// Bodies about the y axis, for the rows of the domain operators.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,14 +15,14 @@ inline constexpr double kNoLimit = 1e18;  // stands for infinity in a program
 
 inline double distance_from_axis(double x, double z) { return std::sqrt(x * x + z * z); }
 
-// The greatest distance of the box from the y axis.
+// Returns the maximum distance of the box from the y axis.
 inline double radius_about_y(const Box& box) {
   return distance_from_axis(std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
                             std::max(std::abs(box.lo.z), std::abs(box.hi.z)));
 }
 
-// A box or tube whose distance is part of a result is larger than the solid by this part of its size, so that on the solid's
-// surface it is the solid's own distance that counts, and its material.
+// Margin, as a share of the solid's size, of a box or tube whose distance is part of a result. On the solid's surface
+// the solid's own distance then counts, and its material.
 inline constexpr double kAside = 1e-3;
 
 inline Box tube(double radius, double y0, double y1) { return {{-radius, y0, -radius}, {radius, y1, radius}}; }

@@ -1,5 +1,5 @@
-// Rows of the alterations that change a child's distance, or place it without bending space: round, onion, extrude,
-// transform and their like. Those that fold, repeat or bend space are in domain.cpp.
+// Rows of the alterations that change a child's distance, or place the child without bending space: round, onion,
+// extrude, transform and similar nodes. domain.cpp and repetition.cpp have those that fold, bend or repeat space.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -39,7 +39,7 @@ Knowledge know_same(Params, std::span<const Knowledge> children) { return childr
 Knowledge know_scaled(Params params, std::span<const Knowledge> children) {
   Knowledge k = only_bound(children[0]);
   k.lipschitz *= params[0];
-  if (std::abs(k.lipschitz - 1) < 1e-12) k.lipschitz = 1;  // a product that is 1 but for rounding
+  if (std::abs(k.lipschitz - 1) < 1e-12) k.lipschitz = 1;  // the product is 1 except for rounding
   k.reach *= params[0];
   k.reach_max *= params[0];
   k.magnitude *= params[0];
@@ -53,19 +53,20 @@ Knowledge know_transform(Params params, std::span<const Knowledge> children) {
   const Stretch s = stretch(to_child);
   Knowledge k = mapped(child);
   k.box = image(inverse(to_child), child.box);
-  // In the child's space a point lies as far off as the translation adds, but near the surface within the child's
-  // box.
+  // The translation adds to a point's coordinates in the child's space, but a point near the surface lies within the
+  // child's box.
   const glm::dvec3 t = glm::abs(to_child.translation);
   const double cancelled = std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box));
   k.magnitude = factor * (cancelled * std::max(1.0, child.lipschitz) + child.magnitude);
-  // A product that is 1 but for rounding is 1: the factor is the smallest scale, the most stretch its inverse.
+  // A product that is 1 except for rounding is 1: the factor is the smallest scale, and the largest stretch its
+  // inverse.
   const double slope = factor * s.most;
   k.lipschitz = child.lipschitz * (std::abs(slope - 1) < 1e-12 ? 1 : slope);
   const double reach = std::min(1.0, factor * s.least * (1 + 1e-15));
   k.reach = child.reach * reach;
   k.reach_max = std::max(k.reach, child.reach_max * reach / (is_axis_aligned(to_child) ? 1 : kSqrt3));
   if (s.most - s.least > 1e-12 * s.most) k = only_bound(k);
-  // Scaling along the axes keeps a mirror plane that the move does not take away.
+  // Scaling along the axes keeps a mirror plane unless the translation moves the plane.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<int>(axis);
     const glm::dvec3 row = to_child.rows[axis];
@@ -75,17 +76,19 @@ Knowledge know_transform(Params params, std::span<const Knowledge> children) {
   return k;
 }
 
-// Whether there is a block between the pieces pulled apart, where the way to its faces adds depth.
+// True if there is a block between the pieces pulled apart, in which the distance to the block's faces adds depth.
 bool has_core(Params half_size) { return half_size[0] > 0 && half_size[1] > 0 && half_size[2] > 0; }
 
-// The surface cut at the planes through the origin and pulled apart by the half size along each axis.
+// The child's surface, cut at the planes through the origin and pulled apart by the half size along each axis.
 Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
   const Knowledge& child = children[0];
   Knowledge k = child;
-  // Exact only where what is nearest to a point of the plane lies in the plane, which is not known of a child.
+  // Exact only if the child's point nearest to any point of the plane lies in the plane, which the compiler does not
+  // know.
   k = only_bound(k);
   for (int i = 0; i < 3; ++i) {
-    // Of a child beside the plane one side moves the other way; but distances are measured from this larger box.
+    // If the child lies on one side of the plane, a side of its box moves the other way. Distances are measured from
+    // this larger box anyway.
     k.box.lo[i] -= params[static_cast<std::size_t>(i)];
     k.box.hi[i] += params[static_cast<std::size_t>(i)];
   }
@@ -134,7 +137,7 @@ Code transform_code(Params params) {
   return code;
 }
 
-// In the middle block of a body pulled apart along all axes the distance is the child's at the origin: there the
+// In the middle block of a body pulled apart along all axes the distance is the child's at the origin, to which the
 // distance to the block's faces adds depth.
 Code elongate_code(Params params) {
   Code code{.points = {{{Opcode::Elongate, {params[0], params[1], params[2]}}}}};

@@ -1,4 +1,4 @@
-// Combinators that blend, and those that they are without it.
+// Combinators that blend, and the hard combinators that they become without the blend.
 #pragma once
 
 #include "compiler/graph/graph.h"
@@ -7,7 +7,8 @@ namespace fathom::compiler {
 
 inline bool is_blend(Kind kind) { return kind >= Kind::SmoothUnion && kind <= Kind::StairsSubtraction; }
 
-// Without the blend: what a union holds it holds too, and an intersection or cut never more.
+// Returns the combinator without the blend. A blended union contains the hard union, and a blended intersection or
+// cut lies within the hard one.
 inline Kind hard(Kind blend) {
   switch (blend) {
     case Kind::SmoothUnion:

@@ -28,7 +28,7 @@ bool reads_point(const Instruction& instruction) {
 Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
   const NodeSpec& row = spec(graph.kind(id));
   if (row.know == nullptr) return of_primitive(row, graph.params(id));
-  // What is known of a number, which is nothing, takes nothing of what it is made of; formulas have thousands.
+  // Number nodes have no facts, so their children's facts are not gathered: formulas have thousands of nodes.
   if (row.category == Category::Function) return row.know(graph.params(id), {});
   std::vector<Knowledge> children;
   for (const NodeId child : graph.children(id)) children.push_back(known[child]);
@@ -62,7 +62,7 @@ Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known)
       case Kind::Scaled:
         for (const NodeId child : graph.children(node)) wanted[child] = true;
         break;
-      default:  // a ground alone, or something cut from it
+      default:  // an unbounded node, e.g. a ground alone: only a bounded first child counts
         if (!graph.children(node).empty() && known[graph.children(node)[0]].box.finite()) {
           result = unite(result, known[graph.children(node)[0]].box);
         }

@@ -1,4 +1,4 @@
-// What is known of every node of a graph (compiler/graph/knowledge.h), by the rows of the node table.
+// Facts about every node of a graph (compiler/graph/knowledge.h), by the rows of the node table.
 // Tested by: tests/compiler/shapes/bounds_test.cpp, tests/compiler/passes/passes_test.cpp
 #pragma once
 
@@ -9,17 +9,17 @@
 
 namespace fathom::compiler {
 
-// Given what is known of its children. [child]
+// Returns the facts about a node. `known` [node] are the facts about its children.
 Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& known);
 
-// One entry per node id, children first.
+// Returns the facts about every node, in the order of ids (children first).
 std::vector<Knowledge> analyse(const Graph& graph);
 
-// A box round every bounded part of a node: of a ground with things on it, round the things. Empty when there is
-// none.
+// Returns a box around every bounded part of a node: for a ground with things on it, around the things. Empty if the
+// node has no bounded part.
 Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known);
 
-// Whether the node's children are evaluated at the node's own point, and their distances are all it needs.
+// True if the node's children are evaluated at the node's own point, and their distances are all that the node needs.
 bool takes_own_point(const Graph& graph, NodeId id);
 
 }  // namespace fathom::compiler

@@ -1,5 +1,6 @@
-// Rows of the combinators. Hard ones keep the distances they choose from; blends are convex combinations of their
-// operands' gradients, so none changes faster than its operands do, unless its row says so.
+// Rows of the combinators. Hard combinators keep the distances that they choose from. The gradient of a blend is a
+// convex combination of its operands' gradients, so a blend changes no faster than its operands unless its row says
+// otherwise.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ Knowledge know_union(Params, std::span<const Knowledge> children) {
 Knowledge know_intersection(Params, std::span<const Knowledge> children) {
   Knowledge k = only_bound(together(children));
   for (const Knowledge& child : children) k.box = intersect(k.box, child.box);
-  // Apart, they leave nothing; but an offset of this field may, so keep a box its distance is measured from.
+  // Disjoint operands leave nothing, but an offset of the field may leave something, so keep a box to measure from.
   if (k.box.empty()) k.box = children[0].box;
   k.reach /= kSqrt3;  // an intersection's corner is up to sqrt 3 further than its faces
   return k;
@@ -30,20 +31,21 @@ Knowledge know_intersection(Params, std::span<const Knowledge> children) {
 
 Knowledge know_subtraction(Params, std::span<const Knowledge> children) {
   Knowledge k = only_bound(together(children));
-  const Knowledge& base = children[0];  // only cuts away: the base's box and reach hold
+  const Knowledge& base = children[0];  // a subtraction only cuts away: the base's box and reach hold
   k.box = base.box;
   k.reach = base.reach;
   k.reach_max = base.reach_max;
   return k;
 }
 
-// Of width `width`: the operands' distances count up to there.
+// Facts of a blend of width `width`: the operands' distances count up to that width.
 Knowledge blended(Knowledge k, double width) {
   k.magnitude += width;
   return only_bound(k);
 }
 
-// One blend lowers the distance by at most `deepest`; many by at most k, for an operand k away changes nothing.
+// Returns a bound on how far a blend lowers the distance: by `deepest` * k per operand after the first, and by k in
+// all, because an operand k away changes nothing.
 double lowered(Params params, std::size_t operands, double deepest) {
   return std::min(params[0], deepest * params[0] * static_cast<double>(operands - 1));
 }
@@ -58,7 +60,7 @@ Knowledge know_smooth_subtraction(Params params, std::span<const Knowledge> chil
   return blended(know_subtraction(params, children), params[0]);
 }
 
-// (a + b - k) / 2 is at least min(a, b) - k/2; a round or a stair dips by less.
+// A chamfer, (a + b - k) / 2, is at least min(a, b) - k/2. A round or a stair dips by less.
 Knowledge know_edge_union(Params params, std::span<const Knowledge> children) {
   return blended(offset(know_union(params, children), lowered(params, children.size(), 0.5)), params[0]);
 }
@@ -77,7 +79,8 @@ Knowledge know_round_subtraction(Params params, std::span<const Knowledge> child
   return steeper(know_smooth_subtraction(params, children), params[0] > kLeastBlend ? children.size() : 1);
 }
 
-// Exact outside: there it is the union of what is in one alone, whose boundaries are those of the operands.
+// Outside the operands, xor is the union of the points in one operand alone, which is exact because its boundaries
+// are those of the operands. The facts claim only a bound.
 Knowledge know_xor(Params params, std::span<const Knowledge> children) {
   return only_bound(know_union(params, children));
 }
@@ -105,12 +108,13 @@ Code any_order(Opcode opcode) {
 }
 Code union_code(Params) { return any_order(Opcode::Min); }
 Code intersection_code(Params) { return any_order(Opcode::Max); }
-// a - b is the intersection of a with the complement of b: with b first, max(-b, a).
+// a - b is the intersection of a with the complement of b. With b first: max(-b, a).
 Code subtraction_code(Params) {
   return {.after = {{Opcode::Subtract}}, .swapped_first = {{Opcode::Negate}}, .swapped_join = {{Opcode::Max}}};
 }
 
-// A width of 0 blends nothing; the optimiser makes it the hard operator, unoptimised code must not divide by it.
+// A width of 0 blends nothing. The optimiser replaces the node by the hard operator, but unoptimised code must not
+// divide by the width.
 std::vector<double> blend_immediates(Params params) {
   return {params[0], params[0] > kLeastBlend ? 0.25 / params[0] : 0};
 }
@@ -131,7 +135,7 @@ Code smooth_subtraction_code(Params params) {
   return code;
 }
 
-// Edges of width 0 are the hard operator.
+// Returns the instructions of an edge, which is the hard operator if the width is 0.
 template <Opcode Join, Opcode Hard, std::vector<double> (*Immediates)(Params)>
 std::vector<Instruction> edge(Params params) {
   if (!(params[0] > kLeastBlend)) return {{Hard}};

@@ -1,4 +1,4 @@
-// Rows of the solids that are made of other nodes. Their distance is as exact as what they are made of says.
+// Rows of the solids that are composed of other nodes. Their distance is as exact as the distances of these nodes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,14 +18,15 @@ NodeId place(Graph& graph, NodeId child, const std::array<double, 13>& transform
   return graph.add(Kind::Transform, transform, std::array{child}, origin);
 }
 
-// A ball squashed: its distance times the smallest radius is never too much. The exact distance takes an iteration.
+// A ball scaled along the axes. The ball's distance times the smallest radius never exceeds the ellipsoid's. The
+// exact distance takes an iteration.
 NodeId ellipsoid(Graph& graph, Params p, const Origin& origin) {
   const NodeId ball = graph.add(Kind::Sphere, std::array{1.0}, {}, origin);
   const double x = p[0], y = p[1], z = p[2];
   return place(graph, ball, {1 / x, 0, 0, 0, 0, 1 / y, 0, 0, 0, 0, 1 / z, 0, std::min({x, y, z})}, origin);
 }
 
-// Turned about x until its z is y.
+// Turns the child about x until its z axis is y.
 NodeId upright(Graph& graph, NodeId child, const Origin& origin) {
   return place(graph, child, {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 1}, origin);
 }
@@ -38,7 +39,7 @@ NodeId prism(Graph& graph, double sides, Params p, const Origin& origin) {
 NodeId hexagonal_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 6, p, origin); }
 NodeId triangular_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 3, p, origin); }
 
-// An outline with the same parameters, which the y axis divides into mirror images, turned about that.
+// Turns an outline with the same parameters, which is symmetric about the y axis, about that axis.
 template <Kind Outline>
 NodeId revolved(Graph& graph, Params p, const Origin& origin) {
   const NodeId outline = graph.add(Outline, p, {}, origin);
@@ -50,8 +51,8 @@ Complaint check_outline(Params p) {
   return check ? check(p) : std::nullopt;
 }
 
-// A point of the sphere at an angle of a from -y lies at y = -radius cos a: an arc about -y up to where that is the
-// height.
+// Turns an arc about -y. A point of the sphere at an angle of a from -y lies at y = -radius cos a, so the arc reaches
+// up to the angle whose y is the height.
 NodeId cut_hollow_sphere(Graph& graph, Params p, const Origin& origin) {
   const double degrees = vm::real::acos(-p[1] / p[0]) * 180 / std::numbers::pi;
   const NodeId arc = graph.add(Kind::Arc, std::array{p[0], degrees, p[2]}, {}, origin);
@@ -64,8 +65,8 @@ Complaint check_cut_hollow_sphere(Params p) {
                      p[1], p[2], p[0]);
 }
 
-// The sides of a diamond of half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle; rounding takes its
-// radius from that.
+// The sides of a diamond with half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle. Rounding takes its
+// radius from that distance.
 double inradius(Params p) { return p[0] * p[1] / std::sqrt(p[0] * p[0] + p[1] * p[1]); }
 NodeId rhombus(Graph& graph, Params p, const Origin& origin) {
   const double shrink = 1 - p[3] / inradius(p);
@@ -81,7 +82,7 @@ Complaint check_rhombus(Params p) {
                      most);
 }
 
-// A ring pulled apart along its z, then turned about x until that is y.
+// A ring pulled apart along its z axis, then turned about x until its z axis is y.
 NodeId link(Graph& graph, Params p, const Origin& origin) {
   const NodeId ring = graph.add(Kind::Torus, p.first(2), {}, origin);
   const NodeId pulled = graph.add(Kind::Elongate, std::array{0.0, 0.0, p[2]}, std::array{ring}, origin);

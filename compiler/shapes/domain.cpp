@@ -1,17 +1,17 @@
-// Rows of the domain operators that fold and bend the space a child is evaluated in; those that repeat it are in
-// repetition.cpp.
+// Rows of the domain operators that fold and bend the space in which a child is evaluated. repetition.cpp has those
+// that repeat space.
 //
-// Each keeps three promises whatever the child: its zero set is the folded, repeated or bent solid; it changes
-// nowhere faster than its Lipschitz constant; outside it never exceeds that constant times the distance. What makes
-// that possible is the child's box, known before. Two devices recur:
+// Each operator keeps three promises whatever the child: its zero set is the folded, repeated or bent solid; it
+// changes nowhere faster than its Lipschitz constant; outside the solid it never exceeds that constant times the
+// distance. The operators can keep them because they know the child's box beforehand. Two techniques recur:
 //
-//   meet   The map is evaluated at the nearest point of a convex region K that holds the solid (clamp_tube,
-//   clamp_box),
-//          where its slope is bounded, and the distance to K is added at a right angle: for q nearest to p in K and s
-//          in K the angle at q is at least a right one, so |p - s|^2 >= |p - q|^2 + |q - s|^2.
-//   limit  Of endless copies only those near p are evaluated; the way to the others, known by the child's box, bounds
-//          the result from above. It is chosen so that nothing jumps where the set of evaluated copies changes: there
-//          it equals the least that any of them can be.
+//   meet   The map is evaluated at the nearest point of a convex region K that contains the solid (clamp_tube,
+//          clamp_box), where the map's slope is bounded, and the distance to K is added at a right angle. Let q be
+//          the point of K nearest to p, and s any point of K: the angle at q is at least a right angle, so
+//          |p - s|^2 >= |p - q|^2 + |q - s|^2.
+//   limit  Only the copies near p are evaluated, even if there is no end of copies. The distance to the others, known
+//          from the child's box, bounds the result from above. The limit is chosen so that nothing jumps where the
+//          set of evaluated copies changes: there the limit equals the smallest possible distance of these copies.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ using vm::Opcode;
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-// The largest singular value of [[a, b], [0, c]]: how much the map (x, y) -> (a x + b y, c y) stretches.
+// Returns the largest singular value of [[a, b], [0, c]], the largest stretch of the map (x, y) -> (a x + b y, c y).
 double largest_stretch(double a, double b, double c) {
   const double sum = a * a + b * b + c * c, determinant = a * c;
   return std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * determinant * determinant))) / 2);
@@ -62,7 +62,7 @@ Knowledge know_mirror(Params p, std::span<const Knowledge> children) {
     k.inside = std::max(k.inside, Exactness::Bound);
     return whole ? k : only_bound(k);
   }
-  // The two-fold image of the box; per-axis distances do not survive the reflection.
+  // Unites the box with the box of its mirror image. Per-axis distances do not survive the reflection.
   const glm::dvec3 centre = (child.box.lo + child.box.hi) * 0.5, half = child.box.hi - centre;
   glm::dvec3 spread(0);
   for (int i = 0; i < 3; ++i) {
@@ -80,9 +80,9 @@ std::vector<double> mirror_immediates(Params p) {
 }
 Code mirror_code(Params p) { return {.points = {{{Opcode::Mirror, mirror_immediates(p)}}}}; }
 
-// Twist. Parameter: turn (degrees per unit of y). Derived: the tube's radius, the Lipschitz constant.
-// For points of the tube, |T(p) - T(q)|^2 <= (a + k R b)^2 + b^2 with a, b their distances across and along the axis
-// and R the tube's radius: the largest stretch of [[1, kR], [0, 1]].
+// Twist. Parameter: turn (degrees per unit of y). Derived: the tube's radius, the Lipschitz constant. For points p
+// and q of the tube, |T(p) - T(q)|^2 <= (a + k R b)^2 + b^2, where a and b are their distances across and along the
+// axis, k is the turn in radians and R is the tube's radius. The bound is the largest stretch of [[1, kR], [0, 1]].
 
 double tube_radius(const Box& box) { return radius_about_y(box) * (1 + kAside); }
 
@@ -95,7 +95,8 @@ Complaint check_twist_child(Params, std::span<const Knowledge> children) {
   return check_bounded_about_y(children, "a twist");
 }
 
-// A child evaluated within a tube, by its parts across and along the axis.
+// Facts of a child evaluated within a tube about the y axis, by a map that treats distances across and along the axis
+// separately.
 Knowledge in_tube(const Knowledge& child, double radius, double lipschitz, double reach) {
   Knowledge k = only_bound(mapped(child));
   k.box = tube(radius, child.box.lo.y, child.box.hi.y);
@@ -108,7 +109,7 @@ Knowledge know_twist(Params p, std::span<const Knowledge> children) {
   const double rate = std::abs(p[0]) * kRadians, radius = p[1];
   const Box& box = children[0].box;
   Knowledge k = in_tube(children[0], radius, p[2], children[0].reach);
-  // The angle is rounded in proportion to itself; an endless column is judged by its first thousand units.
+  // The angle's rounding error is proportional to the angle. An endless column counts by its first thousand units.
   const double highest = std::min(1000.0, std::max(std::abs(box.lo.y), std::abs(box.hi.y)));
   k.magnitude = (k.magnitude + radius * (1 + 0.2 * rate * highest)) * children[0].lipschitz;
   return k;
@@ -126,8 +127,8 @@ Code twist_code(Params p) {
           .after = meet_tube(p[1], p[2])};
 }
 
-// Taper. Parameters: bottom and top scale, half height. Derived: the tube's radius, the Lipschitz constant. With
-// q = x / s(y): dq = dx / s - q s' / s dy, and |q| <= R / s_least in the tube of radius R.
+// Taper. Parameters: bottom and top scale, half height. Derived: the tube's radius, the Lipschitz constant. With q =
+// x / s(y): dq = dx / s - q s' / s dy, and |q| <= R / s_least in the tube of radius R.
 
 struct Scales {
   double least, most, slope;
@@ -158,14 +159,15 @@ Code taper_code(Params p) {
           .after = meet_tube(p[3], p[4])};
 }
 
-// Bend. Parameter: turn (degrees per unit of x, towards +y). Derived: the inner radius, the Lipschitz constant, how
-// far the solid keeps from the inner circle and from the seam (in the child's distance), z range, reach, the box. The
-// map keeps radii and multiplies lengths across them by (1/k) / rho.
+// Bend. Parameter: turn (degrees per unit of x, towards +y). Derived: the arc's radius and side, the inner radius,
+// the Lipschitz constant, the distances of the solid from the inner circle and from the seam (as the child measures
+// them), z range, reach, the box. The map keeps radii and multiplies lengths across them by (1/k) / rho, where k is
+// the turn in radians and rho is the radius.
 
 struct Arc {
-  double radius, side;          // of the x axis when bent; +1 towards +y
+  double radius, side;          // of the bent x axis; +1: towards +y
   double innermost, outermost;  // radii of the solid
-  double farthest;              // |x| of the child
+  double farthest;              // largest |x| of the child
 };
 Arc arc(double turn, const Box& box) {
   const double radius = 1 / (std::abs(turn) * kRadians);
@@ -174,7 +176,7 @@ Arc arc(double turn, const Box& box) {
           std::max(std::abs(box.lo.x), std::abs(box.hi.x))};
 }
 
-// The box around the sector of a ring that the child's box becomes.
+// Returns the box around the sector of a ring that the child's box becomes.
 Box bent_box(const Arc& a, const Box& box) {
   const double from = box.lo.x / a.radius, to = box.hi.x / a.radius;
   std::vector<double> angles = {from, to};
@@ -193,14 +195,14 @@ Box bent_box(const Arc& a, const Box& box) {
 }
 
 std::vector<double> derive_bend(Params p, std::span<const Knowledge> children) {
-  // Closer to the solid's inner edge: a smaller constant but shorter steps near the centre.
+  // An inner radius closer to the solid's inner edge gives a smaller constant but shorter steps near the centre.
   constexpr double kInner = 0.8;
   const Knowledge& child = children[0];
   const Arc a = arc(p[0], child.box);
   const double inner = kInner * a.innermost, reach = child.reach > 0 ? child.reach : 0.25;
   const Box exact = bent_box(a, child.box);
   const Box box = exact.grown(kAside * std::max(exact.hi.x - exact.lo.x, exact.hi.y - exact.lo.y));
-  // The box's own distance and the way to what is left out change by 1.
+  // The box's own distance, and the distance to the parts left out, change by 1.
   const double lipschitz = std::max(1.0, child.lipschitz * std::max(1.0, a.radius / inner));
   return {a.radius,
           a.side,
@@ -266,11 +268,11 @@ Code bend_code(Params p) {
   return code;
 }
 
-// Shear moves x and z by a multiple of y: a Transform like any other.
+// Shear moves x and z by a multiple of y, so it is a Transform.
 
 NodeId build_shear(NodeMaker& maker, Params p, std::span<const NodeId> children, const Origin& origin) {
   std::vector<double> params = {1, -p[0], 0, 0, 0, 1, 0, 0, 0, -p[1], 1, 0};
-  // The least a distance shrinks by, so that it stays one from below.
+  // The smallest factor by which a shear shrinks distances, so that the scaled distance stays a lower bound.
   params.push_back(1 / stretch(Affine::from_params(params)).most);
   return maker.make(Kind::Transform, params, children, origin);
 }

@@ -1,5 +1,5 @@
-// Rows of the functions of numbers that formulas are made of, and of the node that makes a distance of a formula.
-// A function's name here is its name in the listing; formula.cpp says how formulas spell them.
+// Rows of the functions of numbers that formulas consist of, and of the nodes that make a distance of a formula. The
+// names here are those of listings. compiler/frontend/formula/formula_functions.cpp has the spelling of formulas.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -11,7 +11,7 @@ namespace {
 
 using vm::Opcode;
 
-// Of a number in itself nothing is known: what a formula does is proved for the whole of it
+// The compiler knows no facts about a single number, but proves facts about a formula as a whole
 // (compiler/derive/formula_field.h).
 Knowledge know_number(Params, std::span<const Knowledge>) {
   Knowledge k;
@@ -30,7 +30,7 @@ Code commutative(Params) {
   code.swapped_join = code.after;
   return code;
 }
-// a - b is -b + a, to the last bit.
+// a - b equals -b + a, to the last bit.
 Code minus_code(Params) {
   return {.after = {{Opcode::Minus}}, .swapped_first = {{Opcode::Negate}}, .swapped_join = {{Opcode::Add}}};
 }
@@ -56,8 +56,8 @@ NodeSpec function(Kind kind, std::string_view name, Code (*code)(Params), std::s
           .know = know_number};
 }
 
-// Bounded. Derived: the box's corners, the Lipschitz constant in it, the magnitude of its float error, 1 when the
-// constant is proved.
+// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the magnitude of the float error, 1 if
+// the constant is proved.
 Knowledge know_bounded(Params p, std::span<const Knowledge>) {
   Knowledge k;
   constexpr double kEndless = 1e18, kInfinity = std::numeric_limits<double>::infinity();

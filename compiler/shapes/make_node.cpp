@@ -4,7 +4,7 @@ namespace fathom::compiler {
 
 NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin) {
   const NodeSpec& row = spec(kind);
-  // What `build` of a row with code makes over other children has its derived numbers.
+  // A row's own `build` calls make() again over other children, with the derived numbers after the parameters.
   const bool is_built = row.code && params.size() > row.params.size();
   if (row.build && !is_built) return row.build(*this, params, children, origin);
   if (row.expand) return row.expand(graph_, params, origin);

@@ -1,5 +1,5 @@
-// Makes nodes as a scene describes them: expands those that are made of others, derives what a node needs to know of
-// its children, and keeps what is known of every node at hand.
+// Makes nodes as a scene describes them: expands nodes that are composed of others, derives the numbers that a node
+// takes from its children, and keeps the facts about every node at hand.
 //
 //     NodeMaker maker(graph);
 //     const NodeId ball = maker.make(Kind::Sphere, {{1.0}}, {});
@@ -23,10 +23,10 @@ class NodeMaker {
  public:
   explicit NodeMaker(Graph& graph) : graph_(graph) {}
 
-  // `params` are those of the kind's row. The node must be sound: see complaint().
+  // `params` are those of the kind's row. complaint() must have nothing against the node.
   NodeId make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin = {});
 
-  // What is wrong with such a node over these children; nullopt when nothing is. `params` passed the row's `check`.
+  // Returns the fault of such a node over these children, or nullopt. `params` have passed the row's `check`.
   Complaint complaint(Kind kind, Params params, std::span<const NodeId> children);
 
   const Knowledge& known(NodeId id);
@@ -36,7 +36,7 @@ class NodeMaker {
   std::vector<Knowledge> known_of(std::span<const NodeId> children);
 
   Graph& graph_;
-  std::vector<Knowledge> known_;  // [node], of the first nodes
+  std::vector<Knowledge> known_;  // [node] facts about the first nodes, as far as asked for
 };
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// A row of the node table: parameters, code, bounds and knowledge of one kind of node.
+// A row of the node table: parameters, code, bounds and facts of one kind of node.
 #pragma once
 
 #include <array>
@@ -19,25 +19,25 @@ class NodeMaker;  // compiler/shapes/make_node.h
 using Params = std::span<const double>;
 using Complaint = std::optional<std::string>;
 
-// Points: a list of [x, y], as many as there are; the last parameter of its row.
-// Formula: text in x, y, z and the scene's parameters; becomes the node's (last) child and no numbers.
+// Points: a list of any number of [x, y], the last parameter of its row. Formula: text in x, y, z and the scene's
+// parameters, which becomes the node's (last) child and no numbers.
 enum class ParamType { Number, Integer, Vec2, Vec3, Counts, Points, Formula };
 
-// What a parameter's value must satisfy on its own; each is an error that names the rule.
+// Condition on the value of one parameter. The error for a violation names the rule.
 enum class Rule { Any, Positive, NotNegative, NotZero };
 
 struct ParamSpec {
   std::string_view name;
   ParamType type;
   Rule rule;
-  std::optional<double> fallback;  // used when the property is absent; required when empty
+  std::optional<double> fallback;  // used when the property is absent; nullopt: the property is required
   std::string_view doc;
 };
 
-// Primitives have no children, alterations one, combinators any number; functions of numbers appear in formulas only.
+// Primitives have no children, alterations one, combinators any number. Functions of numbers appear in formulas only.
 enum class Category { Primitive, Alteration, Combinator, Function, Internal };
 
-// What a node's value is: a distance in space, a distance in the xy plane, a plain number.
+// Meaning of a node's value: a distance in space, a distance in the xy plane, a plain number.
 enum class Sort { Solid, Outline, Number };
 
 struct Instruction {
@@ -46,31 +46,32 @@ struct Instruction {
   std::uint32_t operand = 0;
 };
 
-// How a node is evaluated: instructions of the machine, emitted by compiler/lower/lower.cpp.
+// Evaluation of a node: instructions of the machine, which compiler/lower/lower.cpp emits.
 struct Code {
-  // A node with one child evaluates it once for each of these chains of Point instructions, each from the caller's
-  // point, and takes the least of the values.
+  // Chains of Point instructions. A node with one child evaluates the child once per chain, each chain starting at
+  // the caller's point, and takes the minimum of the values.
   std::vector<std::vector<Instruction>> points = {{}};
-  // Then, at the caller's point: a primitive's value is pushed, an altered one changed, a combinator's next operand
-  // joined to the value below it.
+  // Instructions that follow at the caller's point. A primitive pushes its value, an alteration changes its child's,
+  // and a combinator joins its next operand to the value below.
   std::vector<Instruction> after = {};
-  // How a combinator of two operands is evaluated with the second first: what follows the second, then what joins the
-  // first to it. Empty `swapped_join`: not possible.
+  // Evaluation of two operands of a combinator with the second operand first: the instructions after the second, then
+  // those that join the first operand to it. Empty `swapped_join`: the combinator cannot be evaluated in that order.
   std::vector<Instruction> swapped_first = {}, swapped_join = {};
-  // `after` follows the last operand alone and takes all of them.
+  // True if `after` follows only the last operand and takes all operands.
   bool all_at_once = false;
-  // The operands may come in any order.
+  // True if the operands may come in any order.
   bool any_order = false;
 };
 
-// What a primitive knows of itself beside its box.
+// Facts about a primitive in addition to its box.
 struct PrimitiveFacts {
   Exactness outside = Exactness::Exact, inside = Exactness::Exact;
   std::array<bool, 3> symmetric = {false, false, false};  // as Knowledge::symmetric
 };
 
-// Primitives between two points: `a` and `b` may be given in place of the parameter `length`, which is then |b - a|
-// times `share`; the node's y axis turns from a to b, its origin at their middle (share 1/2) or at a (share 1).
+// Primitives between two points. A scene may give `a` and `b` in place of the parameter `length`, which is then |b -
+// a| times `share`. The node's y axis turns from a to b, and its origin moves to their middle (share 1/2) or to a
+// (share 1).
 struct Between {
   std::string_view length;
   double share;
@@ -83,39 +84,41 @@ struct NodeSpec {
   std::vector<ParamSpec> params = {};
   std::string_view doc = {};
 
-  Sort sort = Sort::Solid;                     // of a node's value; of Solid, when the operands decide (see operand)
-  std::optional<Sort> operand = std::nullopt;  // of the children; nullopt: solids or outlines, and the result is such
+  // sort of the node's value; Solid also if the operands decide (see `operand`)
+  Sort sort = Sort::Solid;
+  // sort of the children; nullopt: solids or outlines, and the node's value is of the same sort
+  std::optional<Sort> operand = std::nullopt;
 
-  // What is wrong with parameters that are each valid but do not fit together, and what would be right; nullopt when
-  // nothing is. May be null.
+  // Returns the conflict between parameters that are each valid, and how to resolve it; nullopt if there is none. May
+  // be null.
   Complaint (*check)(Params params) = nullptr;
 
   Code (*code)(Params params) = nullptr;
-  // The smallest box around a primitive that is cheap to know.
+  // Returns the smallest box around a primitive that is cheap to compute.
   Box (*bound)(Params params) = nullptr;
   PrimitiveFacts facts = {};
   double (*magnitude)(Params params) = nullptr;  // as Knowledge::magnitude; null: 0
-  // What is known given what is known of the children; null for primitives, whose rows have `bound` and `facts`.
+  // Returns the node's facts, given the children's. Null for primitives, whose rows have `bound` and `facts`.
   Knowledge (*know)(Params params, std::span<const Knowledge> children) = nullptr;
 
-  // Numbers the compiler derives when the node is made, which follow the parameters in the graph (a twist needs its
-  // child's radius). May be null.
+  // Returns the numbers that the compiler derives when it makes the node, which follow the parameters in the graph (a
+  // twist needs its child's radius). May be null.
   std::vector<double> (*derive)(Params params, std::span<const Knowledge> children) = nullptr;
-  // What is wrong with the node given its children; as `check`. May be null.
+  // Like `check`, for the node given its children. May be null.
   Complaint (*check_children)(Params params, std::span<const Knowledge> children) = nullptr;
-  // Alterations that are made of other nodes: as `expand`, over the children.
+  // Like `expand`, over the children, for alterations that are composed of other nodes.
   NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin) = nullptr;
-  // Primitives that are made of other nodes: adds those and returns the one that stands for it. Null for all that
-  // have code.
+  // Adds the nodes that a composed primitive consists of, and returns the node that stands for the primitive. Null
+  // for all rows that have code.
   NodeId (*expand)(Graph& graph, Params params, const Origin& origin) = nullptr;
 
   std::optional<Between> between = std::nullopt;
 
-  // All numbers of a node over these children, as they stand in the graph: the parameters, then what is derived.
+  // Returns all numbers of a node over these children as in the graph: the parameters, then the derived numbers.
   std::vector<double> with_derived(Params given, std::span<const Knowledge> children) const;
 };
 
-// How many doubles a parameter takes in a node (of each point, for Points).
+// Returns the number of doubles that a parameter takes in a node (per point for Points).
 inline int width(ParamType type) {
   switch (type) {
     case ParamType::Vec2:

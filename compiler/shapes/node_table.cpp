@@ -21,7 +21,7 @@ std::vector<NodeSpec> make_table() {
 
 using SpecsByName = std::unordered_map<std::string_view, const NodeSpec*>;
 
-// The rows by name: those of functions, or those of nodes of scenes.
+// Returns the rows by name: those of functions, or those of nodes of scenes.
 SpecsByName make_names(bool functions) {
   SpecsByName names;
   for (const NodeSpec& row : node_table()) {

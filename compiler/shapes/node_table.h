@@ -1,6 +1,7 @@
-// The node table: one row per kind of node, and the only list of them. The JSON front end, the error messages, the
-// schema, the graph printer, the bounds, the lowering and the tests read it. Rows live with their like: solids.cpp,
-// composed.cpp, outlines.cpp, alterations.cpp, domain.cpp, repetition.cpp, combinators.cpp, functions.cpp.
+// The node table: one row per kind of node, and the only list of the kinds. The JSON front end, the error messages,
+// the schema, the graph printer, the bounds, the lowering and the tests read the table. Similar rows share a file:
+// solids.cpp, composed.cpp, outlines.cpp, alterations.cpp, domain.cpp, repetition.cpp, combinators.cpp,
+// functions.cpp.
 //
 // Conventions, the same for every node:
 //   - primitives are centred at the origin, symmetric ones about the y axis (right-handed, y up);
@@ -21,7 +22,9 @@ namespace fathom::compiler {
 
 const std::vector<NodeSpec>& node_table();
 const NodeSpec& spec(Kind kind);
-const NodeSpec* find_node(std::string_view name);  // a node of scene files; nullptr when there is none of that name
-const NodeSpec* find_function(std::string_view name);  // a function of formulas; nullptr likewise
+// Finds a node of scene files; nullptr if no node has the name.
+const NodeSpec* find_node(std::string_view name);
+// Finds a function of formulas; nullptr if no function has the name.
+const NodeSpec* find_function(std::string_view name);
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// Which parameters of outlines fit together.
+// Checks that the parameters of an outline fit together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +29,12 @@ Complaint check_thickness(double thickness, double radius, const char* other) {
                      radius, other);
 }
 
-// Whether segments ab and cd have a point in common.
+// True if q, a point of the line through a and b, lies between them.
 bool between(dvec2 a, dvec2 b, dvec2 q) {
   return q.x >= std::min(a.x, b.x) && q.x <= std::max(a.x, b.x) && q.y >= std::min(a.y, b.y) &&
          q.y <= std::max(a.y, b.y);
 }
+// True if segments ab and cd have a point in common.
 bool meet(dvec2 a, dvec2 b, dvec2 c, dvec2 d) {
   const double sc = cross(b - a, c - a), sd = cross(b - a, d - a), sa = cross(d - c, a - c), sb = cross(d - c, b - c);
   if (((sc > 0 && sd < 0) || (sc < 0 && sd > 0)) && ((sa > 0 && sb < 0) || (sa < 0 && sb > 0))) return true;
@@ -71,7 +72,7 @@ Complaint check_polygon(Params p) {
     size = std::max(size, glm::length(at(i) - at(0)));
   }
   for (std::size_t i = 0; i < n; ++i) {
-    // Neighbours share a point; they overlap when the next turns right back.
+    // Neighbouring edges share a point, so they overlap only if the next edge turns right back.
     const dvec2 edge = at(i + 1) - at(i), next = at(i + 2) - at(i + 1);
     if (cross(edge, next) == 0 && glm::dot(edge, next) < 0) {
       return fmt::format("the outline turns right back at point {}; leave that point out", (i + 1) % n);
@@ -162,7 +163,8 @@ Complaint check_cross(Params p) {
   return fmt::format("`half_width` {} is not smaller than `half_length` {}; use `rectangle`", p[1], p[0]);
 }
 
-// The arms' inner corners exist while the arms' ends lie beyond them: radius <= sqrt 2 (half size - radius).
+// The inner corners between the arms exist while the arms' ends lie beyond them: radius <= sqrt 2 (half size -
+// radius).
 Complaint check_rounded_x(Params p) {
   const double most = p[0] * std::numbers::sqrt2 / (1 + std::numbers::sqrt2);
   if (p[1] <= most) return std::nullopt;

@@ -19,7 +19,7 @@ using glm::dvec2;
 using vm::Opcode;
 
 Box box_2d(dvec2 lo, dvec2 hi) { return {{lo.x, lo.y, -kInfinity}, {hi.x, hi.y, kInfinity}}; }
-// Of points and their mirror images across x = 0.
+// Returns the box of points and their mirror images across x = 0.
 Box mirrored_hull(std::initializer_list<dvec2> points) {
   Box box;
   for (dvec2 q : points) {
@@ -35,19 +35,20 @@ Box hull(Params points) {
   return box;
 }
 
-// The point at a distance from the origin, at an angle from +y towards +x, degrees.
+// Returns the point at a distance from the origin, at an angle in degrees from +y towards +x.
 dvec2 polar(double radius, double degrees) {
   const SineCosine at = sine_cosine(degrees);
   return {radius * at.sine, radius * at.cosine};
 }
 
-// The part of a circle about the origin at most `angle` from +y.
+// Returns the box of the part of a circle about the origin that is at most `angle` from +y.
 Box arc_box(double radius, double angle) {
   const dvec2 end = polar(radius, angle);
   return mirrored_hull({{0, radius}, {angle >= 90 ? radius : end.x, radius}, end});
 }
 
-// Mirror lines that fold half the plane onto a sector of 180 / n degrees from +y: each halves the number of sectors.
+// Returns mirror lines that fold half the plane onto a sector of 180 / n degrees from +y. Each line halves the number
+// of sectors.
 std::vector<double> sector_folds(int n) {
   std::vector<double> normals;
   int sectors = n;
@@ -63,19 +64,20 @@ std::vector<double> sector_folds(int n) {
   return normals;
 }
 
-// Where the circles of a moon meet, x > 0.
+// Returns the point, x > 0, where the circles of a moon meet.
 dvec2 moon_corner(double radius, double cut, double distance) {
   const double y = ((radius - cut) * (radius + cut) + distance * distance) / (2 * distance);
   return {std::sqrt((radius - y) * (radius + y)), y};
 }
 
-// A slanted profile between y = -half_height and half_height, as cone_immediates.
+// Returns a slanted profile between y = -half_height and half_height, like cone_immediates().
 std::vector<double> profile(double bottom, double top, double half_height) {
   const double p[] = {bottom, top, half_height};
   return cone_immediates(p);
 }
 
-// An egg's side is an arc about (-c, 0) that touches the bottom from without: c^2 + height^2 = (c + bottom - top)^2.
+// Returns c: an egg's side is an arc about (-c, 0) that touches the bottom from outside, and c^2 + height^2 = (c +
+// bottom - top)^2.
 double egg_centre(Params p) {
   const double less = p[0] - p[1];
   return (p[2] - less) * (p[2] + less) / (2 * less);
@@ -102,7 +104,7 @@ std::vector<double> star_immediates(Params p) {
   std::vector<double> k = sector_folds(static_cast<int>(p[0]));
   const dvec2 edge = polar(p[2], 180 / p[0]) - dvec2(0, p[1]);
   const double length = glm::length(edge);
-  // Between 30 and 150 degrees to the line through the centre the edge's side is certain enough.
+  // Between 30 and 150 degrees to the line through the centre the side of the edge is certain enough.
   const dvec2 outwards = polar(1, 180 / p[0]);
   const double sine = std::abs(cross(edge, outwards)) / length, sign = glm::dot(edge, outwards) < 0 ? -1e30 : 1e30;
   k.insert(k.end(), {edge.x / length, edge.y / length, length, p[1], sine > 0.5 ? 0 : sign});
@@ -217,7 +219,7 @@ Box horseshoe_bound(Params p) {
   return unite(arc_box(p[0] + p[3], p[1]), mirrored_hull({inner, outer + leg, inner + leg}));
 }
 Box lens_bound(Params p) { return box_2d({-p[1], -p[0]}, {p[1], p[0]}); }
-// What is left of the disk lies below the corners.
+// The part of the disk that remains lies below the corners.
 Box moon_bound(Params p) {
   const dvec2 corner = moon_corner(p[0], p[1], p[2]);
   return mirrored_hull({{0, -p[0]}, {corner.y >= 0 ? p[0] : corner.x, corner.y}});
@@ -228,11 +230,11 @@ Box heart_bound(Params p) {
   return mirrored_hull({{0, 0}, {0.25 * p[0] + radius, 0.75 * p[0] + radius}});
 }
 
-// Evaluated from its first end: at most that far off, or its own size.
+// The segment is evaluated from its first end, whose distance from zero counts, or the segment's size if smaller.
 double segment_magnitude(Params p) {
   return std::min(std::max(std::abs(p[0]), std::abs(p[1])), glm::length(vec2_at(p, 2) - vec2_at(p, 0)) + p[4]);
 }
-// Each edge is evaluated from its first corner, which near the surface is no further than the whole's size.
+// Each edge is evaluated from its first corner, which near the surface is no further away than the polygon's size.
 double polygon_magnitude(Params p) {
   const Box box = polygon_bound(p);
   return glm::length(dvec2(box.hi - box.lo));

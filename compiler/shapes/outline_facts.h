@@ -1,5 +1,5 @@
-// What the compiler knows of each outline beside its opcode: which parameters fit together, the immediates its opcode
-// takes, and a box around it, without end along z. All take the parameters in the order of the node table.
+// Facts about each outline in addition to its opcode: which parameters fit together, the immediates of the opcode,
+// and a box around the outline, infinite along z. All functions take the parameters in the order of the node table.
 #pragma once
 
 #include <vector>
@@ -42,12 +42,12 @@ std::vector<double> egg_immediates(Params p);
 std::vector<double> rounded_x_immediates(Params p);
 std::vector<double> ellipse_immediates(Params p);
 
-// Closed ones, of 180 degrees, have no ends.
+// A closed outline, of 180 degrees, has no ends.
 Code ring_code(Params p);
 Code pie_code(Params p);
 
-Box square_bound(Params p);      // as far as the first parameter to every side
-Box half_sizes_bound(Params p);  // of the first two parameters
+Box square_bound(Params p);      // the first parameter is the half extent in x and y
+Box half_sizes_bound(Params p);  // the first two parameters are the half extents
 Box segment_bound(Params p);
 Box polygon_bound(Params p);
 Box regular_polygon_bound(Params p);

@@ -1,5 +1,5 @@
-// Rows of the outlines: shapes in the xy plane, for extrude and revolve. All distances are exact outside, and inside
-// but for `arc`.
+// Rows of the outlines: shapes in the xy plane, for extrude and revolve. All distances are exact outside, and also
+// inside except for `arc`.
 #include "compiler/shapes/outline_facts.h"
 #include "compiler/shapes/rows.h"
 #include "compiler/shapes/solid_facts.h"

@@ -7,12 +7,12 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr double kSqrt2PlusGolden = 1.9021130325903071;  // sqrt(1 + golden ratio^2) as well
+constexpr double kSqrt2PlusGolden = 1.9021130325903071;  // equals sqrt(1 + golden ratio^2)
 constexpr double kGolden = 1.6180339887498949;
 
 }  // namespace
 
-// All give the inradius, the apothem of a face and half an edge, for the circumradius p[0].
+// All functions return the inradius, the apothem of a face and half an edge, for the circumradius p[0].
 
 // Corners (1,1,1), ...: circumradius sqrt 3, a face's centre (1,1,-1)/3, an edge's middle (1,0,0).
 std::vector<double> tetrahedron_immediates(Params p) { return {p[0] / 3, p[0] * kSqrt2 / 3, p[0] * kSqrt2 / kSqrt3}; }
@@ -21,7 +21,7 @@ std::vector<double> tetrahedron_immediates(Params p) { return {p[0] / 3, p[0] * 
 std::vector<double> octahedron_immediates(Params p) { return {p[0] / kSqrt3, p[0] / kSqrt6, p[0] / kSqrt2}; }
 
 // Corners (1,1,1), (0, 1/g, g), ...: circumradius sqrt 3, inradius g^2 / |(0,g,1)|, a face's circumradius 2 /
-// |(0,g,1)| with apothem and half edge by the cosine g/2 and the sine sqrt(3-g)/2 of 36 degrees.
+// |(0,g,1)|, from which the cosine g/2 and the sine sqrt(3-g)/2 of 36 degrees give the apothem and half an edge.
 std::vector<double> dodecahedron_immediates(Params p) {
   const double unit = p[0] / kSqrt3;
   return {unit * (kGolden + 1) / kSqrt2PlusGolden, unit * kGolden / kSqrt2PlusGolden, unit / kGolden};

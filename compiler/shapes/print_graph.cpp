@@ -11,8 +11,8 @@
 namespace fathom::compiler {
 namespace {
 
-// How many of the first operands have a place of their own. Those after them may come in any order, which a pass may
-// change (compiler/passes/share.cpp).
+// Returns the number of leading operands whose order matters. The operands after them may come in any order, which a
+// pass may change (compiler/passes/share.cpp).
 std::size_t ordered_operands(Kind kind, std::size_t operands) {
   switch (kind) {
     case Kind::Add:
@@ -29,7 +29,8 @@ std::size_t ordered_operands(Kind kind, std::size_t operands) {
   }
 }
 
-// The operands as they are printed: a graph to be compared with another has those of any order in the order of lines.
+// Returns the operands in print order. With names by place, operands whose order does not matter are printed in the
+// order of lines, so that two graphs can be compared.
 std::vector<NodeId> printed_operands(const Graph& graph, NodeId id, NodeNames names) {
   std::vector<NodeId> operands(graph.children(id).begin(), graph.children(id).end());
   if (names == NodeNames::Numbers) return operands;
@@ -71,7 +72,7 @@ std::string print_params(Kind kind, std::span<const double> params) {
   return out;
 }
 
-// `place`: whether to say where in the source, too.
+// `place`: print the place in the source, too.
 std::string print_origin(const Origin& origin, const Source& source, bool place) {
   std::string out;
   if (!origin.name.empty()) out += fmt::format(" \"{}\"", origin.name);
@@ -81,7 +82,7 @@ std::string print_origin(const Origin& origin, const Source& source, bool place)
   return out.empty() ? out : ";" + out;
 }
 
-// Names by place, made distinct in the order of asking.
+// Names by place. A number makes equal names distinct, in the order of the calls.
 class PlaceNames {
  public:
   explicit PlaceNames(const Source& source) : source_(source) {}

@@ -1,4 +1,4 @@
-// Rows of the domain operators that repeat a child, by the device that domain.cpp calls a limit.
+// Rows of the domain operators that repeat a child, by the technique that domain.cpp calls a limit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace {
 
 using vm::Opcode;
 
-// Repetition. Parameters: period, count, jitter (three each). Derived for each axis: how many copies to either side
-// of a point are evaluated (0: the nearest alone; kAll: every one), and how far the others keep from the plane
-// through the middle of the nearest; then the child's reach and box.
+// Repetition. Parameters: period, count, jitter (three each). Derived per axis: the number of evaluated copies to
+// either side of a point (0: the nearest alone; kAll: every copy), and the distance of the other copies from the
+// plane through the middle of the nearest copy. Derived after them: the child's reach and box.
 
 constexpr double kAll = -1;
-constexpr double kMostCells = 8388608;  // 2^23: a float still counts the cells
+constexpr double kMostCells = 8388608;  // 2^23: a float can still count the cells
 constexpr int kMostCopies = 512;
 
 struct RepeatedAxis {
@@ -36,7 +36,8 @@ struct RepeatedAxis {
   double first() const { return endless() ? -kMostCells : -std::floor(count / 2); }
   double last() const { return endless() ? kMostCells - 1 : first() + count - 1; }
   double position(double number) const { return (number + half()) * period; }
-  // Copies evaluated at each point: a whole number, beyond any `int` for a period next to nothing.
+  // Number of copies evaluated at each point: a whole number, which exceeds any `int` if the period is next to
+  // nothing.
   double copies() const {
     if (!repeated()) return 1;
     return sides == kAll ? count : std::max(1.0, 2 * sides);
@@ -71,17 +72,17 @@ std::vector<double> derive_repetition(Params p, std::span<const Knowledge> child
     const auto axis = static_cast<int>(i);
     const double lo = child.box.lo[axis] - jitter, hi = child.box.hi[axis] + jitter;
     const double extent = std::max({hi, -lo, 0.0});
-    // The neighbour is the mirror image, then, and further; not when it is moved along any axis.
+    // The neighbour is then the mirror image and further away, unless jitter moves copies along any axis.
     const bool mirrored = child.symmetric[i] && !jitters && 2 * extent <= period;
     if (mirrored) continue;
-    // At least a quarter of a period to what is left out, so that steps are not too short.
+    // Keeps the copies left out at least a quarter of a period away, so that steps are not too short.
     sides[i] = std::ceil((extent + std::max({0.0, lo, -hi})) / period + 0.25);
     if (count > 0 && count <= 2 * sides[i]) sides[i] = kAll;
     if (sides[i] > 0) apart[i] = sides[i] * period - extent;
   }
   std::vector<double> derived = sides;
   derived.insert(derived.end(), apart.begin(), apart.end());
-  // Of an estimate nothing is known; a quarter is what fractals' estimates hold to.
+  // The reach of an estimate is unknown. A quarter is what the estimates of fractals keep.
   derived.push_back(child.reach > 0 ? child.reach : 0.25);
   for (int i = 0; i < 3; ++i) derived.push_back(std::clamp(child.box.lo[i], -kNoLimit, kNoLimit));
   for (int i = 0; i < 3; ++i) derived.push_back(std::clamp(child.box.hi[i], -kNoLimit, kNoLimit));
@@ -128,7 +129,7 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
     const double inf = std::numeric_limits<double>::infinity();
     k.symmetric[i] = children[0].symmetric[i] && !r.jitters();
     if (!a.repeated() && a.jitter == 0) continue;
-    // A copy may stand as far from its cell's middle as the child reaches: that much cancels.
+    // A copy may be as far from its cell's middle as the child reaches, and that distance cancels.
     const double reach = std::max(std::abs(a.lo), std::abs(a.hi)) + a.jitter;
     moved = std::max(moved, reach * std::max(1.0, children[0].lipschitz));
     k.box.lo[axis] = a.endless() && a.repeated() ? -inf : k.box.lo[axis] + a.position(a.first()) - a.jitter;
@@ -144,20 +145,21 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
   return k;
 }
 
-// The six numbers of in_cell in vm/interpret/domain-inl.h for the copy nearest to a point.
+// Returns the six numbers of in_cell() in vm/interpret/domain-inl.h for the copy nearest to a point.
 std::vector<double> nearest_cell(const RepeatedAxis& a) {
   if (!a.repeated()) return {0, 0, 0, 0, 0, 0};
   return {1 / a.period, 0.5 - a.half(), a.first(), a.last(), a.half(), a.period};
 }
 
-// How far the number of the copy `index` of those evaluated is from the cell's.
+// Returns the difference between the number of the evaluated copy `index` and the number of the cell.
 double copy_number(const RepeatedAxis& a, int index) {
   if (!a.repeated() || a.sides == 0) return 0;
   return a.sides == kAll ? a.first() + index : index + 1 - a.sides;
 }
 
-// The six numbers of in_cell for the copy `index`. Beyond the last copies the cell is the last that has `sides`
-// copies to either side of it, so that the same number of copies, all of them there, are evaluated everywhere.
+// Returns the six numbers of in_cell() for the copy `index`. Beyond the last copies the cell is the last cell with
+// `sides` copies on either side, so that the program evaluates the same number of copies everywhere, all of which
+// exist.
 std::vector<double> cell_immediates(const RepeatedAxis& a, int index) {
   if (!a.repeated() || a.sides == 0) return nearest_cell(a);
   const double offset = copy_number(a, index) + a.half();
@@ -215,15 +217,16 @@ Code repetition_code(Params p) {
   return code;
 }
 
-// Polar repetition. Parameter: count. Derived: copies evaluated to either side (kAll: every one), the angle of the
-// child's middle about the y axis, the angle that copies left out keep from the half-plane through the nearest's
-// middle (radians), the child's reach, its lowest and highest y, and its farthest and nearest distance from the axis.
+// Polar repetition. Parameter: count. Derived: the number of evaluated copies to either side (kAll: every copy), the
+// angle of the child's middle about the y axis, the angle between the copies left out and the half-plane through the
+// middle of the nearest copy (radians), the child's reach, its lowest and highest y, and its largest and smallest
+// distance from the axis.
 
 struct Wedge {
   double middle, half;  // radians
 };
 
-// The wedge about the y axis that holds the box; the whole turn when the box meets the axis.
+// Returns the wedge about the y axis that contains the box, or the whole turn if the box meets the axis.
 Wedge wedge_of(const Box& box) {
   if (box.lo.x <= 0 && box.hi.x >= 0 && box.lo.z <= 0 && box.hi.z >= 0) return {0, std::numbers::pi};
   const double middle = vm::real::atan2(box.lo.z + box.hi.z, box.lo.x + box.hi.x);
@@ -300,7 +303,7 @@ Code polar_code(Params p) {
   }
   code.after = {{Opcode::SectorLimit, {1 / angle, 0.5 - middle / angle, angle, middle, apart, p[8], p[5], p[6]}}};
   if (reach != 1) code.after.push_back({Opcode::Scale, {reach}});
-  // From afar the neighbours' wedges seem close: the box says how far all of it is.
+  // From afar the neighbours' wedges seem close, but the box gives the distance of all copies.
   const double radius = p[7];
   code.after.insert(
       code.after.end(),

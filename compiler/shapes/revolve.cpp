@@ -1,7 +1,8 @@
-// The outline that a revolve turns about the y axis. The part of it at x >= 0 becomes the solid. An edge on the axis
-// becomes no surface, nor does an edge beyond the axis, yet the outline's own distance counts both. An outline of
-// straight edges is therefore made anew without them: a polygon leaves the axis for a rectangle half as deep as it is
-// high, which no point at x >= 0 has nearer than one of the two points where the outline meets the axis.
+// The outline that a revolve turns about the y axis. The part of the outline at x >= 0 becomes the solid. An edge on
+// the axis becomes no surface, nor does an edge beyond the axis, yet the outline's own distance counts both. The
+// compiler therefore rebuilds an outline of straight edges without these edges: the polygon leaves the axis for a
+// rectangle half as deep as it is high. From any point at x >= 0, one of the two points where the outline meets the
+// axis is at least as near as the rectangle.
 #include "compiler/shapes/revolve.h"
 
 #include <algorithm>
@@ -23,8 +24,9 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr double kRounding = 1e-12;  // of places after transforms, as a part of the largest coordinate
-constexpr int kMostNodes = 256;      // of an outline that are made anew; shared ones count once a use
+constexpr double kRounding = 1e-12;  // of places after transforms, as a share of the largest coordinate
+// maximum nodes of an outline that are rebuilt; a shared node counts once per use
+constexpr int kMostNodes = 256;
 constexpr std::size_t kMostCorners = 4096;
 
 
@@ -38,7 +40,7 @@ std::vector<dvec2> cross_corners(Params p) {
   return {{w, l}, {w, w}, {l, w}, {l, -w}, {w, -w}, {w, -l}, {-w, -l}, {-w, -w}, {-l, -w}, {-l, w}, {-w, w}, {-w, l}};
 }
 
-// Of an outline that has straight edges alone; empty for every other node.
+// Returns the corners of an outline that has only straight edges; empty for every other node.
 std::vector<dvec2> corners_of(Kind kind, Params p) {
   std::vector<dvec2> corners;
   switch (kind) {
@@ -68,7 +70,7 @@ std::vector<dvec2> corners_of(Kind kind, Params p) {
   }
 }
 
-// The corners of a polygon without its edges on the axis and beyond. One corner at least is at x > rounding.
+// Removes the edges of a polygon on the axis and beyond. At least one corner is at x > rounding.
 class PolygonTrimmer {
  public:
   explicit PolygonTrimmer(double rounding) : rounding_(rounding) {}
@@ -112,8 +114,8 @@ class PolygonTrimmer {
   std::vector<dvec2> out_;
 };
 
-// The node under a transform with these parameters. A transform that it begins with is taken off where the two undo
-// each other.
+// Returns the node under a transform with these parameters. Removes a transform at the top of the node if the two
+// transforms cancel.
 NodeId placed(NodeMaker& maker, NodeId node, Params params, const Origin& origin) {
   const Graph& graph = maker.graph();
   if (graph.kind(node) == Kind::Transform && graph.params(node)[12] * params[12] == 1 &&
@@ -129,17 +131,18 @@ NodeId moved(NodeMaker& maker, NodeId node, double x, double y, const Origin& or
   return placed(maker, node, params, origin);
 }
 
-// An outline as revolve turns it.
+// An outline in the form that revolve turns.
 struct Trimmed {
   NodeId node;
-  bool exact;  // whether its distance at x >= 0 is that to edges at x > 0 alone, where it is exact by itself
+  // true if the distance at x >= 0 is that to edges at x > 0 alone, where the outline's distance is exact
+  bool exact;
 };
 
 class OutlineTrimmer {
  public:
   explicit OutlineTrimmer(NodeMaker& maker) : maker_(maker) {}
 
-  // `place` maps the node's plane to the one whose y axis is turned about.
+  // `place` maps the node's plane to the plane of the revolve, whose y axis is the axis of revolution.
   Trimmed trim(NodeId id, const Affine& place) {
     if (is_clear(id, place)) return {id, true};
     if (++visited_ > kMostNodes) return {id, false};
@@ -161,7 +164,7 @@ class OutlineTrimmer {
   }
 
  private:
-  // Whether all of the node is at x > 0, or the axis is one of its mirror lines.
+  // True if all of the node is at x > 0, or the axis is one of its mirror lines.
   bool is_clear(NodeId id, const Affine& place) {
     const Knowledge& known = maker_.known(id);
     const Box there = image(place, known.box);
@@ -216,7 +219,7 @@ class OutlineTrimmer {
     return {maker_.make(Kind::Polygon, points, {}, Origin(maker_.graph().origin(id))), true};
   }
 
-  // With sides along the axis and across it: the part at x >= 0, and its mirror image.
+  // Rebuilds a rectangle with sides along and across the axis: the part at x >= 0, and that part's mirror image.
   NodeId mirrored_rectangle(NodeId id, const Affine& place) {
     const std::size_t across = place.rows[0].y == 0 ? 0 : 1;
     const double slope = place.rows[0][static_cast<int>(across)], axis = -place.translation.x / slope;

@@ -1,4 +1,4 @@
-// Revolve over the outline that it turns (compiler/shapes/revolve.cpp).
+// Builds a revolve over an outline that is adapted to the axis (compiler/shapes/revolve.cpp).
 // Tested by: tests/compiler/shapes/outlines_test.cpp
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace fathom::compiler {
 
-// As NodeSpec::build. The node's derived number is 1 when it is as exact as its outline, else 0.
+// Implements NodeSpec::build. The node's derived number is 1 if the node is as exact as its outline, else 0.
 NodeId build_revolve(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin);
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// What the files of rows share: makers of parameters and rows, and what is known of nodes made of others.
+// Helpers that the files of rows share: makers of parameters and code, and facts about nodes composed of others.
 #pragma once
 
 #include <array>
@@ -22,7 +22,8 @@ std::vector<NodeSpec> function_rows();
 inline constexpr auto kPrimitive = Category::Primitive;
 inline constexpr std::optional<double> kRequired = std::nullopt;
 
-// A length above 0; at least 0; any number; a direction; a point.
+// Makers of parameters: a length above 0, a length of at least 0, any number, half extents, a corner, a thickness, a
+// blend's width.
 ParamSpec length(std::string_view name, std::string_view doc, std::optional<double> fallback = kRequired);
 ParamSpec length_or_zero(std::string_view name, std::string_view doc, std::optional<double> fallback = kRequired);
 ParamSpec number(std::string_view name, std::string_view doc, std::optional<double> fallback = kRequired);
@@ -32,7 +33,7 @@ ParamSpec thickness();
 ParamSpec blend_width();
 
 Code one(vm::Opcode opcode, std::vector<double> immediates);
-// Code of one instruction with the parameters, or what `Immediates` makes of them, as its immediates.
+// Returns code of one instruction, whose immediates are the parameters or the result of `Immediates`.
 template <vm::Opcode Op>
 Code code_of(Params params) {
   return one(Op, {params.begin(), params.end()});
@@ -42,9 +43,10 @@ Code code_of(Params params) {
   return one(Op, Immediates(params));
 }
 
-// The largest coordinate in the box, infinite when it has no end; 0 when it is empty.
+// Returns the largest magnitude of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
 double largest_coordinate(const Box& box);
-// The magnitude of an outline whose parts are evaluated from points as far off as its box reaches in the plane.
+// Returns the magnitude of an outline whose parts are evaluated from points as far away as its box reaches in the
+// plane.
 template <Box (*Bound)(Params)>
 double outline_magnitude(Params params) {
   Box box = Bound(params);
@@ -55,14 +57,14 @@ double outline_magnitude(Params params) {
 inline constexpr std::array<bool, 3> kAllAxes = {true, true, true};
 inline constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes};
 
-// Lipschitz constants, certificates, reach and symmetry of several children together: the worst of each. Boxes and
-// exactness inside are the caller's.
+// Combines the facts of several children by taking the worst of each: Lipschitz constants, certificates, reach and
+// symmetry. The caller sets the box and the exactness inside.
 Knowledge together(std::span<const Knowledge> children);
-// The surface moved out by `by`.
+// Returns the facts of the surface moved out by `by`.
 Knowledge offset(Knowledge k, double by);
-// No longer exact.
+// Returns the facts without exactness: at best a bound.
 Knowledge only_bound(Knowledge k);
-// Of a node whose child's point is mapped: no symmetry is known any more.
+// Returns the facts of a node that maps its child's point, for which no symmetry is known.
 Knowledge mapped(Knowledge k);
 
 }  // namespace fathom::compiler

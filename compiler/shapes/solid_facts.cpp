@@ -21,7 +21,7 @@ using glm::dvec3;
 
 dvec3 vec3_at(Params p, std::size_t i) { return {p[i], p[i + 1], p[i + 2]}; }
 
-// Corners of a triangle or quad; its last parameter is the thickness.
+// Returns the corners of a triangle or quad, whose last parameter is the thickness.
 std::vector<dvec3> corners(Params p) {
   std::vector<dvec3> result;
   for (std::size_t i = 0; i + 3 <= p.size(); i += 3) result.push_back(vec3_at(p, i));
@@ -34,7 +34,7 @@ double longest_side(const std::vector<dvec3>& v) {
   return longest;
 }
 
-// Twice the polygon's area as a vector along its normal (Newell's method).
+// Returns twice the polygon's area as a vector along its normal (Newell's method).
 dvec3 area_vector(const std::vector<dvec3>& v) {
   dvec3 sum(0.0);
   for (std::size_t i = 0; i < v.size(); ++i) sum += glm::cross(v[i] - v[0], v[(i + 1) % v.size()] - v[0]);
@@ -43,8 +43,9 @@ dvec3 area_vector(const std::vector<dvec3>& v) {
 
 constexpr const char* kCornerNames = "abcd";
 
-// Beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p escapes, for |w| >= |p| grows: the Mandelbulb lies within.
-// By Newton's method on r^(n-1) = 2: libm's pow differs between machines.
+// Returns the radius of a ball that contains the Mandelbulb: beyond |p| = 2^(1/(n-1)) <= 2 every orbit w -> w^n + p
+// escapes, because |w| >= |p| grows. Uses Newton's method on r^(n-1) = 2, because libm's pow differs between
+// machines.
 double escape_radius(double power) {
   double r = 2;
   for (int i = 0; i < 64; ++i) {
@@ -55,13 +56,14 @@ double escape_radius(double power) {
   return r;
 }
 
-// No orbit of q -> q^2 + c returns from beyond |q| = R with R^2 - |c| = R, for there |q^2 + c| >= |q|^2 - |c| > |q|.
+// Returns R with R^2 - |c| = R. No orbit of q -> q^2 + c returns from beyond |q| = R, because |q^2 + c| >= |q|^2 -
+// |c| > |q| there.
 double julia_escape_radius(Params p) {
   const double c = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
   return (1 + std::sqrt(1 + 4 * c)) / 2;
 }
 
-// The corners in one plane exactly: a quad's may be off by the tolerance of check_quad.
+// Returns the corners moved into one plane exactly: a quad's may be off by the tolerance of check_quad().
 std::vector<dvec3> flat_corners(Params p) {
   std::vector<dvec3> v = corners(p);
   const dvec3 normal = glm::normalize(area_vector(v));
@@ -137,7 +139,7 @@ Complaint check_quad(Params p) {
 Complaint check_mandelbulb(Params p) {
   if (p[0] < 2 || p[0] > 24) return fmt::format("`power` is {}; it must be a whole number from 2 to 24", p[0]);
   if (p[1] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[1]);
-  // |w|^2 after the escaping iteration is about bailout^(2 power) and must be a float.
+  // |w|^2 after the escaping iteration is about bailout^(2 power) and must fit into a float.
   const double largest = std::floor(std::pow(10.0, 18 / p[0]));
   if (p[2] < 2 || p[2] > largest) {
     return fmt::format("`bailout` is {}; for power {} it must be between 2 and {}", p[2], p[0], largest);
@@ -171,7 +173,7 @@ Complaint check_menger_sponge(Params p) {
 
 Complaint check_julia(Params p) {
   if (p[4] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[4]);
-  // |q|^2 after the escaping iteration is about bailout^4 and must be a float.
+  // |q|^2 after the escaping iteration is about bailout^4 and must fit into a float.
   constexpr double kLargestRadius = 1e6;
   const double radius = julia_escape_radius(p);
   if (radius > kLargestRadius) return fmt::format("`c` is too large; every orbit escapes from beyond {:.3g}", radius);
@@ -199,7 +201,7 @@ std::vector<double> infinite_cone_immediates(Params p) {
   return {sine, cosine};
 }
 
-// Radians per scene unit, and what brings the fastest change, sqrt 3 of them, to 1.
+// Returns radians per scene unit, and the factor that brings the largest slope, sqrt 3 times that number, to 1.
 std::vector<double> periodic_immediates(Params p) {
   const double k = 2 * std::numbers::pi / p[0];
   return {k, 1 / (std::numbers::sqrt3 * k)};
@@ -216,22 +218,23 @@ std::vector<double> plane_immediates(Params p) {
 
 std::vector<double> rounded_cylinder_immediates(Params p) { return {p[0] - p[2], p[1] - p[2], p[2]}; }
 
-// The side's outward normal in the half-plane (distance from the axis, y), and its length.
+// Returns the cone's sizes, the side's outward normal in the half-plane (distance from the axis, y), and its length.
 std::vector<double> cone_immediates(Params p) {
   const double bottom = p[0], top = p[1], half_height = p[2];
   const double slant = std::sqrt(4 * half_height * half_height + (bottom - top) * (bottom - top));
   return {half_height, bottom, top, 2 * half_height / slant, (bottom - top) / slant, slant};
 }
 
-// The side touches both balls: its outward normal in the half-plane is (sqrt(1 - b^2), b), b = (r1 - r2) / h.
+// The side touches both balls, so its outward normal in the half-plane is (sqrt(1 - b^2), b) with b = (r1 - r2) / h.
 std::vector<double> round_cone_immediates(Params p) {
   const double b = (p[0] - p[1]) / p[2];
-  // Balls that touch from within (b = +-1) have no side; a normal of not quite 0 keeps its cases apart on the axis.
+  // Balls that touch from inside (b = +-1) have no side. A normal of not quite 0 keeps the cases apart on the axis.
   return {p[0], p[1], p[2], std::max(1e-30, std::sqrt((1 - b) * (1 + b))), b};
 }
 
-// A frame with the first corner at its origin, the first edge along x and the normal along z; the first edge's
-// length; for each further edge its start, its direction and its length in that frame's xy plane; the thickness.
+// Returns a frame with the first corner at its origin, the first edge along x and the normal along z; the length of
+// the first edge; for each further edge its start, its direction and its length in the frame's xy plane; the
+// thickness.
 std::vector<double> sheet_immediates(Params p) {
   const std::vector<dvec3> v = flat_corners(p);
   const dvec3 z = glm::normalize(area_vector(v));
@@ -256,7 +259,7 @@ Box sphere_bound(Params p) { return Box::centred(dvec3(p[0])); }
 Box half_size_bound(Params p) { return Box::centred(vec3_at(p, 0)); }
 Box torus_bound(Params p) { return Box::centred({p[0] + p[1], p[1], p[0] + p[1]}); }
 
-// A half space is bounded on one side when its normal is along an axis.
+// A half space is bounded on one side if its normal is along an axis.
 Box plane_bound(Params p) {
   Box box = Box::everything();
   const std::vector<double> plane = plane_immediates(p);
@@ -286,12 +289,12 @@ Box sheet_bound(Params p) {
   return box.grown(p.back());
 }
 
-// They are evaluated from their corners, which near the surface are no further than their size.
+// Triangles and quads are evaluated from their corners, which near the surface are no further away than their size.
 double sheet_magnitude(Params p) {
   const Box box = sheet_bound(p);
   return glm::length(box.hi - box.lo);
 }
-// Near the inner side of a fat ring, the circle is much further off than the origin.
+// Near the inner side of a fat ring, the centre line is much further away than the origin.
 double torus_magnitude(Params p) { return std::min(p[0], p[1]); }
 
 // The estimate is at least about a quarter of the distance from the set.

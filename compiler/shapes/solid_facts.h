@@ -1,5 +1,5 @@
-// What the compiler knows of each solid primitive beside its opcode: which parameters fit together, the immediates
-// its opcode takes, and a box around it. All take the parameters in the order of the node table.
+// Facts about each solid primitive in addition to its opcode: which parameters fit together, the immediates of the
+// opcode, and a box around the primitive. All functions take the parameters in the order of the node table.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ Complaint check_quad(Params p);
 Complaint check_mandelbulb(Params p);
 Complaint check_box_frame(Params p);
 Complaint check_capped_torus(Params p);
-Complaint check_half_angle(Params p);  // the only parameter, below 90 degrees
+Complaint check_half_angle(Params p);  // takes an angle alone, which must be below 90 degrees
 Complaint check_menger_sponge(Params p);
 Complaint check_julia(Params p);
 
@@ -61,6 +61,6 @@ Box menger_sponge_bound(Params p);
 Box julia_bound(Params p);
 
 double torus_magnitude(Params p);
-double sheet_magnitude(Params p);  // of the numbers a triangle or quad is evaluated with, scene units
+double sheet_magnitude(Params p);  // of the numbers that a triangle or quad is evaluated with, scene units
 
 }  // namespace fathom::compiler

@@ -7,7 +7,7 @@ namespace {
 
 using vm::Opcode;
 constexpr PrimitiveFacts kAboutAxis{.symmetric = {true, false, true}};
-// Where the ends of an arc meet, or its hole closes, the inside is a bound.
+// The inside is only a bound where the ends of an arc meet, or its hole closes.
 constexpr PrimitiveFacts kTorusArcFacts{Exactness::Exact, Exactness::Bound, {true, false, true}};
 constexpr PrimitiveFacts kSymmetricBound{Exactness::Bound, Exactness::Bound, kAllAxes};
 constexpr PrimitiveFacts kBound{Exactness::Bound, Exactness::Bound};

@@ -12,16 +12,17 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kMostPrinted = 20;  // of errors, and of warnings; what a person reads in one go
-constexpr std::size_t kWidestQuote = 140;      // columns of a quoted line; longer ones are cut around the carets
-constexpr std::size_t kLead = 50;         // columns kept before the carets of a cut line
+// maximum of printed errors, and of printed warnings: a person reads as many in one go
+constexpr std::size_t kMostPrinted = 20;
+constexpr std::size_t kWidestQuote = 140;  // columns of a quoted line, which is cut around the carets if longer
+constexpr std::size_t kLead = 50;          // columns kept before the carets of a cut line
 constexpr std::size_t kTabWidth = 4;
 
-// Of a message, a label or a line of help: names and numbers can be as long as the file.
+// Maximum bytes of a message, a label or a line of help: names and numbers can be as long as the file.
 constexpr std::size_t kMostBytes = 2000;
-constexpr std::size_t kWindow = 4096;  // bytes on either side of the carets that may be shown
+constexpr std::size_t kWindow = 4096;  // bytes of a line that are considered on either side of the carets
 
-// Text that is not too long, cut between characters, and may be sent to a terminal.
+// Returns the text made printable on a terminal and cut to kMostBytes at the boundary of a character.
 std::string shown(std::string_view from) {
   std::string text = vm::printable(from);
   if (text.size() <= kMostBytes) return text;
@@ -44,10 +45,11 @@ const char* word(Severity severity) { return severity == Severity::Error ? "erro
 
 bool nowhere(Span span) { return span.begin == 0 && span.end == 0; }
 
-// A source line as it is shown: cells of one column each, tabs as blanks, what a terminal must not see replaced.
+// A source line as displayed, in cells of one column each. Tabs become blanks, and characters that a terminal must
+// not receive become U+FFFD.
 struct Shown {
   std::vector<std::string_view> cells;
-  std::vector<std::uint32_t> bytes;  // where in the line each cell's character begins
+  std::vector<std::uint32_t> bytes;  // offset within the line of each cell's character
 
   explicit Shown(std::string_view line) {
     for (std::size_t at = 0; at < line.size();) {
@@ -62,7 +64,7 @@ struct Shown {
     }
   }
 
-  // The first column at or after a byte of the line.
+  // Returns the first column at or after a byte of the line.
   std::size_t column(std::uint32_t byte) const {
     return static_cast<std::size_t>(std::lower_bound(bytes.begin(), bytes.end(), byte) - bytes.begin());
   }
@@ -73,9 +75,10 @@ struct Shown {
   }
 };
 
-// The quoted line and the carets under it, without gutter; both cut to kWidestQuote columns around the carets.
+// Returns the quoted line and the carets under it, without the gutter, both cut to kWidestQuote columns around the
+// carets.
 std::pair<std::string, std::string> quote(std::string_view line, std::uint32_t line_start, Span span) {
-  // Of a long line no more than what can be shown.
+  // Considers only the part of a long line that can be shown.
   const std::size_t at = span.begin - line_start, from = at > kWindow ? at - kWindow : 0;
   line = line.substr(std::min(from, line.size()), 2 * kWindow);
   line_start += static_cast<std::uint32_t>(from);
@@ -181,7 +184,8 @@ void Diagnostics::add(Diagnostic d) {
   all_.push_back(std::move(d));
 }
 
-// One slip in a loop is reported once, and counted; what a scene shows is reported each time.
+// True if the same error was reported at the same place, which counts its repetitions: a mistake in a loop is
+// reported once. The values that a scene shows (W0407) are reported each time.
 bool Diagnostics::count_known(const std::string& code, Span span) {
   if (span.trace == 0 || code == "W0407") return false;
   const auto known = std::ranges::find_if(all_, [&](const Diagnostic& d) {
@@ -192,11 +196,11 @@ bool Diagnostics::count_known(const std::string& code, Span span) {
   return true;
 }
 
-// The calls and loops that led to it, the innermost first.
+// Describes the calls and loops that led to the diagnostic, the innermost first.
 std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& source) const {
   constexpr std::size_t kMostCalls = 8;
   std::vector<std::string> lines;
-  // A span may come from what another collection of diagnostics was made with.
+  // A span can carry the trace number of another Diagnostics object.
   for (std::uint32_t number = d.span.trace; number > 0 && number <= traces_.size();
        number = traces_[number - 1].outside) {
     if (lines.size() == kMostCalls) {

@@ -1,4 +1,4 @@
-// What the user did wrong, and where: errors and warnings with a place in the source, collected over a whole file.
+// Errors and warnings about a scene, each with a place in the source, collected over a whole file.
 //
 //     error[E0102]: unknown property `fvo` in `camera`
 //       --> toy.json:2:42
@@ -27,21 +27,21 @@ struct Diagnostic {
   std::string code;     // e.g. E0102; each code has one meaning
   std::string message;  // one line, no full stop
   Span span;
-  std::string label;              // beside the carets; may be empty
-  std::vector<std::string> help;  // each a line after "= help:"
-  std::size_t again = 0;          // how often more it was met in calls and loops
+  std::string label;              // printed after the carets; may be empty
+  std::vector<std::string> help;  // printed as one line each after "= help:"
+  std::size_t again = 0;          // number of further occurrences in calls and loops
 };
 
-// A call of a function, or a round of a loop, that led to a place.
+// A function call, or an iteration of a loop, that led to a place in the source.
 struct Trace {
-  std::uint32_t outside;  // the trace of the call itself; 0: none
+  std::uint32_t outside;  // number of the trace that the call is in; 0: none
   Span at;                // the call or loop
-  Span name;              // the function's, or the loop's variable
+  Span name;              // the function's name, or the loop variable's
   bool loop;
-  double value;  // of the loop's variable; not a number when it is none
+  double value;  // the loop variable's; NaN if the variable is not a number
 };
 
-// Notation of the source; remedies are worded for it.
+// Notation of the source, in which remedies are worded.
 enum class Notation { Json, Text };
 
 enum class ErrorFormat { Text, Short, Json };
@@ -54,15 +54,15 @@ class Diagnostics {
                std::vector<std::string> help = {});
 
   void set_notation(Notation notation) { notation_ = notation; }
-  // The remedy in the source's notation.
+  // Returns the remedy in the source's notation.
   std::string spelled(std::string json, std::string text) const {
     return notation_ == Notation::Json ? std::move(json) : std::move(text);
   }
 
-  // Adds the errors of a text that stands at `base` among the source's, without their calls.
+  // Adds the errors, without warnings and traces, of a text that begins at offset `base` of the source.
   void append(const Diagnostics& of_text, std::uint32_t base);
 
-  // The number by which spans name it.
+  // Returns the trace's number, for Span::trace.
   std::uint32_t add_trace(const Trace& trace) {
     traces_.push_back(trace);
     return static_cast<std::uint32_t>(traces_.size());
@@ -71,12 +71,13 @@ class Diagnostics {
   bool has_errors() const { return errors_ > 0; }
   std::size_t errors() const { return errors_; }
   std::size_t warnings() const { return warnings_; }
-  // Whether there are so many errors that looking for more is of no use: a file can have millions.
+  // True if the file has so many errors that looking for more is useless: a file can have millions.
   bool full() const { return errors_ >= kMostKept; }
-  // The first kMostKept errors, and as many warnings.
+  // The first kMostKept errors and the first kMostKept warnings.
   const std::vector<Diagnostic>& all() const { return all_; }
 
-  // Every diagnostic in source order (the first 20 errors, then how many more there are).
+  // Prints the diagnostics in source order: the first 20 errors, the first 20 warnings, and the number of further
+  // errors.
   std::string print(const Source& source, ErrorFormat format, bool color = false) const;
 
  private:
@@ -90,10 +91,10 @@ class Diagnostics {
   std::vector<Trace> traces_;
   Notation notation_ = Notation::Json;
   std::size_t errors_ = 0, warnings_ = 0;
-  std::size_t repeated_ = 0;  // errors that were met before at their place
+  std::size_t repeated_ = 0;  // errors that repeat an earlier error at its place
 };
 
-// The candidate nearest to `word` by edit distance, or empty when none is near enough to be a typing error.
+// Returns the candidate nearest to `word` by edit distance, or empty if none is near enough for a typing error.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace fathom::compiler

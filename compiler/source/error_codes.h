@@ -1,4 +1,4 @@
-// Every code a diagnostic can have; each has one meaning and keeps it for good.
+// The codes of all diagnostics. Each code has one meaning, which never changes.
 // Tested by: tests/compiler/source/diagnostics_test.cpp (every code has a file in tests/golden/diagnostics)
 #pragma once
 
@@ -65,7 +65,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     // E05xx: the command line's values for a scene
     {"E0501", "a value for a parameter that the scene does not have"},
     {"E0502", "a value for a parameter out of its range"},
-    // E06xx: formats from elsewhere
+    // E06xx: foreign formats
     {"E0601", "unknown operation in an expression list"},
     {"E0602", "an operation with too few or too many operands"},
     {"E0603", "an operand that no line above has as its name"},
@@ -100,7 +100,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0405", "unused name"},
     {"W0406", "a function in the place of a built-in one"},
     {"W0407", "a value that the scene shows"},
-    // W05xx: warnings about what is sound but surely not meant, or dear (compiler/analysis/lints.h)
+    // W05xx: warnings about scenes that are valid but surely not meant, or expensive (compiler/analysis/lints.h)
     {"W0501", "a part that never shows"},
     {"W0502", "an operation that leaves nothing"},
     {"W0503", "a cut that cuts nothing off"},

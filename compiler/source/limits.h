@@ -1,6 +1,6 @@
-// Limits: what a scene may ask for before it is refused. The one table: `--limit NAME=VALUE`, `fathom help limits`,
-// docs/LIMITS.md and the tests read it. Whoever enforces a limit gets the Limits and says in its message where the
-// scene goes beyond, by how much, and how to allow it (`raise()`). Tested by: tests/compiler/source/limits_test.cpp,
+// Limits on the size of scenes, in one table that `--limit NAME=VALUE`, `fathom help limits`, docs/LIMITS.md and the
+// tests read. Code that enforces a limit takes the Limits and reports where the scene exceeds the limit, by how much,
+// and how to allow it (`raise()`). Tested by: tests/compiler/source/limits_test.cpp,
 // tests/runtime/cli/input/cli_limits_test.cpp, tests/hostile
 #pragma once
 
@@ -16,7 +16,7 @@ class VerifiedProgram;
 
 namespace fathom::compiler {
 
-// Numbers of the units that the table says; whole but for `coordinate`.
+// Values in the units of the table below. All except `coordinate` are whole numbers.
 struct Limits {
   double file_size = 32 << 20;
   double tokens = 4e6;
@@ -34,22 +34,22 @@ struct Limits {
   double image_side = 65535;
   double pixels = 1 << 28;
   double samples = 1 << 20;
-  double memory = 0;  // 0: three quarters of the machine's
+  double memory = 0;  // 0: three quarters of the machine's memory
 };
 
 struct LimitRow {
   std::string_view name;
   double Limits::*value;
-  double largest;  // that it can be set to; the least is 1
+  double largest;  // maximum that the limit can be set to; the minimum is 1
   std::string_view unit;
   std::string_view bounds;
-  std::string_view why;  // it goes no higher
+  std::string_view why;  // reason for `largest`
 };
 
 inline constexpr double kAnySize = 1e15;
 
-// Bytes of memory per node of the graph, from its text to its programs: 200,000 balls, two nodes each, take 1,600,
-// and 1,700 where regions are built.
+// Bytes of memory per node of the graph, from its text to its programs: 200,000 balls of two nodes each take 1,600
+// per node, and 1,700 where regions are built.
 inline constexpr double kBytesPerNode = 1800;
 
 inline constexpr std::array<LimitRow, 17> kLimits = {{
@@ -92,7 +92,7 @@ constexpr const LimitRow* find_limit(std::string_view name) {
   return nullptr;
 }
 
-// The table's row of a field.
+// Returns the table's row of a field.
 constexpr const LimitRow& limit_row(double Limits::*value) {
   for (const LimitRow& row : kLimits) {
     if (row.value == value) return row;
@@ -100,21 +100,21 @@ constexpr const LimitRow& limit_row(double Limits::*value) {
   return kLimits.front();
 }
 
-// How to allow `needed`, a line of help: "--limit nodes=2000000 allows more", or why nothing does.
+// Returns a line of help on how to allow `needed`: "--limit nodes=2000000 allows more", or why nothing allows it.
 std::string raise(double Limits::*value, double needed);
 
-// The most that the table can be set to. Files are read and programs compiled within this; excess_of() tells what the
-// user's limits forbid of them.
+// Returns the maxima of the table as limits of the machine. Files are read and programs compiled within these limits.
+// excess_of() then reports the excess over the user's limits.
 vm::Limits largest_machine();
 
-// What goes beyond the limits of a program that largest_machine() allows, and how to allow it; nullopt when nothing
-// does.
+// A size beyond the user's limits, and how to allow it.
 struct Excess {
   std::string what, remedy;
 };
+// Checks a program that largest_machine() allows. Returns nullopt if the program is within the limits.
 std::optional<Excess> excess_of(const vm::VerifiedProgram& program, const Limits& limits);
 
-// The same of a graph with that many nodes.
+// Checks a graph of `nodes` nodes in the same way.
 std::optional<Excess> excess_of(double nodes, const Limits& limits);
 
 }  // namespace fathom::compiler

@@ -13,7 +13,7 @@ namespace {
 
 using Lines = std::vector<std::string_view>;
 
-constexpr std::size_t kContext = 3;  // lines around a change, as diff -u has them
+constexpr std::size_t kContext = 3;  // unchanged lines around a change, as in diff -u
 
 Lines split(std::string_view text) {
   Lines lines;
@@ -31,7 +31,8 @@ struct Edit {
   std::string_view line;
 };
 
-// Numbers that are equal where lines are: aligning compares each line with each, and a line can be a megabyte.
+// Numbers the lines so that equal lines have equal numbers: align() compares every pair of lines, and a line can be a
+// megabyte.
 std::pair<std::vector<std::size_t>, std::vector<std::size_t>> numbered(const Lines& before, const Lines& after) {
   std::unordered_map<std::string_view, std::size_t> numbers;
   const auto of = [&](const Lines& lines) {
@@ -43,12 +44,13 @@ std::pair<std::vector<std::size_t>, std::vector<std::size_t>> numbered(const Lin
   return {std::move(first), of(after)};
 }
 
-// The edits that keep a longest common subsequence of lines. Source: Wagner & Fischer, "The string-to-string
-// correction problem", 1974; memory and time grow with the product of the lengths.
+// Returns the edits that keep a longest common subsequence of lines. Source: Wagner & Fischer, "The string-to-string
+// correction problem", 1974. Memory and time grow with the product of the lengths.
 std::vector<Edit> align(const Lines& before, const Lines& after) {
   const auto [old_lines, new_lines] = numbered(before, after);
   const std::size_t columns = after.size() + 1;
-  std::vector<std::uint16_t> common((before.size() + 1) * columns, 0);  // of what follows [before][after]
+  // [before][after] length of the longest common subsequence of the lines from there on
+  std::vector<std::uint16_t> common((before.size() + 1) * columns, 0);
   const auto at = [&](std::size_t i, std::size_t j) -> std::uint16_t& { return common[i * columns + j]; };
   for (std::size_t i = before.size(); i-- > 0;) {
     for (std::size_t j = after.size(); j-- > 0;) {
@@ -70,8 +72,8 @@ std::vector<Edit> align(const Lines& before, const Lines& after) {
   return edits;
 }
 
-// One past the last edit of the hunk that starts at `begin`: changes with no more than twice the context between
-// them.
+// Returns one past the last edit of the hunk that starts at `begin`. A hunk joins changes that are at most twice the
+// context apart.
 std::size_t hunk_end(const std::vector<Edit>& edits, std::size_t begin) {
   std::size_t last_change = begin;
   for (std::size_t i = begin; i < edits.size() && i <= last_change + 2 * kContext + 1; ++i) {
@@ -97,7 +99,7 @@ std::string print_hunks(const std::vector<Edit>& edits) {
     std::string lines;
     for (std::size_t i = begin; i < end; ++i) lines += fmt::format("{}{}\n", edits[i].mark, edits[i].line);
     advance(end);
-    // A range of no lines is named by the line before it.
+    // The line before an empty range names the range.
     const std::size_t gone = before - first_before, come = after - first_after;
     out += fmt::format("@@ -{},{} +{},{} @@\n{}", first_before - (gone == 0), gone, first_after - (come == 0), come,
                        lines);

@@ -7,9 +7,9 @@
 
 namespace fathom::compiler {
 
-// The hunks, with three lines of what stays around each change; empty when the texts are equal. The fewest lines that
-// explain the change are marked, unless more than `limit` lines of either text lie between the first difference and
-// the last: then a line that says so. `limit` is at most 65535.
+// Returns the hunks, with three unchanged lines around each change; empty when the texts are equal. The hunks mark
+// the fewest lines that explain the change. If more than `limit` lines of either text lie between the first and the
+// last difference, the result is one line that says so. `limit` is at most 65535.
 std::string unified_diff(std::string_view before, std::string_view after, std::size_t limit = 5000);
 
 }  // namespace fathom::compiler

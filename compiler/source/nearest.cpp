@@ -1,4 +1,4 @@
-// Did you mean: nearest() of diagnostics.h.
+// Did you mean: implements nearest() of diagnostics.h.
 // Tested by: tests/compiler/source/diagnostics_test.cpp
 #include <algorithm>
 #include <cctype>
@@ -18,14 +18,14 @@ std::string lower(std::string_view text) {
 }
 
 // Bounds on the time that a file full of mistakes takes.
-constexpr std::size_t kLongestWord = 40;  // letters of a word that is typed
+constexpr std::size_t kLongestWord = 40;  // letters; longer words get no suggestion
 constexpr std::size_t kMostCandidates = 4000;
 
-// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`: the optimal string alignment
-// distance (Damerau, "A technique for computer detection and correction of spelling errors", 1964; each stretch is
-// edited once); more than `most` when it is more.
+// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`: the
+// optimal string alignment distance (Damerau, "A technique for computer detection and correction of spelling errors",
+// 1964; no substring is edited twice). Returns more than `most` if the distance exceeds `most`.
 std::size_t edits(std::string_view a, std::string_view b, std::size_t most) {
-  const auto begin = std::mismatch(a.begin(), a.end(), b.begin(), b.end());  // what they share needs no edit
+  const auto begin = std::mismatch(a.begin(), a.end(), b.begin(), b.end());  // the common prefix needs no edit
   a.remove_prefix(static_cast<std::size_t>(begin.first - a.begin()));
   b.remove_prefix(static_cast<std::size_t>(begin.second - b.begin()));
   std::vector<std::size_t> before_last, last(b.size() + 1), row(b.size() + 1);
@@ -49,7 +49,7 @@ std::size_t edits(std::string_view a, std::string_view b, std::size_t most) {
 
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
   if (word.size() > kLongestWord) return {};
-  // One typing error in three letters; a word of one or two letters has room for one.
+  // Allows one typing error per three letters, and one in a word of one or two letters.
   const std::size_t most = std::max<std::size_t>(1, word.size() / 3);
   std::string_view best;
   std::size_t fewest = most + 1;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kStride = 256;
 
-// Every byte but a UTF-8 continuation byte begins a code point.
+// Every byte except a UTF-8 continuation byte begins a code point.
 bool begins_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }
 
 }  // namespace
@@ -33,7 +33,7 @@ const Source& Source::import(std::string path, std::string name, std::string tex
   return *imports_.back().file;
 }
 
-// A byte between files, so that the end of one is not the begin of the next.
+// Counts one byte between files, so that the end of a file differs from the beginning of the next.
 std::uint64_t Source::size() const {
   const Source& last = imports_.empty() ? *this : *imports_.back().file;
   return std::uint64_t{last.base_} + last.text_.size() + 1;

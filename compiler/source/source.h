@@ -9,11 +9,11 @@
 
 namespace fathom::compiler {
 
-// Bytes [begin, end) of a source and its imports, one after the other. {0, 0} stands for "nowhere in particular".
+// Bytes [begin, end) of a source followed by its imports. {0, 0} stands for "nowhere in particular".
 struct Span {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  std::uint32_t trace = 0;  // the call or loop that led there (Diagnostics::add_trace); 0: none
+  std::uint32_t trace = 0;  // number of the call or loop that led there (Diagnostics::add_trace); 0: none
 };
 
 struct Position {
@@ -32,18 +32,18 @@ class Source {
   const std::string& text() const { return text_; }
   std::uint32_t base() const { return base_; }  // offset of the text's first byte; 0 except in imports
 
-  // Adds a file that it imports.
+  // Adds a file that this source imports.
   const Source& import(std::string path, std::string name, std::string text, bool derived = false);
   const std::vector<Import>& imports() const { return imports_; }
-  // Bytes of it and its imports.
+  // Bytes of this source and its imports, and one between files.
   std::uint64_t size() const;
 
-  // The same text and imports by another name.
+  // Returns the same text and imports under another name.
   Source renamed(std::string name) const;
 
-  // The file of an offset: this one, or an import.
+  // Returns the file of an offset: this one, or an import.
   const Source& file(std::uint32_t offset) const;
-  // Places and lines within the offset's file.
+  // Places, lines and excerpts within the offset's file.
   Position locate(std::uint32_t offset) const;
   std::string place(std::uint32_t offset) const;      // scene.json:3:14
   std::string in_import(std::uint32_t offset) const;  // " in lib/gears.fathom"; empty within this file
@@ -57,15 +57,16 @@ class Source {
 
   std::string name_, text_;
   std::uint32_t base_ = 0;
-  std::vector<Import> imports_;  // by base
+  std::vector<Import> imports_;  // in order of their base offsets
   std::vector<std::uint32_t> line_starts_;
-  std::vector<std::uint32_t> code_points_;  // before every kStride-th byte: positions in long lines cost no more
+  // number of code points before every kStride-th byte, which makes positions in long lines cheap
+  std::vector<std::uint32_t> code_points_;
 };
 
 struct Import {
-  std::string path;  // from the folder of the source, as `lib/gears.fathom`
+  std::string path;  // relative to the source's folder, e.g. `lib/gears.fathom`
   std::shared_ptr<const Source> file;
-  bool derived;  // no file has this text: it was made from that of another import
+  bool derived;  // true if no file has this text: the compiler made it from another import's text
 };
 
 }  // namespace fathom::compiler

@@ -38,7 +38,7 @@ SceneBuilder::SceneBuilder(const std::vector<CheckedNode>& named, const std::vec
   }
 }
 
-// Reports it once; what is not built then is not missed.
+// Reports the excess once. Nodes left out after that report cause no further errors.
 bool SceneBuilder::too_many_nodes(const CheckedNode& node) {
   const std::optional<Excess> excess =
       excess_of(static_cast<double>(std::max(scene_.graph.size(), built_nodes_)), limits_);
@@ -69,13 +69,13 @@ Scene SceneBuilder::finish() {
 }
 
 SceneBuilder::Key SceneBuilder::key(std::uint32_t name, Context context) const {
-  // Without paint within, a named node is the same in every object.
+  // A named node without materials inside is the same in every object.
   if (!has_paint_[name]) return {name, kNoNode, kNoNode};
   return {name, context.object, context.material.value_or(kNoNode)};
 }
 
 void SceneBuilder::build_named(std::uint32_t name, Context context) {
-  // A stack of its own: names can use each other in a chain as long as the file.
+  // Explicit stack: names can use each other in a chain as long as the file.
   struct Pending {
     std::uint32_t name;
     Context context;
@@ -121,7 +121,7 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
   std::vector<NodeId> children;
   for (const Built& child : over) children.push_back(child.id);
   if (node.formula && !holds_in_float(*node.formula, diagnostics_)) {
-    children.push_back(scene_.graph.add(Kind::Constant, std::array<double, 1>{1.0}, {}));  // to go on with
+    children.push_back(scene_.graph.add(Kind::Constant, std::array<double, 1>{1.0}, {}));  // placeholder
   } else if (node.formula) {
     children.push_back(make_formula(scene_.graph, *node.formula, node.name));
   }
@@ -130,7 +130,7 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
   if (type_spans_.size() <= id) type_spans_.resize(id + 1);
   if (type_spans_[id].end == 0) type_spans_[id] = node.type_span;
   Built built{id, painted};
-  // A combinator of one is that one.
+  // A combinator with one child is that child.
   if (spec(node.kind).category == Category::Combinator && over.size() == 1) {
     built.placements = over[0].placements;
     built.placements.push_back(id);

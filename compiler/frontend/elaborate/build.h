@@ -1,7 +1,7 @@
-// From checked nodes to the graph of nodes as described (compiler/derive/derive.h), each object painted with its surface.
+// Builder of the graph of described nodes (compiler/derive/derive.h), where each object is painted with its surface.
 //
-// A node without a material of its own is painted by what it lies in. A Paint is left out where every point below it
-// is painted further in already.
+// A node without a material of its own inherits the material of the enclosing node. The builder omits a Paint node if
+// every point below that node is painted further inside already.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -25,32 +25,34 @@ namespace fathom::compiler {
 
 class SceneBuilder {
  public:
-  // `named` are the definitions, `uses` their uses, `order` as order_names() gives it without cycles. The default
-  // material is added to `materials`, whose textures are `textures`, when an object needs it. All must outlive the
-  // builder.
+  // `named` are the definitions, `uses` their uses, and `order` is the result of order_names() for definitions
+  // without cycles. The builder adds the default material to `materials` when an object needs it. `textures` are the
+  // textures of `materials`. All arguments must outlive the builder.
   SceneBuilder(const std::vector<CheckedNode>& named, const std::vector<std::vector<Use>>& uses,
                const std::vector<std::uint32_t>& order, std::vector<Material>& materials,
                std::span<const Texture> textures, const Limits& limits, Diagnostics& diagnostics);
 
   void add_object(const CheckedNode& node);
 
-  // The union of the objects; the builder is empty afterwards.
+  // Returns the union of the objects. The builder is empty afterwards.
   Scene finish();
   std::vector<Surface> take_surfaces() { return std::move(surfaces_); }
   std::vector<Span> take_type_spans() { return std::move(type_spans_); }  // as Elaborated::type_spans
 
  private:
-  // What a node becomes depends on the object it is in and the material it inherits.
+  // Context of a node. The node's result depends on its object and on the material it inherits.
   struct Context {
     std::uint32_t object;
     std::optional<std::uint32_t> material;
-    bool is_new = false;  // the material is the node's own, and another than around it or in the node's coordinates
+    // The node has a material of its own, which differs from the inherited one or is in the node's coordinates.
+    bool is_new = false;
   };
   struct Built {
     NodeId id;
     bool painted;  // every point has a surface
-    // The nodes that place it, a move or a union of one each, the innermost first. A material in the node's
-    // coordinates is given to what they hold: so to move a thing is the same before it is painted and after.
+    // Nodes that place the result, innermost first: Transform nodes, and combinators with one child. A material in
+    // the node's coordinates is applied below all of them, so moving a node before or after painting gives the same
+    // result.
     std::vector<NodeId> placements = {};
   };
   using Key = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;  // named node, object, material
@@ -68,11 +70,15 @@ class SceneBuilder {
   const std::vector<CheckedNode>& named_;
   const std::vector<std::vector<Use>>& uses_;
   std::vector<Material>& materials_;
-  std::vector<bool> placed_;  // [material] whether it is in the coordinates of its node
+  std::vector<bool> placed_;  // [material] true if the material is in its node's coordinates
   const Limits& limits_;
-  std::size_t built_nodes_ = 0;  // those of equal nodes, too: what is used in many objects is built anew in each
-  bool full_ = false;            // there are more nodes than the limit, which was reported
-  std::vector<bool> has_paint_;  // of each named node: whether a material is given in it or in what it uses
+  // Number of nodes built, including duplicates of graph nodes: a named node with materials is built again per
+  // object.
+  std::size_t built_nodes_ = 0;
+  // The number of nodes exceeded the limit, and the error is reported.
+  bool full_ = false;
+  // [named node] true if the node or any node it uses has a material.
+  std::vector<bool> has_paint_;
   Diagnostics& diagnostics_;
   Scene scene_;
   std::vector<Span> type_spans_;  // [node]
@@ -80,8 +86,8 @@ class SceneBuilder {
   std::vector<std::string> object_names_;
   std::vector<NodeId> objects_;
   std::set<std::string> taken_names_;
-  std::map<std::string, int> name_counts_;  // how many objects wanted each name
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> surface_numbers_;  // of object and material
+  std::map<std::string, int> name_counts_;  // number of objects that asked for each name
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> surface_numbers_;  // by object and material
   std::optional<std::uint32_t> default_material_;
   std::map<Key, Built> built_;
 };

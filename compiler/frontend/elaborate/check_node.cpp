@@ -115,7 +115,8 @@ void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, s
     diagnostics_.error("E0107", value.span, fmt::format("{} is empty", whose), "needs at least one node",
                        {"such as [{\"type\": \"sphere\", \"radius\": 1}]"});
   }
-  // What is no record is reported at once: a million of them need no nodes.
+  // Check an item that is not a record immediately, because it needs no CheckedNode. A list may have a million of
+  // them.
   const auto is_record = [](const syntax::Value& item) { return std::holds_alternative<syntax::Record>(item.data); };
   nodes.resize(static_cast<std::size_t>(std::count_if(list.begin(), list.end(), is_record)));
   CheckedNode none;
@@ -128,7 +129,8 @@ void NodeChecker::add_list(const syntax::Value& value, std::string_view whose, s
       check_node(item, none);
     }
   }
-  std::reverse(pending_.begin() + before, pending_.end());  // the first is checked first: errors may be too many
+  // The first item is checked first, because the number of errors is limited.
+  std::reverse(pending_.begin() + before, pending_.end());
 }
 
 void NodeChecker::add_one(const syntax::Value& value, std::vector<CheckedNode>& nodes) {
@@ -177,7 +179,7 @@ void NodeChecker::check_type(const syntax::Record& record, const syntax::Propert
   }
 }
 
-// Two ends in place of a length: they give it, and where the node stands.
+// Reads the two end points given instead of a length. The ends determine the length and the placement of the node.
 void NodeChecker::check_between(const RecordReader& reader, const syntax::Record& record, const NodeSpec& row,
                                 CheckedNode& node) {
   const Between& between = *row.between;
@@ -230,7 +232,7 @@ void NodeChecker::report_unknown_type(const syntax::Record& record, const syntax
                                       std::string_view name, CheckedNode& node) {
   diagnostics_.error("E0201", type.value->span, fmt::format("unknown type of node `{}`", name), "",
                      {did_you_mean(name, node_types())});
-  // What it is made of and where it stands can be checked all the same.
+  // The children and the material can still be checked.
   if (const syntax::Property* of = record.find("of")) {
     if (std::holds_alternative<syntax::List>(of->value->data)) add_list(*of->value, "`of`", node.children);
     if (std::holds_alternative<syntax::Record>(of->value->data)) add_one(*of->value, node.children);

@@ -1,4 +1,4 @@
-// Checks nodes as written and resolves the names in them.
+// Checker for nodes as written. Resolves the names in them.
 // Tested by: tests/golden/diagnostics (E01xx, E02xx, E03xx), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -16,7 +16,8 @@
 
 namespace fathom::compiler {
 
-// The names that a kind of thing has in a scene file, numbered in file order, and which of them were used.
+// Names that one kind of definition (materials or nodes) has in a scene file, numbered in file order, and which of
+// them are used.
 class Names {
  public:
   void add(const syntax::Property& property);
@@ -25,12 +26,12 @@ class Names {
   Span span(std::uint32_t number) const { return spans_[number]; }
   bool used(std::uint32_t number) const { return used_[number]; }
 
-  // The number of `name`, which counts as used from now on; nullopt after reporting `what` as unknown.
+  // Returns the number of `name` and marks the name as used. Returns nullopt after reporting `what` as unknown.
   std::optional<std::uint32_t> resolve(std::string_view name, std::string_view what, const char* code, Span span,
                                        Diagnostics& diagnostics);
 
  private:
-  std::vector<std::string_view> names_;  // into the syntax
+  std::vector<std::string_view> names_;  // point into the syntax tree
   std::vector<Span> spans_;
   std::vector<bool> used_;
   std::unordered_map<std::string_view, std::uint32_t> numbers_;
@@ -41,14 +42,14 @@ class NodeChecker {
   NodeChecker(Names& materials, Names& nodes, const Scope& scope, Diagnostics& diagnostics)
       : materials_(materials), nodes_(nodes), scope_(scope), diagnostics_(diagnostics) {}
 
-  // The node, fit for building unless something was reported.
+  // Returns the node, which is valid for building unless the checker reported an error.
   CheckedNode check(const syntax::Value& value);
 
-  // The nodes of a list; `whose` names it in the message that it is empty.
+  // Returns the nodes of a list. `whose` names the list in the error message for an empty list.
   std::vector<CheckedNode> check_list(const syntax::Value& value, std::string_view whose);
 
  private:
-  // A node that is still to be checked, and where the result goes.
+  // Node still to be checked, and the place for its result.
   struct Pending {
     const syntax::Value* value;
     CheckedNode* node;
@@ -71,7 +72,7 @@ class NodeChecker {
   Names& nodes_;
   const Scope& scope_;
   Diagnostics& diagnostics_;
-  std::vector<Pending> pending_;  // in place of recursion: nodes may be nested thousands deep
+  std::vector<Pending> pending_;  // in place of recursion, because nodes may be nested thousands deep
 };
 
 }  // namespace fathom::compiler

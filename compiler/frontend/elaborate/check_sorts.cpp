@@ -55,7 +55,7 @@ class SortChecker {
     for (std::size_t i = 0; i < children.size(); ++i) {
       const Sort sort = children[i];
       if (sort == Sort::Number) continue;
-      if (!wanted) wanted = sort;  // the first of several decides
+      if (!wanted) wanted = sort;  // the first child with a sort decides
       if (sort == *wanted) continue;
       if (!row.operand) {
         report(node.children[i], sort,
@@ -108,11 +108,11 @@ class SortChecker {
     if (!same(z, 1)) {
       return complain("scaled along z, where it has no end", "give `scale` one number, or a third number of 1");
     }
-    if (k[12] == 1) k[12] = std::min(x, y);  // else it is one of the plane's already
+    if (k[12] == 1) k[12] = std::min(x, y);  // otherwise k[12] is the x or y scale already
     k[10] = 1 / k[12];
   }
 
-  std::vector<Sort> sorts_;  // of the named nodes
+  std::vector<Sort> sorts_;  // [named node]
   Diagnostics& diagnostics_;
 };
 

@@ -1,5 +1,5 @@
-// Solids and outlines, each in its place: outlines below extrude and revolve and nowhere else, never mixed, placed
-// within their plane. After check_node.h, which leaves names to be looked up: here they are known.
+// Checker for the sorts of nodes, solid and outline. Outlines may occur only below extrude and revolve, must not be
+// mixed with solids, and must stay within their plane. Runs after check_node.h, when all names are resolved.
 // Tested by: tests/golden/diagnostics (E0306, E0307), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -11,8 +11,9 @@
 
 namespace fathom::compiler {
 
-// `order` is that of `named`, as order_names() gives it. Transforms of outlines lose what they say of z, along which
-// an outline has no end: their distances then keep as much as the plane's scales allow.
+// `order` is the order of `named` that order_names() returns. Removes the z scale from transforms of outlines,
+// because an outline is unbounded along z. The distance factor then depends on the x and y scales only and is as
+// large as they allow.
 void check_sorts(std::vector<CheckedNode>& named, const std::vector<std::uint32_t>& order,
                  std::vector<CheckedNode>& objects, Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
-// A node of a scene file after checking: parameters in the node table's order, names replaced by numbers. Between
-// check_node.h, which makes them, and build.h, which makes the graph of them.
+// Node of a scene file after checking, with parameters in the node table's order and names replaced by numbers.
+// check_node.h makes checked nodes, and build.h builds the graph from them.
 #pragma once
 
 #include <array>
@@ -14,19 +14,19 @@
 namespace fathom::compiler {
 
 struct CheckedNode {
-  Span span;                         // of the whole record
-  std::string name;                  // its `name`, or what it is called under `nodes`; "" when neither
-  std::string word;                  // its `use` or else its `type`
-  Kind kind = Kind::Union;           // of no meaning when `use` is there
-  Span type_span;                    // of the value of `type`; of no meaning likewise
-  std::optional<std::uint32_t> use;  // which of the named nodes
+  Span span;                         // the whole record
+  std::string name;                  // the property `name`, otherwise the name under `nodes`; "" without either
+  std::string word;                  // the value of `use`, otherwise of `type`
+  Kind kind = Kind::Union;           // meaningless if `use` is set
+  Span type_span;                    // the value of `type`; meaningless if `use` is set
+  std::optional<std::uint32_t> use;  // number of the named node
   std::vector<double> params;
   std::vector<CheckedNode> children;
-  std::optional<Formula> formula;  // the last child, after `children`
-  std::optional<std::array<double, 13>> between;    // see Between: where the primitive itself stands, a Transform
+  std::optional<Formula> formula;                   // becomes the last child, after `children`
+  std::optional<std::array<double, 13>> between;    // Transform from two end points, see Between
   std::optional<std::array<double, 13>> transform;  // see Kind::Transform
-  std::optional<Span> flat_translate;               // of a `translate` of two numbers, which only an outline takes
-  std::optional<std::uint32_t> material;            // its own
+  std::optional<Span> flat_translate;               // `translate` of two numbers, valid for outlines only
+  std::optional<std::uint32_t> material;            // the node's own
 };
 
 }  // namespace fathom::compiler

@@ -16,12 +16,12 @@
 namespace fathom::compiler {
 namespace {
 
-// The nodes of a scene, checked, and what is known about their names.
+// Checked nodes of a scene, and facts about their names.
 struct CheckedScene {
   Names material_names, node_names;
   std::vector<CheckedNode> named, objects;
-  std::vector<std::vector<Use>> uses;  // of each of `named`
-  std::vector<std::uint32_t> order;    // of `named`, as order_names() says
+  std::vector<std::vector<Use>> uses;  // [named node]
+  std::vector<std::uint32_t> order;    // of `named`, as order_names() returns it
 };
 
 void check_version(const RecordReader& reader, Diagnostics& diagnostics) {
@@ -31,7 +31,7 @@ void check_version(const RecordReader& reader, Diagnostics& diagnostics) {
                     {fmt::format("this program reads \"version\": {}", kSceneVersion)});
 }
 
-// Whether each named node is reached from the objects.
+// Returns, per named node, true if an object uses the node directly or indirectly.
 std::vector<bool> reached(const CheckedScene& scene) {
   std::vector<bool> out(scene.named.size(), false);
   std::vector<std::uint32_t> pending;
@@ -117,7 +117,8 @@ Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnos
   return out;
 }
 
-// Where the scene gives a number that a limit is about: `property` of its record `part`, or the record.
+// Returns the span of a number that exceeds a limit: the value of `property` in the scene's record `part`, or the
+// name of that record.
 Span place_of(const syntax::Record& scene, std::string_view part, std::string_view property) {
   const syntax::Property* found = scene.find(part);
   if (found == nullptr) return {};
@@ -126,7 +127,7 @@ Span place_of(const syntax::Record& scene, std::string_view part, std::string_vi
   return inner ? inner->value->span : found->name_span;
 }
 
-// What the scene asks of a render. What the command line asks in its place is the command line's to check.
+// Checks the settings in the scene. The command line checks the settings that it overrides.
 void check_render_limits(const syntax::Record& record, const Elaborated& scene, const Limits& limits,
                          Diagnostics& diagnostics) {
   const auto check = [&](double value, double Limits::*limit, std::string_view part, std::string_view property,
@@ -143,7 +144,7 @@ void check_render_limits(const syntax::Record& record, const Elaborated& scene, 
   check(scene.settings.spp, &Limits::samples, "render", "spp", fmt::format("{} samples a pixel", scene.settings.spp));
 }
 
-// What the shutter sees is the same at all times.
+// Warns if the camera has a shutter but the scene does not depend on time.
 void warn_of_shutter(const syntax::Record& record, const Camera& camera, const Scope& parameters,
                      Diagnostics& diagnostics) {
   if (!(camera.shutter > 0) || declares(parameters, kTimeParameter)) return;
@@ -173,7 +174,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
   Elaborated out = read_settings(reader, parameters, diagnostics);
   check_render_limits(*record, out, limits, diagnostics);
   const CheckedScene scene = check_nodes(reader, parameters, diagnostics);
-  // With errors about, what seems unused may be meant by a misspelt name.
+  // After errors do not warn: a misspelt name may be meant to refer to an apparently unused definition.
   if (diagnostics.has_errors()) return std::nullopt;
   warn_of_unused(scene, diagnostics);
   warn_of_unused(parameters, diagnostics);

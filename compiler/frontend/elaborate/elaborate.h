@@ -1,4 +1,4 @@
-// From a scene as written to a scene that means something: names resolved, parameters checked, the DAG built.
+// Elaboration of a scene as written: resolves names, checks parameters and builds the DAG.
 // Tested by: tests/golden (diagnostics), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -14,15 +14,17 @@
 
 namespace fathom::compiler {
 
-// The scene with its tables; `scene.root` is the union of the objects, each in a Paint node with its surface.
+// Scene with its tables. `scene.root` is the union of the objects, each below a Paint node with its surface.
 struct Elaborated : SceneTables {
-  Scene scene;                   // of nodes as described (compiler/derive/derive.h)
-  std::vector<Span> type_spans;  // [node] of the word that names the node's type; of the first nodes
-  std::vector<Scene> formulas;   // of the textures, as numbers
+  Scene scene;  // described nodes (compiler/derive/derive.h)
+  // [node] span of the word that names the node's type. May be shorter than the list of nodes.
+  std::vector<Span> type_spans;
+  std::vector<Scene> formulas;  // number-valued fields of the textures
 };
 
-// Reports every semantic error of the file; nullopt when there was any. `definitions` are values for the scene's
-// parameters in place of its own; `parameters` are what they came to, where the file was read with them.
+// Reports every semantic error of the file and returns nullopt if there was one. `definitions` override the values of
+// the scene's parameters. `parameters` are the resulting parameters, if the front end already evaluated the file with
+// them.
 std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
                                     const Definitions& definitions = {}, const Limits& limits = {},
                                     std::optional<Scope> parameters = std::nullopt);

@@ -1,4 +1,4 @@
-// From the leaves of a checked node up, with a stack of its own: files nest as deep as they like.
+// Fold over a checked node from the leaves up, with an explicit stack because files may nest nodes to any depth.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -9,15 +9,15 @@
 
 namespace fathom::compiler {
 
-// What leave(node, down, results of its children) gives for the root, where down = enter(node, its parent's down) is
-// what a node passes on to its children. `Node` is CheckedNode, const or not.
+// Returns leave(root, down, results of its children). For each node `down` is enter(node, its parent's down), the
+// value that the node passes on to its children. `Node` is CheckedNode, const or not.
 template <class Result, class Node, class Down, class Enter, class Leave>
 Result fold_nodes(Node& root, Down above, Enter enter, Leave leave) {
   struct Open {
     Node* node;
     Down down;
-    std::size_t first;     // of its children's results
-    std::size_t next = 0;  // child
+    std::size_t first;     // index of the first result of a child
+    std::size_t next = 0;  // index of the next child
   };
   std::vector<Result> results;
   std::vector<Open> open = {{&root, enter(root, above), 0}};

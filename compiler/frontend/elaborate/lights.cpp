@@ -12,7 +12,7 @@
 namespace fathom::compiler {
 namespace {
 
-// The unit vector a spot or directional light shines along.
+// Returns the unit vector along which a spot or directional light shines.
 glm::dvec3 read_direction(const RecordReader& reader, const Light& light, Diagnostics& diagnostics) {
   if (light.type == Light::Type::Directional) {
     return reader.value("toward") ? -direction(reader.vec3("toward")) : direction(reader.vec3("direction"));

@@ -1,4 +1,4 @@
-// What shines without being a solid: lights, and what lies beyond the scene.
+// Readers for light sources that are not solids: lights and the background.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp, lamps_test.cpp, tests/golden/diagnostics (E0309, E0310)
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace fathom::compiler {
 
-// As those of settings.h.
+// Same conventions as the readers in settings.h.
 Background read_background(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 std::vector<Light> read_lights(const syntax::Value& value, const Scope& scope,
                                Diagnostics& diagnostics);  // in file order

@@ -17,7 +17,7 @@ namespace {
 
 using M = MaterialNumbers;
 
-// Where the value of a property goes.
+// Material parameter that receives the value of a property.
 struct Slot {
   std::string_view property;
   std::variant<MaterialNumber, MaterialColor> parameter;
@@ -52,7 +52,7 @@ void put(MaterialNumbers& numbers, const Slot& place, glm::dvec3 value) {
   if (const auto* color = std::get_if<MaterialColor>(&place.parameter)) numbers.*(*color) = value;
 }
 
-// An index of refraction or the like that a texture gives must not come near 0.
+// Lower bound for textured parameters that must be positive, such as an index of refraction.
 constexpr double kLeastPositive = 1e-3;
 
 TexturedParameter textured(const Slot& place, std::uint32_t texture, const PropertySpec& row) {
@@ -112,7 +112,7 @@ class MaterialReader {
         put(material, place, {numbers[0], numbers[numbers.size() / 2], numbers.back()});
       }
     }
-    // Radiance that is given shines; by itself OpenPBR's luminance is 0.
+    // An emission colour given alone emits: its luminance is 1, although OpenPBR's default is 0.
     if (reader.value("emission_color") && !reader.value("emission_luminance")) material.emission_luminance = 1;
   }
 
@@ -124,7 +124,7 @@ class MaterialReader {
     if (texture->index) material.textured.push_back(textured(place, *texture->index, row));
   }
 
-  // Nothing, too, where the reader has complained of the name.
+  // Returns nullptr without a valid preset. The reader has already reported an unknown name.
   static const MaterialPreset* find_preset(const RecordReader& reader) {
     const syntax::Value* value = reader.value("preset");
     if (value == nullptr) return nullptr;

@@ -1,4 +1,4 @@
-// The materials of a scene: plain ones, OpenPBR's, named substances, and parameters that vary over space.
+// Reader for the materials of a scene: simple types, OpenPBR, presets, and parameters that vary over space.
 // Tested by: tests/compiler/frontend/elaborate/materials_test.cpp, tests/golden/diagnostics (E01xx)
 #pragma once
 
@@ -18,8 +18,8 @@ struct MaterialTables {
   std::vector<Scene> formulas;  // of the textures
 };
 
-// Reads, with the scene's parameters in `scope`, the scene's property `materials`, a record, and reports what is
-// wrong with it; the result is of no use when anything was.
+// Reads the scene's property `materials`, a record, with the scene's parameters in `scope`. Reports errors. The
+// result is meaningless after an error.
 MaterialTables read_materials(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler

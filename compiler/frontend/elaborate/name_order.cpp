@@ -16,7 +16,7 @@ struct Visit {
   std::size_t next_use;
 };
 
-// The walk went from stack's `first` down to its end, whose use `closing` leads back to `first`.
+// Reports a cycle: the walk goes from `first` to the end of the stack, and the use `closing` leads back to `first`.
 void report_cycle(const std::vector<Visit>& stack, std::size_t first, const Use& closing, const Names& names,
                   Diagnostics& diagnostics) {
   constexpr std::size_t kMostNamed = 8;
@@ -46,11 +46,11 @@ std::vector<std::uint32_t> order_names(const std::vector<std::vector<Use>>& uses
                                        Diagnostics& diagnostics) {
   enum class State : std::uint8_t { New, Open, Done };
   std::vector<State> states(uses.size(), State::New);
-  std::vector<std::size_t> depths(uses.size(), 0);  // of the open ones, in the stack
+  std::vector<std::size_t> depths(uses.size(), 0);  // [open name] position in the stack
   std::vector<std::uint32_t> order;
   for (std::uint32_t start = 0; start < uses.size(); ++start) {
     if (states[start] != State::New) continue;
-    // A stack of its own: names can use each other in a chain as long as the file.
+    // Explicit stack: names can use each other in a chain as long as the file.
     std::vector<Visit> stack = {{start, 0}};
     states[start] = State::Open;
     depths[start] = 0;

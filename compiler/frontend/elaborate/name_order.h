@@ -1,4 +1,4 @@
-// In which order named nodes can be made: each after all that it uses.
+// Topological order of named nodes: each name comes after all names that it uses.
 // Tested by: tests/golden/diagnostics (E0204, W0402), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -11,18 +11,18 @@
 
 namespace fathom::compiler {
 
-// A `use` within a node.
+// Occurrence of `use` within a node.
 struct Use {
-  std::uint32_t target;                   // which of the named nodes
-  std::optional<std::uint32_t> material;  // the innermost around it; nullopt when none within that node
-  Span span;                              // of the record that holds it
+  std::uint32_t target;                   // number of the named node
+  std::optional<std::uint32_t> material;  // innermost material around the use; nullopt if the node gives none
+  Span span;                              // the record that contains the use
 };
 
-// Every use in the node, itself included, in file order.
+// Returns every use in a node, including the node itself, in file order.
 std::vector<Use> uses_of(const CheckedNode& node);
 
-// Reports every cycle that a depth-first walk meets; names that are in none are in the result, each after all that it
-// uses. `uses` has a row for each named node.
+// Reports every cycle that a depth-first walk meets. The result contains every name that is not part of a cycle, each
+// after all names that it uses. `uses` has one entry per named node.
 std::vector<std::uint32_t> order_names(const std::vector<std::vector<Use>>& uses, const Names& names,
                                        Diagnostics& diagnostics);
 

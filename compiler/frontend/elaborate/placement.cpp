@@ -28,7 +28,7 @@ glm::dmat3 rotation_xyz(glm::dvec3 degrees) {
 }
 
 std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rotation, glm::dvec3 translation) {
-  // p = R S q + t, so q = S^-1 R^T (p - t): row i is column i of R over the i-th scale.
+  // p = R S q + t, so q = S^-1 R^T (p - t): row i is column i of R divided by the i-th scale.
   std::array<double, 13> params{};
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 row = rotation[i] / scale[i];
@@ -42,7 +42,8 @@ std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rota
 
 std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share) {
   const glm::dvec3 along = direction(to - from);
-  // Any direction across will do; the axis it leans on least keeps it well conditioned.
+  // Any perpendicular direction will do. Crossing with the axis of smaller component keeps the result well
+  // conditioned.
   glm::dvec3 other(0);
   other[std::abs(along.x) <= std::abs(along.z) ? 0 : 2] = 1;
   const glm::dvec3 across = glm::normalize(glm::cross(along, other));

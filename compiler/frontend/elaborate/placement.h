@@ -1,4 +1,5 @@
-// The scale, rotate and translate of a node or a pattern as the parameters of a Transform node (compiler/graph/graph.h).
+// Conversion of scale, rotate and translate of a node or a pattern to the parameters of a Transform node
+// (compiler/graph/graph.h).
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -11,21 +12,22 @@
 
 namespace fathom::compiler {
 
-// The rotation by degrees about an axis of any length but zero; exact for multiples of 90 degrees about x, y or z.
+// Returns the rotation by an angle in degrees about an axis of any nonzero length. Exact for multiples of 90 degrees
+// about x, y or z.
 glm::dmat3 rotation_about(glm::dvec3 axis, double degrees);
 
-// The rotation by degrees about the fixed x, then y, then z axis.
+// Returns the rotation by degrees about the fixed x, then y, then z axis.
 glm::dmat3 rotation_xyz(glm::dvec3 degrees);
 
-// Rows of the map from the parent's space to the node's, then the factor of its distances. The node is scaled by
-// `scale` (each > 0), then rotated, then moved.
+// Returns the rows of the map from the parent's space to the node's, then the factor of the node's distances. The
+// node is scaled by `scale` (each > 0), then rotated, then moved.
 std::array<double, 13> transform_params(glm::dvec3 scale, const glm::dmat3& rotation, glm::dvec3 translation);
 
-// The same for a node whose y axis is to point from `from` to `to`, with its origin `share` of the way short of `to`.
-// The points differ.
+// Returns transform_params() for a node whose y axis points from `from` to `to`. The node's origin lies on that
+// segment, `share` of its length before `to`. The two points must differ.
 std::array<double, 13> placed_between(glm::dvec3 from, glm::dvec3 to, double share);
 
-// transform_params() of the properties scale, rotate and translate of a record; nullopt when none is given.
+// Returns transform_params() for the properties scale, rotate and translate of a record, or nullopt if none is given.
 std::optional<std::array<double, 13>> read_placement(const RecordReader& reader, const Scope& scope,
                                                      Diagnostics& diagnostics);
 

@@ -13,7 +13,7 @@ namespace fathom::compiler {
 namespace {
 
 
-// Reports a camera that has no direction of view, or no way to tell what is up in the picture.
+// Reports a camera without a direction of view, or without a defined up direction in the image.
 void check_view(const Camera& camera, const RecordReader& reader, Span place, Diagnostics& diagnostics) {
   const auto span_of = [&](std::string_view name) {
     const syntax::Value* value = reader.value(name);
@@ -27,7 +27,7 @@ void check_view(const Camera& camera, const RecordReader& reader, Span place, Di
                                    camera.position.z)});
     return;
   }
-  // sin of the angle between them; below 1e-6 the picture's axes would be rounding errors.
+  // Sine of the angle between view and up. Below 1e-6 rounding errors would determine the axes of the image.
   const double sine = glm::length(glm::cross(glm::normalize(view), glm::normalize(camera.up)));
   if (sine > 1e-6) return;
   diagnostics.error("E0304", reader.value("up") ? span_of("up") : span_of("target"),
@@ -43,7 +43,7 @@ void read_field_of_view(const RecordReader& reader, Camera& camera) {
   if (reader.value("focal_length")) camera.focal_length = reader.number("focal_length");
 }
 
-// The aperture and the plane that is sharp. Of a camera that has a direction of view.
+// Reads the aperture and the plane of focus. The camera must have a direction of view.
 void read_lens(const RecordReader& reader, Camera& camera, Diagnostics& diagnostics) {
   if (reader.value("lens_radius")) camera.lens_radius = reader.number("lens_radius");
   if (reader.value("f_stop")) camera.f_stop = reader.number("f_stop");

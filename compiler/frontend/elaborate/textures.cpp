@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kDeepestPattern = kMaxPatternDepth;
 
-// A pattern's row with ends that the parameter can be.
+// Returns the pattern's row with the properties `a` and `b` restricted to the values that the parameter allows.
 RecordSpec row_for(const RecordSpec& pattern, const PropertySpec& parameter) {
   RecordSpec row = pattern;
   for (PropertySpec& property : row.properties) {
@@ -97,7 +97,7 @@ std::optional<ReadTexture> TextureReader::read_pattern(const syntax::Value& valu
   return ReadTexture{(a->typical + b->typical) / 2.0, add(pattern)};
 }
 
-// What the pattern has as its `a` or `b`.
+// Reads the value of the pattern's `a` or `b`.
 std::optional<ReadTexture> TextureReader::read_end(const RecordReader& reader, const RecordSpec& row,
                                                    const char* name, Context context) {
   const syntax::Value* value = reader.value(name);
@@ -134,7 +134,7 @@ std::optional<ReadTexture> TextureReader::read_formulas(const syntax::Value& val
   return ReadTexture{glm::dvec3(usual), add(texture)};
 }
 
-// A formula, or a plain number beside formulas.
+// Adds a formula, or a plain number that stands in a list with formulas.
 std::optional<std::uint32_t> TextureReader::add_formula(const syntax::Value& value) {
   std::optional<Formula> formula;
   if (const double* number = std::get_if<double>(&value.data)) {

@@ -1,4 +1,4 @@
-// Values of material parameters that vary over space: formulas of x, y and z, and patterns that mix two values.
+// Reader for material parameters that vary over space: formulas of x, y and z, and patterns that mix two values.
 // Tested by: tests/compiler/frontend/elaborate/materials_test.cpp, tests/golden/diagnostics (E0109, E0108_pattern, E0402_material)
 #pragma once
 
@@ -14,35 +14,35 @@
 
 namespace fathom::compiler {
 
-inline constexpr int kMaxPatternDepth = 16;  // patterns that one is within
+inline constexpr int kMaxPatternDepth = 16;  // maximum nesting depth of patterns
 
-// A value as read: a texture, or a constant.
+// Value of a parameter: a texture or a constant.
 struct ReadTexture {
-  glm::dvec3 typical;                       // the constant; what stands in for the texture (material.h)
-  std::optional<std::uint32_t> index = {};  // of the texture; none of a constant
+  glm::dvec3 typical;                       // the constant, or the value that stands in for the texture (material.h)
+  std::optional<std::uint32_t> index = {};  // of the texture; nullopt for a constant
 };
 
-// The `space` of a record of a material or pattern, else `otherwise`.
+// Returns the property `space` of a material or pattern record, or `otherwise` if absent.
 TextureSpace space_of(const RecordReader& reader, TextureSpace otherwise);
 
 class TextureReader {
  public:
   TextureReader(const Scope& scope, Diagnostics& diagnostics) : scope_(scope), diagnostics_(diagnostics) {}
 
-  // `value` is of a property with the row `parameter`, and varies() (frontend/records/written_numbers.h). `space` is the
-  // material's: a pattern may have another, for itself and what it mixes. nullopt after a report. A pattern of twice
-  // the same constant is that constant.
+  // Reads a value for which varies() is true (frontend/records/written_numbers.h). `parameter` is the row of its
+  // property. `space` is the material's space. A pattern may override it for itself and the values it mixes. Returns
+  // nullopt after a report. A pattern that mixes two equal constants is read as that constant.
   std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, TextureSpace space) {
     return read(value, parameter, Context{space, 1});
   }
 
   std::vector<Texture> textures;
-  std::vector<Scene> formulas;  // numbers; TextureFormula::programs are indices
+  std::vector<Scene> formulas;  // number-valued fields; TextureFormula::programs holds indices into `formulas`
 
  private:
   struct Context {
     TextureSpace space;
-    int depth;  // in patterns
+    int depth;  // number of patterns, including the current one
   };
   std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, Context context);
   std::optional<ReadTexture> read_pattern(const syntax::Value& value, const PropertySpec& parameter, Context context);

@@ -30,8 +30,8 @@ struct Operation {
   std::string_view formula;  // {0} and {1} are the operands
 };
 
-// What the operations mean is Fidget's to say: round takes halves away from zero, mod is Euclid's, compare is -1, 0
-// or 1, and `and` and `or` give one of their operands.
+// Fidget defines the meaning of the operations: round takes halves away from zero, mod is Euclidean, compare returns
+// -1, 0 or 1, and `and` and `or` return one of their operands.
 constexpr Operation kOperations[] = {
     {"var-x", 0, "x"},
     {"var-y", 0, "y"},
@@ -80,7 +80,7 @@ std::vector<std::string_view> operation_names() {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n'); }
 
-// Appends the words of a line, the first `most`.
+// Appends the first `most` words of a line.
 void split_words(std::string_view line, std::size_t most, std::vector<std::string_view>& words) {
   for (std::size_t at = 0; at < line.size() && most > 0;) {
     if (is_space(line[at])) {
@@ -95,7 +95,7 @@ void split_words(std::string_view line, std::size_t most, std::vector<std::strin
   }
 }
 
-// Takes the first line off `rest`.
+// Removes the first line from `rest` and returns it.
 std::string_view take_line(std::string_view& rest) {
   const std::size_t end = std::min(rest.find('\n'), rest.size());
   const std::string_view line = rest.substr(0, end);
@@ -103,7 +103,7 @@ std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
-// A byte order mark says nothing here.
+// Removes a byte order mark, which has no meaning in UTF-8.
 std::string_view without_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
@@ -170,7 +170,7 @@ class ListReader {
   }
   static Span join(Span from, Span to) { return {from.begin, to.end}; }
 
-  // Before any is kept. Those of comments count.
+  // Checks the number of words, including words in comments, before storing any word.
   bool check_words() {
     double words = 0;
     for (std::size_t at = 0; at < text_.size(); ++at) {
@@ -231,7 +231,7 @@ class ListReader {
   std::string constant(std::string_view word) {
     double value = 0;
     auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error == std::errc::result_out_of_range && word.find("e-") != word.npos) error = {};  // nothing but 0
+    if (error == std::errc::result_out_of_range && word.find("e-") != word.npos) error = {};  // underflow: reads as 0
     if (error == std::errc() && end == word.data() + word.size() && fits_float(value)) {
       return fmt::format("{}", value);
     }
@@ -249,7 +249,7 @@ class ListReader {
     return "0";
   }
 
-  // The name itself where formulas can have it, else one made up.
+  // Returns the line's own name if formulas can use it, otherwise a generated name.
   std::string formula_name(std::string_view name) {
     if (misfit_name(name, functions_).empty()) return std::string(name);
     std::string& made = made_.emplace_back(fmt::format("line{}", names_.size() + 1));
@@ -267,7 +267,7 @@ class ListReader {
         .add("half_size", glm::dvec3(1))
         .add("formula", syntax::Value{whole, std::move(lines)})
         .add("material", "model");
-    // A drawing in the plane is seen without perspective, which would show its sides.
+    // View a planar drawing without perspective, which would show its sides.
     if (!has_z_) camera.add("type", "orthographic").add("width", 2.1);
     camera.add("position", glm::dvec3(0, 0, 5)).add("target", glm::dvec3(0));
     if (has_z_) camera.add("fov_y", 32.0);
@@ -296,10 +296,10 @@ class ListReader {
   Diagnostics& diagnostics_;
   const Limits& limits_;
   std::vector<std::string_view> words_;                      // of all lines
-  std::vector<std::size_t> ends_;                            // [line] of its words
-  std::unordered_map<std::string_view, std::string> names_;  // of the lines so far: as the formula calls them
-  std::unordered_set<std::string_view> taken_;               // names that lines have, or that were made up
-  std::deque<std::string> made_;                             // the latter
+  std::vector<std::size_t> ends_;                            // [line] end of its words in words_
+  std::unordered_map<std::string_view, std::string> names_;  // of the lines so far, to their names in the formula
+  std::unordered_set<std::string_view> taken_;               // names of lines, and generated names
+  std::deque<std::string> made_;                             // generated names
   std::vector<Line> formula_;
   const std::vector<FormulaFunction> functions_ = formula_functions(machine_functions());
   bool has_z_ = false;

@@ -18,12 +18,12 @@
 namespace fathom::compiler {
 namespace {
 
-// From world to a node: q = linear * p + offset.
+// Map from world to node coordinates: q = linear * p + offset.
 struct Placement {
   glm::dmat3 linear{1};
   glm::dvec3 offset{0};
 
-  // `inner` first, then this.
+  // Returns the composition that applies `inner` first, then this placement.
   Placement after(const Placement& inner) const { return {linear * inner.linear, linear * inner.offset + offset}; }
 };
 
@@ -34,17 +34,17 @@ constexpr BlendMode kBlendModes[] = {{"union", "union", "smooth_union"},
                                      {"sub", "subtraction", "smooth_subtraction"},
                                      {"inter", "intersection", "smooth_intersection"}};
 
-// How far a matrix may be from a rotation: published files write sines and cosines with three digits.
+// Tolerance of the test for rotation matrices: published files write sines and cosines with three digits.
 constexpr double kLeeway = 1e-3;
 
-// Nodes within each other in what is made; deeper ones get names of their own. A fifth of what the reader of scene
-// files takes, as each is an object in a list.
+// Maximum nesting depth of nodes in the converted scene. Deeper nodes become named nodes. The reader of scene files
+// allows five times this depth, since each node takes two levels, an object in a list.
 constexpr int kDeepestTree = 400;
 
-// What a node has become. A chain of the same operator down the left is one combinator.
+// Result of converting a node. A left-leaning chain of the same operator becomes one combinator.
 struct Made {
   syntax::Value leaf = {};
-  const BlendMode* mode = nullptr;  // null: a leaf
+  const BlendMode* mode = nullptr;  // null for a leaf
   double k = 0;
   std::vector<syntax::Value> of = {};
   int height = 0;
@@ -67,10 +67,10 @@ class Converter {
   struct Pending {
     const syntax::Value* value;
     Placement placement;  // of the parent
-    bool join;            // the children are made
+    bool join;            // the children are converted
   };
 
-  // With a stack of its own: chains are as long as the model is large.
+  // Uses an explicit stack, because operator chains are as long as the model is large.
   void convert(const syntax::Value& root) {
     std::vector<Pending> pending = {{&root, {}, false}};
     while (!pending.empty()) {
@@ -136,7 +136,7 @@ class Converter {
     int height;
   };
 
-  // The node as a scene says it; by a name when it is nested deep.
+  // Returns the node in scene syntax. A deeply nested node is moved to `nodes` and referred to by name.
   Finished finish(Made made) {
     if (made.mode == nullptr) return {std::move(made.leaf), 0};
     RecordMaker record(made.span);
@@ -190,7 +190,7 @@ class Converter {
   void place(RecordMaker& node, Placement placement, bool round) {
     glm::dmat3 rotation = glm::transpose(placement.linear);  // from the node to the world
     if (glm::determinant(rotation) < 0) rotation[0] = -rotation[0], placement.offset.x = -placement.offset.x;
-    // Orthogonal to the last bit, whatever the file's digits.
+    // Make the rotation orthogonal to the last bit, regardless of the number of digits in the file.
     rotation[0] = glm::normalize(rotation[0]);
     rotation[1] = glm::normalize(rotation[1] - glm::dot(rotation[0], rotation[1]) * rotation[0]);
     rotation[2] = glm::cross(rotation[0], rotation[1]);
@@ -207,7 +207,8 @@ class Converter {
     if (centre != glm::dvec3(0)) node.add("translate", centre);
   }
 
-  // Of a rotation by 180 degrees: any column of R + 1 is along the axis; the longest.
+  // Axis of a rotation by 180 degrees. Every column of R + 1 is parallel to the axis, and the longest is the most
+  // accurate.
   static glm::dvec3 half_turn_axis(const glm::dmat3& rotation) {
     const glm::dmat3 sum = rotation + glm::dmat3(1);
     int longest = 0;
@@ -217,7 +218,7 @@ class Converter {
     return sum[longest];
   }
 
-  // Colours are materials; the whole has that of the first, so nodes name the others only.
+  // Colours become materials. The whole object has the material of the first colour, so nodes name only the others.
   int color_number(const glm::dvec3& color, Span span) {
     const auto found = std::find(colors_.begin(), colors_.end(), color);
     const int number = static_cast<int>(found - colors_.begin()) + 1;
@@ -250,7 +251,7 @@ class Converter {
     return {};
   }
 
-  // Readers of a property: report it when it is missing or not what it must be, and return something then.
+  // Readers for a property. They report a missing or invalid value and return a placeholder.
 
   const syntax::Value* find(const syntax::Record& record, std::string_view name, Span span) {
     const syntax::Property* property = record.find(name);
@@ -302,7 +303,7 @@ class Converter {
   void bad(Span span, std::string message) { diagnostics_.error("E0612", span, std::move(message)); }
 
   syntax::Value scene(Span whole, syntax::Value object, const glm::dvec3& lo, const glm::dvec3& hi) {
-    // From the front, all of the box in the picture: its front face fills the height or the width.
+    // Frame the whole box from the front: its front face fills the height or the width of the image.
     constexpr double kFieldOfView = 40, kMargin = 1.1, kAspect = 640.0 / 360.0;
     const glm::dvec3 middle = (lo + hi) / 2.0, half = (hi - lo) / 2.0;
     const double reach = kMargin * std::max({half.y, half.x / kAspect, 1e-3});

@@ -9,7 +9,7 @@
 namespace fathom::compiler::syntax {
 namespace {
 
-// As in JSON.
+// Quotes and escapes a string as in JSON.
 std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -28,7 +28,7 @@ bool is_scalar(const Value& value) {
   return value.data.index() < 4 || std::holds_alternative<ReadFormula>(value.data);
 }
 
-// Whether a value fits on its property's line: scalars, lists of scalars, and what is empty.
+// True if the value fits on its property's line: scalars, lists of scalars, and empty records and lists.
 bool is_short(const Value& value) {
   if (const auto* record = std::get_if<Record>(&value.data)) return record->properties.empty();
   if (const auto* list = std::get_if<List>(&value.data)) return std::all_of(list->begin(), list->end(), is_scalar);
@@ -65,7 +65,7 @@ std::string print_name(std::string_view name) {
 
 void print_lines(const Value& value, std::size_t indent, std::string& out);
 
-// The value after `lead`, which has been printed: on the same line when short, else on lines below it.
+// Prints a value after its property's name: on the same line if short, otherwise on the lines below.
 void print_after(const Value& value, std::size_t indent, std::string& out) {
   if (is_short(value)) {
     out += " " + print_short(value) + "\n";

@@ -1,4 +1,4 @@
-// The syntax tree as text, for `fathom dump --syntax`.
+// Printer for the syntax tree, for `fathom dump --syntax`.
 // Tested by: tests/compiler/frontend/syntax/json_test.cpp
 #pragma once
 

@@ -15,9 +15,9 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kWidestLine = 120;  // columns of a line, where there is a choice
+constexpr std::size_t kWidestLine = 120;  // columns, for lines that can be broken
 
-// Control characters are refused when they are read.
+// Quotes a string. Control characters need no escapes, because the readers reject them.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -30,14 +30,14 @@ std::string quoted(const std::string& text) {
 std::string scalar(const syntax::Value& value) {
   if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
   if (const auto* number = std::get_if<double>(&value.data)) {
-    // -0 would be read as a whole number, which has no sign.
+    // Without the point, -0 would be read back as an integer, which has no sign.
     return *number == 0 && std::signbit(*number) ? "-0.0" : fmt::format("{}", *number);
   }
   if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
   return "null";
 }
 
-// A formula that was read already, as a string or a list of them.
+// Returns an already parsed formula as a string or a list of strings.
 syntax::Value as_strings(const Formula& formula, Span span) {
   std::vector<std::string> lines = formula_lines(formula);
   if (lines.size() == 1) return {span, std::move(lines[0])};
@@ -46,7 +46,7 @@ syntax::Value as_strings(const Formula& formula, Span span) {
   return {span, std::move(list)};
 }
 
-// The parts of a record or list, and what goes before each.
+// Access to the parts of a record or list, and to the text before each part.
 std::size_t parts(const syntax::Value& value) {
   if (const auto* list = std::get_if<syntax::List>(&value.data)) return list->size();
   if (const auto* record = std::get_if<syntax::Record>(&value.data)) return record->properties.size();
@@ -65,7 +65,7 @@ bool is_scalar(const syntax::Value& value) {
   return !is_record(value) && !std::holds_alternative<syntax::List>(value.data);
 }
 
-// On one line, when that has at most `room` columns.
+// Prints the value on one line, or returns nullopt if the line needs more than `room` columns.
 std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t room) {
   if (const auto* formula = std::get_if<syntax::ReadFormula>(&value.data)) {
     return on_one_line(as_strings(**formula, value.span), room);
@@ -87,7 +87,7 @@ std::optional<std::string> on_one_line(const syntax::Value& value, std::size_t r
   return out.size() <= room ? std::optional(std::move(out)) : std::nullopt;
 }
 
-// Where part i begins in the source.
+// Returns the offset in the source where part i begins.
 std::uint32_t place_of_part(const syntax::Value& value, std::size_t i) {
   const auto* record = std::get_if<syntax::Record>(&value.data);
   return record ? record->properties[i].name_span.begin : part(value, i).span.begin;
@@ -102,7 +102,7 @@ class JsonWriter {
       return write(as_strings(**formula, value.span), indent, used, out);
     }
     const std::size_t room = kWidestLine - std::min(kWidestLine, indent + used);
-    // The file itself is easier to read in lines.
+    // Always break the root record into lines, for readability.
     const auto line = indent == 0 || is_commented(value, indent) ? std::nullopt : on_one_line(value, room);
     if (line || is_scalar(value)) {
       out += line ? *line : scalar(value);
@@ -122,7 +122,8 @@ class JsonWriter {
   }
 
  private:
-  static constexpr std::size_t kDeepestComment = 2;  // columns: of the tables of the scene
+  // Maximum indentation, in columns, of values with comments: the tables of the scene.
+  static constexpr std::size_t kDeepestComment = 2;
 
   bool is_commented(const syntax::Value& value, std::size_t indent) const {
     if (indent > kDeepestComment || comments_.empty()) return false;
@@ -141,7 +142,7 @@ class JsonWriter {
     comments_.erase(first, last);
   }
 
-  JsonComments comments_;  // still to be written
+  JsonComments comments_;  // not written yet
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Scenes as JSON text: read_json() makes the same of it, up to spans. A value is on one line where that is short.
+// Writer for scenes as JSON text. read_json() reads the same scene back, except for spans. Short values are written
+// on one line.
 // Tested by: tests/compiler/frontend/formats/nested_nodes_test.cpp, tests/compiler/frontend/formats/expression_list_test.cpp
 #pragma once
 
@@ -10,8 +11,8 @@
 
 namespace fathom::compiler {
 
-// Comments with their marks, by where the property or the element of a list that each stands before begins in the
-// source: of the scene's own properties and of what its tables and lists hold.
+// Comments, including their marks, keyed by the source offset of the property or list element after the comment.
+// Covers the scene's own properties and the entries of its tables and lists.
 using JsonComments = std::multimap<std::uint32_t, std::string>;
 
 std::string write_json(const syntax::File& file, const JsonComments& comments = {});

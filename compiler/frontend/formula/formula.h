@@ -1,4 +1,4 @@
-// A formula as a graph of operations, in the names of the machine's functions (vm/program/opcodes.def).
+// Formula as a DAG of operations, named after the machine's functions (vm/program/opcodes.def).
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace fathom::compiler {
 
-// A function of the machine.
+// Function of the machine.
 struct FunctionSpec {
   std::string_view name;
   int arity;
 };
 
-// A directed acyclic graph: what is used twice is one node.
+// DAG: a subexpression that is used twice is one node.
 struct Formula {
   struct Node {
-    // "const", "x", "y", "z", or a function of the machine: "add", "minus", "multiply", "divide", "negate", "square",
-    // "power" from operators, the others from calls. Lives as long as the table of functions does.
+    // "const", "x", "y", "z", or a function of the machine: "add", "minus", "multiply", "divide", "negate", "square"
+    // and "power" come from operators, the others from calls. The characters live as long as the table of functions.
     std::string_view function;
-    double value = 0;  // of a "const"
+    double value = 0;  // for "const" only
     std::vector<std::uint32_t> arguments;
-    Span span;  // what it was made of
+    Span span;  // source text that the node comes from
   };
-  std::vector<Node> nodes;  // arguments before what they are arguments of; the last is the result
+  std::vector<Node> nodes;  // in topological order, arguments first; the last node is the result
 };
 
 }  // namespace fathom::compiler

@@ -12,7 +12,7 @@
 namespace fathom::compiler {
 namespace {
 
-// A product of 64 factors rounds 7 times when it is made of squares, no more than a power by logarithms would.
+// A product of 64 factors built from squares rounds 7 times, no more than a power computed with logarithms.
 constexpr double kLargestUnrolledPower = 64;
 
 constexpr std::string_view kAxes = "xyz";
@@ -52,7 +52,7 @@ FormulaId FormulaBuilder::power(FormulaId base, FormulaId exponent, Span span) {
   return *n < 0 ? make("divide", {make(1.0), result}) : result;
 }
 
-// From the exponent's highest bit down: square, and multiply where the bit is set.
+// Square-and-multiply from the exponent's highest bit down.
 FormulaId FormulaBuilder::whole_power(FormulaId base, unsigned exponent, Span span) {
   const FormulaMaker make{*this, span};
   if (exponent == 0) return make(1.0);
@@ -68,7 +68,7 @@ std::optional<double> FormulaBuilder::value(FormulaId node) const {
   return nodes_[node].function == "const" ? std::optional(nodes_[node].value) : std::nullopt;
 }
 
-// Depth first, so that equal formulas are equal lists whatever order their parts were made in.
+// Copies nodes depth first, so that equal formulas become equal lists regardless of the order of construction.
 Formula FormulaBuilder::finish(FormulaId root) const {
   std::unordered_map<FormulaId, FormulaId> places;
   std::vector<FormulaId> open = {root};

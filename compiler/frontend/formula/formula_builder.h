@@ -1,4 +1,5 @@
-// Makes the nodes of a formula: folds constants, expands whole powers, and drops what the result does not need.
+// Builder for the nodes of a formula: folds constants, expands whole powers, and drops nodes that the result does not
+// use.
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp
 #pragma once
 
@@ -9,24 +10,25 @@
 
 namespace fathom::compiler {
 
-using FormulaId = std::uint32_t;  // of a node, in its builder
+using FormulaId = std::uint32_t;  // index of a node in its builder
 
 class FormulaBuilder {
  public:
   FormulaId constant(double value, Span span);
   FormulaId coordinate(char axis, Span span);  // 'x', 'y' or 'z'
 
-  // A constant when all arguments are and the function is known in double.
+  // Adds a call, folded to a constant if all arguments are constant and call_function() knows the function.
   FormulaId call(std::string_view function, std::span<const FormulaId> arguments, Span span);
 
-  // Whole exponents up to 64 in size become squares and products, 0.5 a root, negative ones their reciprocals.
+  // Adds a power. Whole exponents up to 64 in magnitude become squares and products, and 0.5 becomes a square root.
+  // Negative exponents of these become reciprocals.
   FormulaId power(FormulaId base, FormulaId exponent, Span span);
 
   std::size_t size() const { return nodes_.size(); }
   Span span(FormulaId node) const { return nodes_[node].span; }
-  std::optional<double> value(FormulaId node) const;  // of a constant
+  std::optional<double> value(FormulaId node) const;  // of a constant; otherwise nullopt
 
-  // The formula whose result is `root`.
+  // Returns the formula whose result is `root`.
   Formula finish(FormulaId root) const;
 
  private:
@@ -35,7 +37,7 @@ class FormulaBuilder {
   std::vector<Formula::Node> nodes_;
 };
 
-// Calls with the span of one place in the text: `make("add", {a, b})`.
+// Adds constants and calls that share one source span: `make("add", {a, b})`.
 struct FormulaMaker {
   FormulaBuilder& builder;
   Span span;

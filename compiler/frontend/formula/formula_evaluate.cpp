@@ -14,11 +14,11 @@ namespace {
 struct Row {
   std::string_view name;
   std::size_t arity;
-  double (*apply)(double a, double b, double c);  // those beyond the arity are 0
+  double (*apply)(double a, double b, double c);  // arguments beyond the arity are 0
 };
 
-// What is not exact or correctly rounded everywhere is the machine's own, so that the same file gives the same scene
-// on every machine.
+// Functions that platforms round differently use the machine's own implementations (vm::real), so that a file gives
+// the same scene on every platform.
 constexpr Row kFunctions[] = {
     {"add", 2, [](double a, double b, double) { return a + b; }},
     {"minus", 2, [](double a, double b, double) { return a - b; }},
@@ -40,11 +40,11 @@ constexpr Row kFunctions[] = {
     {"power", 2, [](double a, double b, double) { return vm::real::pow(a, b); }},
     {"floor", 1, [](double a, double, double) { return std::floor(a); }},
     {"ceil", 1, [](double a, double, double) { return std::ceil(a); }},
-    {"nearest", 1, [](double a, double, double) { return std::nearbyint(a); }},  // halves to the even neighbour
+    {"nearest", 1, [](double a, double, double) { return std::nearbyint(a); }},  // halves round to even
     {"sign", 1, [](double a, double, double) { return a > 0   ? 1.0
                                                       : a < 0 ? -1.0
                                                               : a; }},
-    // Not a number when either is, so that it is not lost on the way.
+    // NaN if either operand is NaN, so that NaN is not lost.
     {"min", 2, [](double a, double b, double) { return a < b || a != a ? a : b; }},
     {"max", 2, [](double a, double b, double) { return a > b || a != a ? a : b; }},
     {"modulo", 2, [](double a, double b, double) { return a - b * std::floor(a / b); }},

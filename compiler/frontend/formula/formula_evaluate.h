@@ -1,4 +1,4 @@
-// The functions of formulas in double: what a scene's numbers are evaluated with.
+// Evaluation of formulas in double precision, for the numbers of a scene.
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace fathom::compiler {
 
-// Every function that call_function() knows, operators too.
+// Returns every function that call_function() knows, including the operators.
 std::span<const FunctionSpec> constant_functions();
 
-// nullopt when there is no function of this name with this many arguments.
+// Returns nullopt if no function has this name and this number of arguments.
 std::optional<double> call_function(std::string_view function, std::span<const double> arguments);
 
-// The value of a formula that has no x, y and z in it.
+// Returns the value of a formula without x, y and z.
 double evaluate(const Formula& formula);
 
 }  // namespace fathom::compiler

@@ -10,7 +10,7 @@ namespace {
 
 using Arguments = std::span<const FormulaId>;
 
-// The machine's functions that formulas spell otherwise; with no spelling they are written as operators.
+// Machine functions that formulas spell differently. An empty spelling means that formulas write an operator.
 struct Spelling {
   std::string_view machine, formula;
 };
@@ -49,9 +49,10 @@ FormulaId expand_tan(const FormulaMaker& make, Arguments a) {
   return make("divide", {make("sin", {a[0]}), make("cos", {a[0]})});
 }
 
-// Fractional Brownian motion (Mandelbrot & Van Ness, 1968), as noise makes it: the sum of noise(2^k p + c_k) / 2^k.
-// The c_k are 0 and then (2 k + 1) c with odd sixteenths in c, so that no two octaves have their zeros, which noise
-// has at whole coordinates, at one place: if 2^j p + c_j is whole, 2^k p + c_k is an odd number of sixteenths off.
+// Fractional Brownian motion (Mandelbrot & Van Ness, 1968), approximated by the sum of noise(2^k p + c_k) / 2^k. The
+// noise is zero at whole coordinates. The offsets c_k are 0 for k = 0 and (2 k + 1) c otherwise, where c has odd
+// sixteenths. They keep the zeros of different octaves apart: if 2^j p + c_j is whole, 2^k p + c_k is an odd number
+// of sixteenths off.
 FormulaId expand_fbm(const FormulaMaker& make, Arguments a) {
   constexpr double kApart[] = {37.0 / 16, 55.0 / 16, 91.0 / 16};
   FormulaId sum = make("noise", {a[0], a[1], a[2]});
@@ -69,9 +70,9 @@ FormulaId expand_fbm(const FormulaMaker& make, Arguments a) {
 constexpr int kMostOctaves = 12;
 
 constexpr FormulaFunction kDerived[] = {
-    {"clamp", 3, 3, "", expand_clamp},            // value, least, most
-    {"mix", 3, 3, "", expand_mix},                // a at t = 0, b at t = 1, t
-    {"smoothstep", 3, 3, "", expand_smoothstep},  // edge of 0, edge of 1, value
+    {"clamp", 3, 3, "", expand_clamp},            // value, minimum, maximum
+    {"mix", 3, 3, "", expand_mix},                // a (result at t = 0), b (result at t = 1), t
+    {"smoothstep", 3, 3, "", expand_smoothstep},  // edge where the result is 0, edge where it is 1, value
     {"length", 2, 3, "", expand_length},
     {"hypot", 2, 3, "", expand_length},
     {"pow", 2, 2, "", expand_pow},

@@ -1,5 +1,5 @@
-// What formulas can call: the machine's functions under the names that formulas give them, and functions that are
-// made of others.
+// Functions that formulas can call: the machine's functions under their names in formulas, and functions composed of
+// them.
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp
 #pragma once
 
@@ -16,20 +16,21 @@ namespace fathom::compiler {
 
 struct FormulaFunction {
   std::string_view name;    // in formulas
-  std::size_t least, most;  // how many arguments it takes
-  std::string_view basic;   // the machine's function; empty for one that is made of others
+  std::size_t least, most;  // minimum and maximum number of arguments
+  std::string_view basic;   // the machine's function; empty for a composed function
   FormulaId (*expand)(const FormulaMaker& make, std::span<const FormulaId> arguments) = nullptr;
-  // The last argument says how often something is done: a constant whole number from 1 to this. 0: there is none
-  // such.
+  // Nonzero for a function whose last argument is a repeat count: a constant whole number from 1 to `most_times`.
   int most_times = 0;
 
-  // `arguments` are as many as it takes.
-  // What is wrong with `last` as the last of them, nullopt being a number that varies; empty when nothing is.
+  // Returns the reason why `last` is not a valid last argument, or "" if `last` is valid. nullopt stands for an
+  // argument that varies.
   std::string misfit_of(std::optional<double> last) const;
+  // `arguments` must have a length that the function accepts.
   FormulaId call(FormulaBuilder& builder, std::span<const FormulaId> arguments, Span span) const;
 };
 
-// Those of the machine first; it may have one of the others as its own.
+// Returns the machine's functions first, then the composed functions. A machine function replaces a composed function
+// of the same name.
 std::vector<FormulaFunction> formula_functions(std::span<const FunctionSpec> machine);
 
 }  // namespace fathom::compiler

@@ -16,7 +16,7 @@ constexpr std::string_view kCompare = "there are no comparisons; step(edge, v) i
 constexpr std::string_view kChoose = "for a choice write mix(a, b, step(edge, v)): a where v < edge, b elsewhere";
 constexpr std::string_view kLogic = "there is no logic; of values that are 0 or 1, min is `and` and max is `or`";
 
-// Longer ones before their beginnings.
+// Longer marks come before their prefixes.
 constexpr ForeignMark kForeign[] = {
     {"**", "for a power write a^b"},
     {"==", kCompare},
@@ -87,7 +87,7 @@ Token FormulaLexer::number() {
   double value = 0;
   const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
   Token token = take(Token::Kind::Number, static_cast<std::size_t>(end - begin));
-  // Too large or too small for a double; strtod tells which, as infinity or zero.
+  // The number is out of the range of double. strtod says which way, by returning infinity or zero.
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(token.text).c_str(), nullptr);
   token.value = value;
   return token;
@@ -101,7 +101,7 @@ Token FormulaLexer::foreign() {
     token.help = mark.help;
     return token;
   }
-  // One character, which in UTF-8 is a byte and its continuation bytes.
+  // One character: in UTF-8, a byte and its continuation bytes.
   std::size_t length = 1;
   while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0) == 0x80) ++length;
   return take(Token::Kind::Foreign, length);

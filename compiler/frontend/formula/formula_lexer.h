@@ -1,4 +1,4 @@
-// A formula's text as tokens.
+// Lexer for formulas.
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp
 #pragma once
 
@@ -12,13 +12,13 @@ struct Token {
     Number,
     Name,
     Mark,     // one of + - * / ^ ( ) , =
-    Foreign,  // what other languages have and formulas do not: ==, %, ...
+    Foreign,  // a mark of other languages that formulas lack: ==, %, ...
     End,
   };
   Kind kind;
-  std::string_view text;       // a part of the formula; empty at its end
-  double value = 0;            // of a number; infinite when it is too large
-  std::string_view help = {};  // of a foreign one: what to write in its place; may be empty
+  std::string_view text;       // slice of the formula; empty at its end
+  double value = 0;            // for Number; infinite if the number is too large for a double
+  std::string_view help = {};  // for Foreign: what to write instead; may be empty
 
   bool is(char mark) const { return kind == Kind::Mark && text[0] == mark; }
 };
@@ -26,7 +26,7 @@ struct Token {
 class FormulaLexer {
  public:
   explicit FormulaLexer(std::string_view text) : text_(text) {}
-  Token next();  // End again and again at the end
+  Token next();  // returns End repeatedly at the end
 
  private:
   Token take(Token::Kind kind, std::size_t length);
@@ -37,7 +37,7 @@ class FormulaLexer {
   std::size_t at_ = 0;
 };
 
-// Whether the text is one name: a letter or underscore, then letters, digits and underscores.
+// True if the text is one name: a letter or underscore, then letters, digits and underscores.
 bool is_formula_name(std::string_view text);
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// From a formula to nodes of the graph, one for each of its operations.
+// Conversion of a formula to graph nodes, one node per operation.
 // Tested by: tests/compiler/derive/formula_field_test.cpp
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace fathom::compiler {
 
-// The functions of the node table: what a formula of x, y and z can be made of.
+// Returns the functions of the node table, from which a formula of x, y and z can be built.
 std::span<const FunctionSpec> machine_functions();
 
-// Whether float can hold every number in it; reports each that it cannot.
+// True if float can hold every number in the formula. Reports each number that float cannot hold.
 bool holds_in_float(const Formula& formula, Diagnostics& diagnostics);
 
-// The node that is the formula's value. `name` is that of the scene's node it belongs to.
+// Returns the node with the formula's value. `name` is the name of the scene's node that the formula belongs to.
 NodeId make_formula(Graph& graph, const Formula& formula, const std::string& name);
 
 }  // namespace fathom::compiler

@@ -28,7 +28,7 @@ const NamedConstant* find_constant(std::string_view name) {
 }
 
 const FormulaFunction* find_function(std::span<const FormulaFunction> functions, std::string_view name) {
-  // Asked of every name: most differ in the first character.
+  // The parser looks up every name here, and most names differ in the first character.
   const auto same = [&](const FormulaFunction& row) { return row.name[0] == name[0] && row.name == name; };
   const auto found = std::find_if(functions.begin(), functions.end(), same);
   return found == functions.end() ? nullptr : &*found;
@@ -44,7 +44,7 @@ std::vector<std::string_view> known_names(const FormulaContext& context) {
   std::vector<std::string_view> names = context.scope.known_names();
   const auto scope = static_cast<std::ptrdiff_t>(names.size());
   for (const auto& [name, node] : context.definitions) names.push_back(name);
-  std::sort(names.begin() + scope, names.end());  // the same on every machine
+  std::sort(names.begin() + scope, names.end());  // sorted, so that messages are the same on every platform
   for (const NamedConstant& row : kConstants) names.push_back(row.name);
   if (context.has_point || context.may_have_point) names.insert(names.end(), {"x", "y", "z"});
   return names;
@@ -57,7 +57,8 @@ std::string count_of_arguments(std::size_t count) {
 }  // namespace
 
 Span FormulaText::span_of(std::string_view part) const {
-  // Escapes are longer than what they stand for; with any, only the whole string's place is known.
+  // Escapes are longer than the characters they stand for. In a string with escapes only the span of the whole string
+  // is known.
   if (span.end - span.begin != text.size() + 2) return span;
   const auto begin = span.begin + 1 + static_cast<std::uint32_t>(part.data() - text.data());
   return {begin, begin + static_cast<std::uint32_t>(std::max<std::size_t>(part.size(), 1))};
@@ -118,7 +119,7 @@ FormulaParser::Result FormulaParser::term() {
   return left;
 }
 
-// Every recursion comes through here.
+// Every recursion of the parser passes through here, so this function checks the limits.
 FormulaParser::Result FormulaParser::factor() {
   if (depth_ > context_.scope.limits().formula_nesting) return too_deep();
   if (static_cast<double>(context_.builder.size()) > context_.scope.limits().nodes) return too_long();
@@ -212,7 +213,7 @@ FormulaId FormulaParser::resolve(const Token& name) {
   }
   const Scope::Entry* entry = context_.scope.use(name.text);
   if (entry == nullptr) {
-    // "a = 1" where no definition can be is reported at its `=`.
+    // The parser reports "a = 1" at its `=` where no definition is allowed.
     if (next_.is('=')) return stand_in(name);
     report("E0402", span(name), fmt::format("unknown name `{}`", name.text), "",
            {context_.diagnostics.full() ? "" : did_you_mean(name.text, known_names(context_))});
@@ -225,7 +226,7 @@ FormulaId FormulaParser::resolve(const Token& name) {
   return stand_in(name);
 }
 
-// Reports are functions of their own also to keep their texts out of the frames of the recursion.
+// Reports are separate functions partly to keep their strings out of the stack frames of the recursion.
 FormulaParser::Result FormulaParser::too_deep() {
   report("E0406", span(next_),
          fmt::format("the formula is nested more than {} deep", context_.scope.limits().formula_nesting),
@@ -293,7 +294,7 @@ FormulaParser::Result FormulaParser::not_closed(const Token& open) {
   return std::nullopt;
 }
 
-// What stands where an operator, a `)` or the end should.
+// Reports the token found where an operator, a `)` or the end was expected.
 void FormulaParser::report_rest() {
   const std::string shown(next_.text);
   std::vector<std::string> help;

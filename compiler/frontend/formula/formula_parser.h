@@ -1,4 +1,4 @@
-// One line of a formula: the parser behind read_formula().
+// Parser for one line of a formula, used by read_formula().
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp, formula_errors_test.cpp, tests/golden/diagnostics (E04xx)
 #pragma once
 
@@ -23,24 +23,25 @@ struct NameHash {
   std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
 };
 
-// What the lines of a formula share.
+// State shared by the lines of a formula.
 struct FormulaContext {
   const Scope& scope;
   std::vector<FormulaFunction> functions;
-  bool has_point;  // whether there are x, y and z
+  bool has_point;  // true if x, y and z are defined
   Diagnostics& diagnostics;
   FormulaBuilder builder = {};
   std::unordered_map<std::string, FormulaId, NameHash, std::equal_to<>> definitions = {};
-  bool may_have_point = false;  // whether x, y and z could have been used
-  bool good = true;             // whether the result can be used
+  bool may_have_point = false;  // true if the property could also vary over space, with x, y and z
+  bool good = true;             // false after an error: the result cannot be used
 };
 
-// Where a line's characters are in the scene's text.
+// A line of a formula, and its place in the scene's source.
 struct FormulaText {
   std::string_view text;
-  Span span;  // of the string with its quotes
+  Span span;  // of the string, including its quotes
 
-  // An empty part is given the character after it, the closing quote at the text's end.
+  // Returns the span of a slice of `text`. An empty slice gets the span of the next character, which is the closing
+  // quote at the end of the text.
   Span span_of(std::string_view part) const;
 };
 
@@ -48,11 +49,11 @@ class FormulaParser {
  public:
   FormulaParser(const FormulaText& text, FormulaContext& context);
 
-  // "name =" at the line's begin; nullopt, after a report, when there is none.
+  // Parses "name =" at the beginning of the line. Returns nullopt after a report if there is no definition.
   std::optional<Token> definition();
 
-  // The rest of the line; nullopt after an error that ended the reading. Unknown names and calls do not: they are
-  // reported, spoil the context's `good`, and something stands in for them.
+  // Parses the rest of the line. Returns nullopt after an error that ended parsing. Unknown names and invalid calls
+  // do not end parsing: the parser reports them, clears `good` of the context and inserts a placeholder.
   std::optional<FormulaId> expression_to_end();
 
  private:
@@ -93,14 +94,14 @@ class FormulaParser {
   int depth_ = 0;
 };
 
-// Reports that x, y or z is used where there is no point.
+// Reports that x, y or z is used where no point is defined.
 void report_no_point(std::string_view axis, Span span, Diagnostics& diagnostics);
 
-// The value of a constant of formulas, such as pi; nullopt when the name is none.
+// Returns the value of a named constant such as pi, or nullopt if the name is not a constant.
 std::optional<double> formula_constant(std::string_view name);
 
-// What is wrong with giving this name to a parameter or a definition where formulas have these functions
-// (compiler/frontend/formula/formula_functions.h); empty when nothing is.
+// Returns the reason why a parameter or definition cannot have this name where formulas have these functions
+// (compiler/frontend/formula/formula_functions.h), or "" if the name is valid.
 std::string misfit_name(std::string_view name, std::span<const FormulaFunction> functions);
 
 }  // namespace fathom::compiler

@@ -14,7 +14,7 @@ struct Infix {
 };
 constexpr Infix kInfix[] = {{"add", " + ", 1}, {"minus", " - ", 1}, {"multiply", "*", 2}, {"divide", "/", 2}};
 constexpr int kSign = 3, kPower = 4, kCall = 5;
-// Longer texts get a name.
+// Longer subexpressions get a name on a line of their own.
 constexpr std::size_t kLongestPart = 200;
 
 struct Spelled {
@@ -39,7 +39,7 @@ Spelled spell(const Formula::Node& node, const std::vector<Spelled>& parts) {
     return {at_least(argument(0), row.precedence) + std::string(row.mark) + at_least(argument(1), row.precedence + 1),
             row.precedence};
   }
-  // Of a sum in parentheses, for -x*y is a product.
+  // A negated sum needs parentheses, and so does a product, because -x*y parses as a product.
   if (node.function == "negate") return {"-" + at_least(argument(0), kSign), kSign};
   if (node.function == "square") return {at_least(argument(0), kCall) + "^2", kPower};
   std::string_view name = node.function;

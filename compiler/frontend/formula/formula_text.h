@@ -1,4 +1,4 @@
-// A formula as the text that reads back as the same formula.
+// Printer for formulas. The text reads back as the same formula.
 // Tested by: tests/compiler/frontend/formula/formula_test.cpp
 #pragma once
 
@@ -9,7 +9,8 @@
 
 namespace fathom::compiler {
 
-// The lines of a JSON scene's formula: what is used twice has a name, `a = ...`, and the last line is the result.
+// Returns the lines of a JSON scene's formula. A subexpression that is used twice gets a name (`a = ...`), and the
+// last line is the result.
 std::vector<std::string> formula_lines(const Formula& formula);
 
 }  // namespace fathom::compiler

@@ -11,8 +11,8 @@
 namespace fathom::compiler {
 namespace {
 
-// Reads `name = expression` into the context. A name whose expression is in error is defined all the same, so that
-// the lines after it are read as they were meant.
+// Reads `name = expression` into the context. A name is defined even if its expression is in error, so that the
+// parser reads later lines as intended.
 void read_definition(const FormulaText& text, FormulaContext& context) {
   FormulaParser parser(text, context);
   const std::optional<Token> name = parser.definition();

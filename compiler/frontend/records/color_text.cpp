@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
-// A channel of this much was meant as a byte; a smaller one above 1 may be a linear value that is too large.
+// A channel of this size is probably a byte. A smaller channel above 1 may be a linear value that is too large.
 constexpr double kLeastByte = 16;
 
-// The value of a digit of either case; npos of other letters.
+// Returns the value of a hexadecimal digit of either case, or npos for other characters.
 std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
 
 double srgb_to_linear(double signal) {

@@ -1,5 +1,5 @@
-// Colours as texts: "#c04020" or "#c42", red, green and blue in hexadecimal, as a screen shows them (sRGB, IEC 61966-2-1).
-// A scene's colours are linear, so a text is decoded where it is read. Formulas never begin with "#".
+// Colours as strings: "#c04020" or "#c42" give red, green and blue in hexadecimal, sRGB-encoded (IEC 61966-2-1).
+// Scene colours are linear, so the reader decodes a colour string. Formulas never begin with "#".
 // Tested by: tests/compiler/frontend/records/color_text_test.cpp, tests/golden/diagnostics (E0101_color_text, E0104_albedo)
 #pragma once
 
@@ -12,13 +12,14 @@
 
 namespace fathom::compiler {
 
-// Whether a property of this type has such a text as its value.
+// True if the value is a colour string and a property of this type accepts one.
 bool is_color_text(const syntax::Value& value, ValueType type);
 
-// Three numbers from 0 to 1; nullopt after a report.
+// Returns three numbers from 0 to 1, or nullopt after a report.
 std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics);
 
-// The text of three whole numbers from 0 to 255 of which one is 16 or more, as others write colours; "" of other values.
+// Returns the colour string for three whole numbers from 0 to 255, as other programs write colours. At least one
+// number must be 16 or more. Returns "" for other values.
 std::string color_text_of(const syntax::Value& value);
 
 }  // namespace fathom::compiler

@@ -1,4 +1,4 @@
-// The rows of lights and of what lies beyond the scene.
+// Tables of lights and backgrounds.
 #include <utility>
 
 #include "compiler/frontend/records/property_rows.h"

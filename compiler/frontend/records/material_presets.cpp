@@ -6,9 +6,9 @@
 namespace fathom::compiler {
 namespace {
 
-// n and k for red, green and blue, at 650, 550 and 450 nm. Measurements as collected by Polyanskiy,
-// "Refractiveindex.info database of optical constants", Scientific Data 11, 2024 (CC0), and chosen for three colours
-// by Palmqvist, "Physically Based", physicallybased.info (CC0).
+// n and k for red, green and blue, at 650, 550 and 450 nm. Sources: measurements collected by Polyanskiy,
+// "Refractiveindex.info database of optical constants", Scientific Data 11, 2024 (CC0), selected for three colours by
+// Palmqvist, "Physically Based", physicallybased.info (CC0).
 struct Metal {
   std::string_view name, other_name;
   glm::dvec3 n, k;
@@ -31,7 +31,7 @@ constexpr Metal kMetals[] = {
     {"zinc", "", {3.4161, 1.9286, 1.0424}, {7.0325, 6.3963, 5.125}},
 };
 
-// Indices at 589 nm from the same collections.
+// Refractive indices at 589 nm, from the same collections.
 struct Dielectric {
   std::string_view name;
   double ior;
@@ -42,7 +42,8 @@ constexpr Dielectric kDielectrics[] = {
     {"plastic", 1.46, 0, 0.3}, {"sapphire", 1.768, 1, 0}, {"water", 1.333, 1, 0},
 };
 
-// OpenPBR's F82-tint: reflectance head-on, and at the angle with cosine 1/7 its ratio to Schlick's approximation.
+// OpenPBR's F82-tint: reflectance at normal incidence, and the ratio to Schlick's approximation at the angle with
+// cosine 1/7.
 // Source: Kutz, Hasan, Edmondson, "Novel aspects of the Adobe Standard Material", 2021.
 MaterialPreset metal_preset(const Metal& metal, std::string_view name) {
   constexpr double kEdge = 1.0 / 7, kGrazing = (6 * 6 * 6 * 6 * 6) / (7.0 * 7 * 7 * 7 * 7);  // (1 - kEdge)^5

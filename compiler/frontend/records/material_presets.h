@@ -1,4 +1,4 @@
-// Substances by name, for principled materials: metals by their measured refractive index, clear ones by theirs.
+// Presets for principled materials: metals by their measured complex refractive index, dielectrics by their index.
 // Tested by: tests/compiler/frontend/elaborate/materials_test.cpp
 #pragma once
 
@@ -12,13 +12,13 @@ namespace fathom::compiler {
 
 struct MaterialPreset {
   std::string_view name;
-  std::vector<std::pair<std::string_view, glm::dvec3>> values;  // of properties; of one number, three times that
+  std::vector<std::pair<std::string_view, glm::dvec3>> values;  // of properties; a scalar is repeated three times
 };
 
 std::span<const MaterialPreset> material_presets();
 
-// Reflectance for unpolarised light of a conductor with the refractive index n + ik. `cosine` of the angle of
-// incidence, in [0,1]. Source: Born and Wolf, "Principles of Optics", 7th ed. 1999, section 14.2.
+// Returns the unpolarised Fresnel reflectance of a conductor with refractive index n + ik. `cosine` is that of the
+// angle of incidence, in [0,1]. Source: Born and Wolf, "Principles of Optics", 7th ed. 1999, section 14.2.
 double conductor_reflectance(double cosine, double n, double k);
 
 }  // namespace fathom::compiler

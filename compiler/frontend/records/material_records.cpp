@@ -1,4 +1,4 @@
-// The tables of materials and of the patterns their parameters may vary by.
+// Tables of materials and of the patterns that material parameters may vary by.
 #include <array>
 #include <utility>
 
@@ -33,7 +33,7 @@ RecordSpec material(std::string type, std::vector<PropertySpec> own) {
   return record;
 }
 
-// A share between 0 and 1, a colour of such, or a positive index that OpenPBR has under this name.
+// Rows of OpenPBR parameters: a share between 0 and 1, a colour of shares, and a positive index.
 PropertySpec share(std::string_view name, std::string_view doc, double fallback) {
   return varying(number(name, doc, {fallback}, kUnit));
 }
@@ -44,7 +44,7 @@ PropertySpec index(std::string_view name, std::string_view doc, double fallback)
   return varying(number(name, doc, {fallback}, {}, Rule::Positive));
 }
 
-// Follows the row it is a short name of.
+// Short name of a property. The alias copies the row of that property.
 struct Alias {
   std::string_view of, name;
 };
@@ -62,7 +62,7 @@ PropertySpec preset_row() {
   return row;
 }
 
-// After OpenPBR 1.1, defaults too. Not in it: preset and priority.
+// Follows OpenPBR 1.1, including the defaults. The properties `preset` and `priority` are additions.
 RecordSpec principled() {
   RecordSpec record = material(
       "principled",
@@ -101,12 +101,12 @@ RecordSpec principled() {
 RecordSpec pattern(std::string type, std::vector<PropertySpec> own) {
   PropertySpec kind = choice({"checker", "stripes", "gradient", "noise", "bricks"}, "how the two are spread", true);
   kind.name = "pattern";
-  // What a and b must be the property that has the pattern says.
+  // row_for() in textures.cpp sets the types of `a` and `b` from the property that has the pattern.
   RecordSpec record{type, "`" + type + "`", type + " pattern", {kind}};
   record.properties.push_back(varying(other("a", ValueType::Color, "where the pattern is 0", true)));
   record.properties.push_back(varying(other("b", ValueType::Color, "where the pattern is 1", true)));
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
-  // As of a node.
+  // The same rows as for a node.
   for (const char* name : {"scale", "rotate"}) record.properties.push_back(*use_record().find(name));
   record.properties.push_back(vec3("translate", "how far to move the pattern, after scale and rotate", {0, 0, 0}));
   record.properties.push_back(

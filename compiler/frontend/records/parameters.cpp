@@ -16,7 +16,7 @@
 namespace fathom::compiler {
 namespace {
 
-// The value in a record {"default": ..., ...}, which also says what values are allowed; nullopt after a report.
+// Returns the default of a record {"default": ..., ...} and stores the allowed range. Returns nullopt after a report.
 std::optional<double> read_record(const syntax::Record& record, Span place, const Scope& scope, Parameter& parameter,
                                   Diagnostics& diagnostics) {
   const RecordReader reader(parameter_record(), record, place, scope, diagnostics);
@@ -26,7 +26,7 @@ std::optional<double> read_record(const syntax::Record& record, Span place, cons
   return reader.good() ? std::optional(reader.number("default")) : std::nullopt;
 }
 
-// The value as the scene has it; nullopt after a report.
+// Returns the value that the scene gives, or nullopt after a report.
 std::optional<double> read_value(const syntax::Property& property, const Scope& scope, Parameter& parameter,
                                  Diagnostics& diagnostics) {
   const syntax::Value& value = *property.value;
@@ -47,7 +47,7 @@ std::string describe_range(const Parameter& parameter) {
   return fmt::format("between {} and {}", parameter.min, parameter.max);
 }
 
-// What the parameter's value does not satisfy; empty when nothing.
+// Returns the rule that the parameter's value breaks, or "" if the value is valid.
 std::string broken_rule(const Parameter& parameter) {
   if (!std::isfinite(parameter.value)) return "finite";
   if (!(std::abs(parameter.value) <= kLargest)) return fmt::format("at most {} in magnitude", kLargest);
@@ -123,7 +123,7 @@ const Scope::Entry& read_parameter(const syntax::Property& property, const Defin
 Scope read_parameters(const syntax::Value* params, const Definitions& definitions, const Limits& limits,
                       Diagnostics& diagnostics) {
   Scope scope(limits);
-  // What else `params` may be is reported where the scene's properties are checked.
+  // Any other type of `params` is reported with the scene's other properties.
   const auto* record = params ? std::get_if<syntax::Record>(&params->data) : nullptr;
   if (record) {
     for (const syntax::Property& property : record->properties) scope.declare(property.name, property.name_span);

@@ -1,4 +1,4 @@
-// Short ways to write the rows of the tables in records.h.
+// Shorthand functions for the rows of the tables in records.h.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace fathom::compiler::rows {
 
 inline constexpr Range kUnit{0, 1};
-// A double holds every whole number up to here, and JSON numbers are read as doubles.
+// Largest whole number up to which double is exact. JSON numbers are read as doubles.
 inline constexpr double kLargestWhole = 9007199254740992;  // 2^53
 
 inline PropertySpec number(std::string_view name, std::string_view doc, std::vector<double> fallback,

@@ -122,7 +122,7 @@ bool has_type(const Value& value, ValueType type) {
   return true;
 }
 
-// What the number does not satisfy, as in "must be ..."; empty when nothing.
+// Returns the rule that the number breaks, as in "must be ...", or "" if the number is valid.
 std::string broken_rule(double number, const PropertySpec& spec, const Limits& limits) {
   const Range& range = spec.range;
   if (!std::isfinite(number)) return "finite";
@@ -143,7 +143,7 @@ struct Broken {
   const Value* value;
 };
 
-// The first number of the value that breaks a rule of its property.
+// Returns the first number of the value that breaks a rule of its property.
 std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec, const Limits& limits) {
   if (const double* number = std::get_if<double>(&value.data)) {
     const std::string rule = broken_rule(*number, spec, limits);
@@ -166,7 +166,7 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec,
   return std::nullopt;
 }
 
-// The place of the word among the row's choices; nullopt when it is none of them.
+// Returns the index of the word among the row's choices, or nullopt if the word is not a choice.
 std::optional<std::size_t> choice_of(const Value& value, const PropertySpec& row) {
   const auto found = std::find(row.choices.begin(), row.choices.end(), std::get<std::string>(value.data));
   if (found == row.choices.end()) return std::nullopt;
@@ -175,7 +175,7 @@ std::optional<std::size_t> choice_of(const Value& value, const PropertySpec& row
 
 std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("`{}`: {}", spec.name, spec.doc)}; }
 
-// Help for a value of the wrong type.
+// Returns help for a value of the wrong type.
 std::vector<std::string> retype(const Value& value, const Value& written, const PropertySpec& spec) {
   const bool number = std::holds_alternative<double>(value.data);
   if (spec.type == ValueType::Integer && number && std::holds_alternative<std::string>(written.data)) {
@@ -190,7 +190,7 @@ std::vector<std::string> retype(const Value& value, const Value& written, const 
   return about(spec);
 }
 
-// Help for a value out of range.
+// Returns help for a value out of range.
 std::vector<std::string> correct(const Value& value, const PropertySpec& spec) {
   std::vector<std::string> help = about(spec);
   const std::string text = spec.type == ValueType::Color ? color_text_of(value) : "";
@@ -198,7 +198,7 @@ std::vector<std::string> correct(const Value& value, const PropertySpec& spec) {
   return help;
 }
 
-// The name that values are looked up by.
+// Returns the name under which values are looked up.
 std::string_view own_name(const PropertySpec& row) { return row.alias_of.empty() ? row.name : row.alias_of; }
 
 std::vector<std::string_view> known_properties(const RecordSpec& spec) {
@@ -209,14 +209,15 @@ std::vector<std::string_view> known_properties(const RecordSpec& spec) {
   return known;
 }
 
-// Whether some unknown property of the record was meant to be this one, so that it is not missing but misnamed.
+// True if an unknown property of the record is probably a misspelling of this one, so that reporting a missing
+// property would be wrong.
 bool misnamed(const PropertySpec& missing, const RecordSpec& spec, const syntax::Record& record) {
   return std::any_of(record.properties.begin(), record.properties.end(), [&](const syntax::Property& property) {
     return !spec.find(property.name) && suggest(property.name, known_properties(spec)) == missing.name;
   });
 }
 
-// The other row of the same family that has the property: "`ior` is a property of transparent materials".
+// Returns a hint that another row of the family has the property, such as: `ior` goes with "type": "transparent".
 std::string owner(const RecordSpec& spec, std::string_view property, const Diagnostics& diagnostics) {
   for (const auto* family : {&camera_records(), &material_records(), &light_records(), &background_records()}) {
     const auto same = [&](const RecordSpec& row) { return &row == &spec; };
@@ -238,7 +239,7 @@ bool is_numeric(ValueType type) {
 
 }  // namespace
 
-// The numbers of a number, a list or a list of lists, in order.
+// Appends the numbers of a number, a list or a list of lists, in order.
 void append_numbers(const Value& value, std::vector<double>& out) {
   if (const double* number = std::get_if<double>(&value.data)) out.push_back(*number);
   if (const auto* list = std::get_if<syntax::List>(&value.data)) {

@@ -1,6 +1,5 @@
-// Checks a record of a scene file against its row in records.h and hands out the values.
-// Where the table wants numbers a record may have formulas of the scene's parameters; they are evaluated here, and
-// who reads the values sees numbers only.
+// Checker for a record of a scene file against its row in records.h. Returns the values by name. Records may give
+// formulas of the scene's parameters for numbers. The reader evaluates the formulas, so callers see numbers only.
 //
 // Tested by: tests/golden/diagnostics (E01xx, E0301), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
@@ -21,28 +20,28 @@ namespace fathom::compiler {
 
 class RecordReader {
  public:
-  // Reports every unknown, missing and unfit property. A missing one is reported at `place`; `range_code` is the code
-  // of numbers that break their rule.
+  // Reports every unknown, missing and invalid property. `place` is the span for missing properties. `range_code` is
+  // the error code for numbers out of range.
   RecordReader(const RecordSpec& spec, const syntax::Record& record, Span place, const Scope& scope,
                Diagnostics& diagnostics, const char* range_code = "E0104");
 
-  // Whether every value can be used; what is wrong with the others has been reported.
+  // True if every value is valid. The reader has reported the invalid values.
   bool good() const { return good_; }
 
-  // The value as given under this name or an alias of it, but with numbers for formulas, when it is given and fit;
-  // else nullptr. What varies over space (frontend/elaborate/textures.h) is as it was written. Lives as long as the reader and
-  // the record.
+  // Returns the value given under this name or an alias, with formulas replaced by numbers. Returns nullptr if the
+  // value is absent or invalid. A value that varies over space (frontend/elaborate/textures.h) stays as written. The
+  // pointer is valid as long as the reader and the record.
   const syntax::Value* value(std::string_view name) const;
 
-  // The number(s) given, or the table's default when absent, unfit or not constant; a required one that is absent
-  // reads as zeros.
+  // Returns the given number or numbers, or the table's default if the value is absent, invalid or not constant. An
+  // absent required property reads as zeros.
   std::vector<double> numbers(std::string_view name) const;
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
-  // The place among the table's choices of the word given, or 0 when it is absent or unfit.
+  // Returns the index of the given word among the table's choices, or 0 if the value is absent or invalid.
   std::size_t choice(std::string_view name) const;
 
-  // A Boolean; `fallback` when absent or unfit.
+  // Returns a Boolean, or `fallback` if the value is absent or invalid.
   bool flag(std::string_view name, bool fallback) const;
 
  private:
@@ -62,7 +61,7 @@ class RecordReader {
   const char* range_code_;
   bool good_ = true;
   std::vector<Fit> fit_;
-  std::vector<std::unique_ptr<const syntax::Value>> evaluated_;  // values that had formulas in them
+  std::vector<std::unique_ptr<const syntax::Value>> evaluated_;  // values that contained formulas
 };
 
 }  // namespace fathom::compiler

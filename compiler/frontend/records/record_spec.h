@@ -1,4 +1,4 @@
-// A table of properties: names, types, ranges, defaults and documentation of one record of a scene file.
+// Table of properties: names, types, ranges, defaults and documentation for one record of a scene file.
 #pragma once
 
 #include <limits>
@@ -15,30 +15,31 @@ enum class ValueType {
   Integer,
   Vec2,     // two numbers
   Vec3,     // three numbers
-  Points,   // a list of [x, y], three or more
-  Formula,  // a string, or a list of them (formula.h)
-  Color,    // three numbers, or one of a grey
+  Points,   // a list of three or more [x, y]
+  Formula,  // a string, or a list of strings (formula.h)
+  Color,    // three numbers, or one for a grey
   Text,
   Boolean,
   Choice,  // one of PropertySpec::choices
-  Record,  // a record with a table of its own
-  Named,   // a record whose properties are names of the scene's choosing
+  Record,  // a record with its own table
+  Named,   // a record whose property names the scene chooses
   Node,
   Nodes,        // a list of nodes
-  Scale,        // a number or three
-  Translation,  // three numbers, or two of an outline
-  Rotation,     // three numbers or a record by rotation_record()
-  Background,   // a colour or a record of background_records()
+  Scale,        // a number or three numbers
+  Translation,  // three numbers, or two for an outline
+  Rotation,     // three numbers, or a record that follows rotation_record()
+  Background,   // a colour, or a record that follows background_records()
   Version,      // the number kSceneVersion
   Anything,
 };
 
 inline constexpr int kSceneVersion = 1;
 
-// The machine computes in 32-bit floats: three squares of this magnitude still add up to less than their largest.
+// Largest magnitude of a number. The machine computes in 32-bit floats, and the sum of three squares of this
+// magnitude is still below the largest float.
 inline constexpr double kLargest = 1e18;
 
-// Numbers (each of three, for a vector) lie in [least, most]; in (least, most) when open.
+// Allowed range of a number, or of each component of a vector: [least, most], or (least, most) if `open`.
 struct Range {
   double least = -kLargest;
   double most = kLargest;
@@ -49,19 +50,18 @@ struct PropertySpec {
   std::string_view name;
   ValueType type;
   std::string_view doc;
-  std::vector<double> fallback =
-      {};  // numbers and vectors: used when the property is absent; empty when there is none
+  std::vector<double> fallback = {};  // numbers and vectors: value of an absent property; empty without a default
   bool required = false;
   Rule rule = Rule::Any;
   Range range = {};
-  std::vector<std::string_view> choices = {};     // the first is used when the property is absent
-  std::vector<std::string_view> instead_of = {};  // the properties this one takes the place of: no two may be given
-  std::string_view alias_of = {};                 // the property this is another name of: not both may be given
-  bool varies = false;  // may be a formula of the place or a pattern, too (frontend/elaborate/textures.h)
+  std::vector<std::string_view> choices = {};     // the first is the default
+  std::vector<std::string_view> instead_of = {};  // properties that this one replaces; only one of them may be given
+  std::string_view alias_of = {};                 // property that this one renames; only one of the two may be given
+  bool varies = false;  // may also be a formula of the point or a pattern (frontend/elaborate/textures.h)
 };
 
 struct RecordSpec {
-  std::string type;   // what the property `type` says, such as "sphere"; "" when the record has none
+  std::string type;   // value of the property `type`, such as "sphere"; "" if the record has no `type`
   std::string title;  // in messages: "`camera`", "`sphere`", "the scene"
   std::string noun;   // "camera", "sphere", "diffuse material"
   std::vector<PropertySpec> properties;

@@ -40,7 +40,7 @@ std::vector<PropertySpec> perspective() {
           number("blade_rotation", "degrees, counter-clockwise in the picture; at 0 a corner is up", {0})};
 }
 
-// What every node may have.
+// Adds the properties common to all nodes.
 void add_placement(RecordSpec& record) {
   for (PropertySpec property :
        {PropertySpec{"scale",
@@ -72,7 +72,7 @@ PropertySpec parameter(const ParamSpec& param) {
   return property;
 }
 
-// Two end points in place of a length.
+// Adds two end points as an alternative to a length.
 void add_between(RecordSpec& record, const Between& between) {
   for (PropertySpec& property : record.properties) property.required &= property.name != between.length;
   for (const char* end : {"a", "b"}) {
@@ -80,7 +80,7 @@ void add_between(RecordSpec& record, const Between& between) {
   }
 }
 
-// [kind]
+// Returns the rows by kind: [kind].
 std::vector<RecordSpec> make_node_records() {
   std::vector<RecordSpec> records(kKindCount);
   for (const NodeSpec& node : node_table()) {

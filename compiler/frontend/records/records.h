@@ -1,5 +1,5 @@
-// The tables of properties: what each record of a scene file may hold. Checking, "did you mean" and the
-// defaults read them; the parameters of nodes come from compiler/shapes/node_table.h.
+// Tables of properties that each record of a scene file may hold. The checks, the "did you mean" hints and the
+// defaults use these tables. The parameters of nodes come from compiler/shapes/node_table.h.
 // Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -16,14 +16,14 @@ const RecordSpec& film_record();
 const RecordSpec& render_record();
 const RecordSpec& rotation_record();  // of a node
 
-// One row for each value of `type`; the first is used when `type` is absent and not required.
+// One row per value of `type`. The first row is the default if `type` is optional.
 const std::vector<RecordSpec>& camera_records();
 const std::vector<RecordSpec>& light_records();  // light_records.cpp
 const std::vector<RecordSpec>& background_records();
 const std::vector<RecordSpec>& material_records();  // material_records.cpp
-const std::vector<RecordSpec>& pattern_records();   // told apart by `pattern`
+const std::vector<RecordSpec>& pattern_records();   // distinguished by `pattern`
 
-const RecordSpec& node_record(Kind kind);  // its parameters and what every node may have
-const RecordSpec& use_record();            // {"use": "name"} and what every node may have
+const RecordSpec& node_record(Kind kind);  // the node's parameters and the properties common to all nodes
+const RecordSpec& use_record();            // {"use": "name"} and the properties common to all nodes
 
 }  // namespace fathom::compiler

@@ -12,7 +12,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// Whole numbers without a fraction, which editors show as they are.
+// Returns whole numbers without a fraction, because editors show the number as written.
 OrderedJson plain(double number) {
   constexpr double kExact = 9007199254740992;  // 2^53
   if (std::floor(number) == number && std::abs(number) <= kExact) return static_cast<std::int64_t>(number);
@@ -21,13 +21,13 @@ OrderedJson plain(double number) {
 
 OrderedJson reference(std::string_view definition) { return {{"$ref", "#/$defs/" + std::string(definition)}}; }
 
-// A value that may be written in two ways.
+// Returns the schema of a value that may be written in two ways.
 OrderedJson either(OrderedJson one, OrderedJson other) { return {{"anyOf", OrderedJson::array({std::move(one), std::move(other)})}}; }
 
 OrderedJson string_schema() { return {{"type", "string"}}; }
 
-// A number in the range and under the rule of a property, or a formula of the scene's parameters, which only the
-// compiler can check.
+// Returns the schema of a number that satisfies a property's range and rule, or of a formula of the scene's
+// parameters. Only the compiler can check the formula.
 OrderedJson number_schema(const PropertySpec& property, const char* type = "number") {
   OrderedJson schema = {{"type", type}};
   const Range& range = property.range;
@@ -53,15 +53,15 @@ OrderedJson three_schema(const PropertySpec& property) {
 
 OrderedJson record_schema(const RecordSpec& record, bool type_required);
 
-// Whether the property says which of a family its record is.
+// True if the property distinguishes the records of a family.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
 OrderedJson color_text_schema() { return {{"type", "string"}, {"pattern", "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"}}; }
 
-// A grey or a colour; its text is a string, as a formula is.
+// Returns the schema of a grey or a colour. A colour string matches the string schema for formulas.
 OrderedJson color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
 
-// What the value of a property of `record` must be.
+// Returns the schema of the value of a property of `record`.
 OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record) {
   switch (property.type) {
     case ValueType::Number:
@@ -89,7 +89,7 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
       return string_schema();
     case ValueType::Record:
       return reference(property.name);
-    case ValueType::Named:  // "materials" holds what the definition "material" says
+    case ValueType::Named:  // definition `material` describes the entries of `materials`
       return {{"type", "object"},
               {"additionalProperties", reference(property.name.substr(0, property.name.size() - 1))}};
     case ValueType::Node:
@@ -126,7 +126,7 @@ OrderedJson property_schema(const PropertySpec& property, const RecordSpec& reco
   return schema;
 }
 
-// `type_required`: the record is not the one meant when `type` is absent.
+// If `type_required`, the record is not the default for an absent `type`.
 OrderedJson record_schema(const RecordSpec& record, bool type_required) {
   OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}, {"required", OrderedJson::array()}};
   OrderedJson excluded = OrderedJson::array();
@@ -145,7 +145,7 @@ OrderedJson record_schema(const RecordSpec& record, bool type_required) {
   return schema;
 }
 
-// One of the records of a family, told apart by `type`.
+// Returns the schema of a family of records, distinguished by `type`.
 OrderedJson family_schema(const std::vector<RecordSpec>& family) {
   OrderedJson rows = OrderedJson::array();
   for (const RecordSpec& record : family) {
@@ -155,7 +155,7 @@ OrderedJson family_schema(const std::vector<RecordSpec>& family) {
   return {{"oneOf", rows}};
 }
 
-// What the properties `scale` and `rotate` of every node refer to.
+// Schemas that the properties `scale` and `rotate` of every node refer to.
 OrderedJson scale_schema() {
   const PropertySpec& scale = *use_record().find("scale");
   return either(number_schema(scale), three_schema(scale));
@@ -164,7 +164,7 @@ OrderedJson rotate_schema() {
   return either(three_schema(*use_record().find("rotate")), record_schema(rotation_record(), false));
 }
 
-// A length, or the two ends it is measured between.
+// Returns the schema of a length, or of two end points instead.
 OrderedJson between_schema(const Between& between) {
   const OrderedJson ends = {{"anyOf", {{{"required", {"a"}}}, {{"required", {"b"}}}}}};
   const OrderedJson length = {{"required", {between.length}}};

@@ -1,7 +1,7 @@
-// The JSON Schema (draft 2020-12) of scene files, made from the tables in records.h, for editors and other tools.
+// JSON Schema (draft 2020-12) of scene files, made from the tables in records.h, for editors and other tools.
 //
-// What it rejects the compiler rejects too. The reverse does not hold: whether names resolve, whether parameters fit
-// together and what the camera sees is beyond a schema.
+// The compiler rejects every file that the schema rejects. The compiler rejects more: a schema cannot tell if names
+// resolve, if parameters fit together, or if the camera has a direction of view.
 // Tested by: tests/compiler/frontend/records/schema_test.cpp
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace fathom::compiler {
 
-// The schema as indented text, properties in the order of the tables.
+// Returns the schema as indented text, with properties in the order of the tables.
 std::string scene_schema();
 
 }  // namespace fathom::compiler

@@ -30,7 +30,7 @@ bool has_text(const Value& value) {
   return list ? std::any_of(list->begin(), list->end(), has_text) : is_formula_text(value);
 }
 
-// Whether there are but numbers and strings, in lists.
+// True if the value consists of numbers and formulas only, possibly in lists.
 bool is_arithmetic(const Value& value) {
   if (const auto* list = std::get_if<syntax::List>(&value.data)) {
     return std::all_of(list->begin(), list->end(), is_arithmetic);
@@ -38,7 +38,7 @@ bool is_arithmetic(const Value& value) {
   return is_formula_text(value) || std::holds_alternative<double>(value.data);
 }
 
-// The scalar of the value that begins at a place in the text; nullptr when there is none.
+// Returns the scalar of the value whose span begins at `begin`, or nullptr if no scalar begins there.
 const Value* scalar_at(const Value& value, std::uint32_t begin) {
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) return value.span.begin == begin ? &value : nullptr;

@@ -1,4 +1,4 @@
-// Formulas that stand where a scene file has numbers, and what they come to.
+// Formulas in place of a scene file's numbers, and their evaluation.
 // Tested by: tests/compiler/frontend/records/scene_numbers_test.cpp, tests/golden/diagnostics (E0101, E0104, E0301)
 #pragma once
 
@@ -12,19 +12,19 @@
 
 namespace fathom::compiler {
 
-// Whether formulas stand where the type has numbers, and nothing but numbers beside them.
+// True if the value contains formulas where the type expects numbers, and otherwise only numbers.
 bool has_formulas(const syntax::Value& value, ValueType type);
 
-// Whether the value is a pattern, or has formulas of x, y or z: of a property that may vary over space, that it does.
+// True if the value, of a property that may vary over space, does vary: a pattern, or formulas of x, y or z.
 bool varies(const syntax::Value& value);
 
-// The value, for which has_formulas(), with numbers only; nullopt after a report. Every formula is looked at.
-// `may_vary`: whether the property is one that may vary over space.
+// Replaces the formulas of a value for which has_formulas() is true by numbers. Returns nullopt after a report.
+// Evaluates every formula, so that every error is reported. `may_vary` is true if the property may vary over space.
 std::optional<syntax::Value> evaluated(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics,
                                        bool may_vary);
 
-// "; `r - 2` is -1": the formula in `written` that came to this part of evaluated(written); "" when it was no
-// formula.
+// Returns "; `r - 2` is -1" with the formula in `written` whose value is `part` of evaluated(written). Returns "" if
+// that number was not a formula.
 std::string explain(const syntax::Value& written, const syntax::Value& part);
 
 }  // namespace fathom::compiler

@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 namespace {
 
-// Reads a text for nlohmann's lexer and tells how many bytes it has taken.
+// Feeds a text to nlohmann's lexer and counts the bytes that the lexer has consumed.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -44,9 +44,9 @@ class CountingIterator {
 
 bool in_number(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.' || c == 'e' || c == 'E'; }
 
-// Receives nlohmann's events. Each comes right after its token was read, so the token ends at the bytes taken so far
-// (a number has taken one byte more, to see that it is over) and begins at the first byte after the token before that
-// is not a blank, a comment, a comma or a colon.
+// SAX handler that builds the syntax tree. nlohmann sends each event right after reading its token, so the token ends
+// at the bytes consumed so far. After a number the lexer has consumed one byte more, to see where the number ends.
+// The token begins at the first byte after the previous token that is not a blank, a comment, a comma or a colon.
 class Reader : public nlohmann::json_sax<nlohmann::json> {
  public:
   Reader(const Source& source, Diagnostics& diagnostics, const Limits& limits, const std::size_t& taken)
@@ -120,7 +120,7 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
     return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
   }
 
-  // Names are printed in listings and messages, a line each.
+  // Rejects control characters, because listings and messages print one name per line.
   void refuse_control_characters(const std::string& text, Span span) {
     const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
     if (std::none_of(text.begin(), text.end(), control)) return;
@@ -175,13 +175,13 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
     }
   }
 
-  // Reports every property that has one of the same name before it, and keeps the first of each name.
+  // Reports every property whose name occurred before, and keeps the first of each name.
   void drop_duplicates(syntax::Record& record) {
     std::vector<const syntax::Property*> sorted;
     for (const syntax::Property& property : record.properties) sorted.push_back(&property);
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
     const syntax::Property* first = nullptr;
-    std::vector<std::uint32_t> dropped;  // where their names begin
+    std::vector<std::uint32_t> dropped;  // begin offsets of their names
     for (const syntax::Property* property : sorted) {
       if (diagnostics_.full()) break;
       if (first == nullptr || first->name != property->name) {
@@ -205,14 +205,15 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   const Source& source_;
   Diagnostics& diagnostics_;
   const Limits& limits_;
-  const std::size_t& taken_;  // bytes that nlohmann's lexer has read
-  std::size_t last_end_ = 0;  // where the last token ended
+  const std::size_t& taken_;  // bytes that nlohmann's lexer has consumed
+  std::size_t last_end_ = 0;  // end offset of the last token
   std::vector<Open> open_;
   syntax::Value root_;
   bool has_root_ = false;
 };
 
-// Counts values and names, and ends the reading after the last that is allowed: so that many too many are not kept.
+// Counts values and names and stops parsing at the first one above the limit, so that an oversized file is never
+// stored.
 class Counter : public nlohmann::json_sax<nlohmann::json> {
  public:
   explicit Counter(double most) : most_(most) {}
@@ -243,7 +244,8 @@ bool parse(const std::string& text, nlohmann::json_sax<nlohmann::json>& reader, 
                                    nlohmann::json::input_format_t::json, true, true);
 }
 
-// A text has fewer values and names than bytes.
+// False, after a report, if the text has more values and names than the limit. A text has fewer values and names than
+// bytes, so the check skips short texts.
 bool check_tokens(const std::string& text, const Limits& limits, Diagnostics& diagnostics) {
   if (static_cast<double>(text.size()) <= limits.tokens) return true;
   Counter counter(limits.tokens);

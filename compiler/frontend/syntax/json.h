@@ -1,4 +1,4 @@
-// JSON scenes, with // and /* */ comments, to syntax.h. nlohmann/json tokenises; the spans are ours.
+// Parser for JSON scenes with // and /* */ comments. nlohmann/json tokenises, and this code adds the source spans.
 // Tested by: tests/compiler/frontend/syntax/json_test.cpp
 #pragma once
 
@@ -10,7 +10,8 @@
 
 namespace fathom::compiler {
 
-// nullopt after a syntax error, which ends the reading; duplicate keys are errors too, and all of them are reported.
+// Returns nullopt after a syntax error, which ends parsing. Duplicate keys are errors too, and all of them are
+// reported.
 std::optional<syntax::File> read_json(const Source& source, Diagnostics& diagnostics, const Limits& limits = {});
 
 }  // namespace fathom::compiler

@@ -16,7 +16,8 @@ Span span(std::size_t begin, std::size_t end) {
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '$'; }
 
-// The end of the comment that begins at `at`; `at` itself when there is none, nullopt when it is not closed.
+// Returns the end of the comment that begins at `at`, `at` itself if no comment begins there, or nullopt if the
+// comment is not closed.
 std::optional<std::size_t> comment_end(std::string_view text, std::size_t at) {
   if (text.substr(at, 2) == "//") return std::min(text.size(), text.find_first_of("\r\n", at));
   if (text.substr(at, 2) != "/*") return at;
@@ -25,7 +26,7 @@ std::optional<std::size_t> comment_end(std::string_view text, std::size_t at) {
   return close + 2;
 }
 
-// The whole UTF-8 sequence at `at`.
+// Returns the whole UTF-8 sequence at `at`.
 std::string_view character(std::string_view text, std::size_t at) {
   std::size_t end = at + 1;
   while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
@@ -37,7 +38,7 @@ std::string position(const Source& source, std::size_t at) {
   return fmt::format("line {}, column {}", p.line, p.column);
 }
 
-// What the grammar allows where the offending token stands.
+// Describes what the grammar allows at the offending token.
 std::string wanted(const JsonPlace& place) {
   switch (place.inside) {
     case JsonPlace::Inside::Nothing:
@@ -64,7 +65,7 @@ void report_end(const Source& source, const JsonPlace& place, Diagnostics& diagn
     return;
   }
   const bool record = place.inside == JsonPlace::Inside::Record;
-  // Beside the last thing written, not on the empty line after it.
+  // Point after the last token, not at the empty line after it.
   std::size_t end = text.size();
   while (end > 0 && is_blank(text[end - 1])) --end;
   diagnostics.error(
@@ -72,7 +73,7 @@ void report_end(const Source& source, const JsonPlace& place, Diagnostics& diagn
       {fmt::format("the `{}` at {} is never closed", record ? '{' : '[', position(source, place.opened_at))});
 }
 
-// The UTF-16 code unit that \uXXXX at `at` stands for; nullopt when that is not there.
+// Returns the UTF-16 code unit of the escape \uXXXX at `at`, or nullopt if there is no such escape.
 std::optional<unsigned> code_unit(std::string_view text, std::size_t at) {
   if (at + 6 > text.size() || text.substr(at, 2) != "\\u") return std::nullopt;
   unsigned unit = 0;
@@ -80,7 +81,8 @@ std::optional<unsigned> code_unit(std::string_view text, std::size_t at) {
   return error == std::errc() && end == text.data() + at + 6 ? std::optional(unit) : std::nullopt;
 }
 
-// The length of the escape at `at`, of both halves of a surrogate pair; 0 when it is malformed.
+// Returns the length of the escape at `at`, counting both halves of a surrogate pair, or 0 if the escape is
+// malformed.
 std::size_t escape_length(std::string_view text, std::size_t at) {
   if (at + 1 < text.size() && std::string_view("\"\\/bfnrt").find(text[at + 1]) != std::string_view::npos) return 2;
   const std::optional<unsigned> unit = code_unit(text, at);
@@ -103,7 +105,7 @@ void report_escape(std::string_view text, std::size_t at, Diagnostics& diagnosti
   }
 }
 
-// Whether the string that begins at `begin` has a fault, which is reported: the first byte that cannot stand there.
+// Reports the first invalid byte of the string that begins at `begin`. Returns false if the string is valid.
 bool report_string(std::string_view text, std::size_t begin, Diagnostics& diagnostics) {
   std::size_t at = begin + 1;
   while (at < text.size() && text[at] != '"') {
@@ -168,7 +170,7 @@ void report_word(std::string_view text, const JsonPlace& place, Diagnostics& dia
   diagnostics.error("E0005", span(begin, end), message, "not JSON", {help});
 }
 
-// A good token in the wrong place.
+// Reports a valid token in the wrong place.
 void report_token(const Source& source, const JsonPlace& place, Diagnostics& diagnostics) {
   const std::string_view text = source.text();
   const std::size_t begin = place.skipped.begin;
@@ -238,7 +240,7 @@ void report_json_error(const Source& source, const JsonPlace& place, Diagnostics
   const std::size_t begin = place.skipped.begin;
   if (begin >= text.size()) return report_end(source, place, diagnostics);
   const char c = text[begin];
-  // `01`, `1.2.3` and `0x1F` are a number and something right after it to the lexer, but one word to the writer.
+  // `01`, `1.2.3` and `0x1F` are a number followed by another token to the lexer, but one word to the writer.
   std::size_t word = begin;
   while (word > 0 && (is_word(c) || c == '.') && (is_word(text[word - 1]) || text[word - 1] == '.')) --word;
   if (place.overflow) {
@@ -272,7 +274,7 @@ bool check_text(const Source& source, Diagnostics& diagnostics) {
   const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u; };
   for (std::size_t at = 0; at < text.size();) {
     const unsigned first = byte(at);
-    // Table 3-7 of the Unicode standard: the length, and the range of the second byte; the others are 80..BF.
+    // Table 3-7 of the Unicode standard gives the length and the range of the second byte. Later bytes are 80..BF.
     const std::size_t length = first - 1 < 0x7F ? 1
                                : first < 0xC2   ? 0
                                : first < 0xE0   ? 2

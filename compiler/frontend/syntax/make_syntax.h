@@ -1,5 +1,4 @@
-// Makes what a scene file could have said: for front ends that read other formats. The spans are those of the text it
-// stands for.
+// Builders for syntax trees, used by the front ends that read other formats. Spans refer to the text that was read.
 //
 //     RecordMaker(span).add("type", "sphere").add("radius", 1.0).take()
 //
@@ -19,18 +18,18 @@ inline syntax::Value make_value(Span span, double number) { return {span, number
 inline syntax::Value make_value(Span span, std::string_view text) { return {span, std::string(text)}; }
 inline syntax::Value make_value(Span span, const glm::dvec3& v) {
   syntax::List list;
-  for (int i = 0; i < 3; ++i) list.push_back({span, v[i] + 0.0});  // + 0.0: no -0
+  for (int i = 0; i < 3; ++i) list.push_back({span, v[i] + 0.0});  // + 0.0 turns -0 into 0
   return {span, std::move(list)};
 }
 
 class RecordMaker {
  public:
   explicit RecordMaker(Span span) : span_(span) {}
-  // Goes on with a record.
+  // Continues an existing record.
   explicit RecordMaker(syntax::Value record)
       : span_(record.span), record_(std::get<syntax::Record>(std::move(record.data))) {}
 
-  // The value's place is the record's.
+  // Gives the value the record's span.
   template <class T>
   RecordMaker& add(std::string_view name, const T& value) {
     return add(name, make_value(span_, value));

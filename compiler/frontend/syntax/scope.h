@@ -1,4 +1,4 @@
-// What the names of a scene's parameters stand for, and the limits of what is written with them.
+// Parameter names of a scene with their values, and the limits that apply to formulas of the parameters.
 // Tested by: tests/compiler/frontend/records/scene_numbers_test.cpp
 #pragma once
 
@@ -19,24 +19,24 @@ class Scope {
   const Limits& limits() const { return limits_; }
 
   enum class State {
-    Later,     // its own value is not read yet
-    Unusable,  // what is wrong with it has been reported
+    Later,     // declared, value not read yet
+    Unusable,  // value invalid, error already reported
     Known,
   };
   struct Entry {
     Parameter parameter;
-    Span span;  // of its name
+    Span span;  // of the name
     State state = State::Later;
     bool used = false;
   };
 
-  // Adds a name whose value is still to come; names are unique.
+  // Adds a name without a value. Names are unique.
   void declare(std::string name, Span span);
   Entry& at(std::size_t number) { return entries_[number]; }
   const std::vector<Entry>& entries() const { return entries_; }  // in file order
 
-  // nullptr when there is no such name. It counts as used from now on, which changes nothing but a warning: that is
-  // why a scope that is only read can do it.
+  // Returns nullptr if the name is unknown. Marks the name as used, which affects only a warning: that is why use()
+  // is const.
   const Entry* use(std::string_view name) const;
 
   std::vector<std::string_view> known_names() const;

@@ -13,8 +13,8 @@ struct Synonym {
   std::string_view foreign, ours;
 };
 
-// Words of other renderers, modellers and shader collections. A foreign word may stand for several of ours; the first
-// that is known at the place is meant.
+// Terms of other renderers, modellers and shader collections. A foreign term may have several of our words. suggest()
+// takes the first that is known in its context.
 constexpr Synonym kSynonyms[] = {
     {"subtract", "subtraction"},
     {"difference", "subtraction"},
@@ -271,14 +271,15 @@ std::string_view suggest(std::string_view word, const std::vector<std::string_vi
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
-  // A scene may name thousands of nodes. "and 1 more" would take the room of the name.
+  // A scene may name thousands of nodes, so list at most this many. List one more rather than print "and 1 more",
+  // which is as long as the name.
   constexpr std::size_t kMostListed = 30;
   if (known.empty()) return "";
   std::vector<std::string_view> sorted = known;
   std::sort(sorted.begin(), sorted.end());
   const std::size_t listed = sorted.size() == kMostListed + 1 ? sorted.size() : std::min(sorted.size(), kMostListed);
   const std::string_view meant = suggest(word, known);
-  // Among many the list would bury the answer.
+  // A long list would hide the suggestion.
   if (!meant.empty() && known.size() > kMostListed) return fmt::format("did you mean `{}`?", meant);
   std::string out = meant.empty() ? "" : fmt::format("did you mean `{}`? ", meant);
   out +=

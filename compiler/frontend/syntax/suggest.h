@@ -1,4 +1,4 @@
-// What the writer of an unknown word may have meant.
+// Suggestions for unknown words.
 // Tested by: tests/golden/diagnostics (E0102, E0201), tests/compiler/frontend/elaborate/elaborate_test.cpp
 #pragma once
 
@@ -8,11 +8,11 @@
 
 namespace fathom::compiler {
 
-// The known word that `word` is another program's word for, or a misspelling of; empty when there is none.
+// Returns the known word that `word` is a misspelling of or another program's term for, or "" if there is none.
 std::string_view suggest(std::string_view word, const std::vector<std::string_view>& known);
 
-// The line for "= help:": "did you mean `fov`? known: fov, position, target", the known words sorted; "" when none
-// are known.
+// Returns the line for "= help:", such as "did you mean `fov`? known: fov, position, target", with the known words
+// sorted. Returns "" if `known` is empty.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace fathom::compiler

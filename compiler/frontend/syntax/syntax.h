@@ -1,8 +1,8 @@
-// What a front end makes of a scene file: the scene as written, with a span for everything, and nothing resolved.
-// Independent of JSON, so that another notation can produce the same.
+// Syntax tree of a scene file: the scene as written, with a span for every value, and no names resolved. Independent
+// of JSON, so that other notations can produce the same tree.
 //
-// A record is a bag of properties with values; which properties exist and what they must be is elaborate.cpp's
-// business, by the tables. Nodes are records too: {"type": "sphere", "radius": 1, "translate": [0, 1, 0]} has the
+// A record is a list of properties with values. elaborate.cpp checks, against the tables, which properties exist and
+// what their values must be. Nodes are records too: {"type": "sphere", "radius": 1, "translate": [0, 1, 0]} has the
 // properties type, radius and translate; `{"use": "ball"}` has the property use.
 #pragma once
 
@@ -37,7 +37,7 @@ struct Record {
 
 using List = std::vector<Value>;
 
-// A formula that a front end has read itself; one of a JSON scene is a string until someone wants a formula there.
+// Formula already parsed by a front end. Formulas of JSON scenes stay strings until a property needs a formula.
 using ReadFormula = std::shared_ptr<const Formula>;
 
 struct Value {
@@ -45,7 +45,7 @@ struct Value {
   std::variant<std::monostate, bool, double, std::string, List, Record, ReadFormula> data;  // monostate: null
 };
 
-// The whole file: one record with the properties camera, film, objects, ...
+// Whole file: one record with the properties camera, film, objects, ...
 struct File {
   Value root;
 };
@@ -54,16 +54,16 @@ struct File {
 
 namespace fathom::compiler {
 
-// "a number", "a string", "a list of 2", ...
+// Describes a value in messages: "a number", "a string", "a list of 2", ...
 std::string describe(const syntax::Value& value);
 
-// The three numbers (or one, three times) of a list; nullopt when the value is anything else.
+// Returns the three numbers of a list, or a single number three times. Returns nullopt for any other value.
 std::optional<glm::dvec3> three_numbers(const syntax::Value& value);
 
-// The bracket that opens a record or list.
+// Returns the span of the bracket that opens a record or list.
 inline Span opening(Span span) { return {span.begin, span.begin + 1}; }
 
-// Whether the value is a formula, as a string or read already.
+// True if the value is a formula, either a string or already parsed.
 inline bool is_formula_text(const syntax::Value& value) {
   return std::holds_alternative<std::string>(value.data) || std::holds_alternative<syntax::ReadFormula>(value.data);
 }

@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::size_t kIndentation = 2;  // columns
 
-// A token or a comment, in the order of the text.
+// Token or comment, in the order of the text.
 struct Item {
-  const Token* token;  // nullptr of a comment
+  const Token* token;  // nullptr for a comment
   Span span;
   std::string_view text;
-  std::size_t lines;   // that end between it and the item before
+  std::size_t lines;   // line breaks between the previous item and this one
   std::uint32_t column;
 
   bool is(std::string_view mark) const { return token && token->is(mark); }
@@ -66,7 +66,8 @@ class Formatter {
                       static_cast<std::uint32_t>(column)});
   }
 
-  // The token that decides how far a line is indented: its first, or of a comment that of the line it stands before.
+  // Returns the item that decides the indentation of a line: its first token, or for a comment the first token after
+  // the comment.
   const Item* leader(std::size_t i) const {
     while (i < items_.size() && !items_[i].token) ++i;
     return i < items_.size() ? &items_[i] : nullptr;
@@ -76,7 +77,7 @@ class Formatter {
     if (!out_.empty()) out_ += items_[i].lines > 1 ? "\n\n" : "\n";
     const Item* by = leader(i);
     if (by == nullptr || by->token == nullptr) return;
-    // A comment before a token on its line is indented as the line.
+    // A comment before a token on the same line determines the indentation of that line.
     const std::uint32_t column = by == &items_[i] || by->lines > 0 || i == 0 ? by->column : items_[i].column;
     const bool starts = levels_.empty() || (!by->closes() && column <= levels_.front());
     if (starts) {
@@ -89,7 +90,7 @@ class Formatter {
     out_.append(kIndentation * (levels_.size() - 1), ' ');
   }
 
-  // What stands between an item and the one before it on its line.
+  // Returns the blanks between an item and the previous item on its line.
   std::string_view blank(std::size_t i) const {
     const Item &item = items_[i], &before = items_[i - 1];
     if (!item.token) return item.text.starts_with("//") ? "  " : " ";
@@ -106,13 +107,14 @@ class Formatter {
 
   static bool is_tight(const Item& item) { return item.is("*") || item.is("/") || item.is("^"); }
 
-  // Whether a - or ! stands before what it belongs to.
+  // True if the token is a `-` or `!` in prefix position.
   bool is_sign(const Token& token, const Token* before) const {
     if (token.is("!")) return true;
     return token.is("-") && (before == nullptr || !ends_value(*before));
   }
 
-  // Whether an operator, an index or arguments may follow. After the } of +{0.1} an operand does.
+  // True if an operator, an index or arguments may follow the token. False after the } of +{0.1}, where an operand
+  // follows.
   bool ends_value(const Token& token) const {
     if (token.kind == Token::Kind::Mark) return token.is(")") || token.is("]");
     if (token.kind != Token::Kind::Name) return true;
@@ -126,7 +128,7 @@ class Formatter {
   std::string_view text_;
   Tokens tokens_;
   std::vector<Item> items_;
-  std::vector<std::uint32_t> levels_;  // columns in the source, the statement's first
+  std::vector<std::uint32_t> levels_;  // columns in the source; the first is the statement's
   const Token* begins_statement_ = nullptr;
   const Token *last_ = nullptr, *before_last_ = nullptr;
   std::string out_;

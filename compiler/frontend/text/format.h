@@ -1,4 +1,4 @@
-// One layout for all texts: blanks and indentation are the formatter's, lines the author's.
+// Formatter with one layout for all texts: it sets blanks and indentation, and keeps the author's line breaks.
 // Tested by: tests/compiler/frontend/text/text_format_test.cpp
 #pragma once
 
@@ -8,7 +8,8 @@
 
 namespace fathom::compiler::text {
 
-// The text, which has no syntax errors, with the same tokens and comments. Formatting what it returns changes nothing.
+// Returns the text with the same tokens and comments. The text must have no syntax errors. Formatting the result
+// again changes nothing.
 std::string format_text(const Source& source);
 
 }  // namespace fathom::compiler::text

@@ -26,7 +26,7 @@ using syntax::Property;
 using SyntaxRecord = syntax::Record;
 using SyntaxValue = syntax::Value;
 
-constexpr std::size_t kMostOperands = 8;  // of a row; longer ones are calls
+constexpr std::size_t kMostOperands = 8;  // operands of an operator chain; longer chains are printed as calls
 
 bool is_no_name(std::string_view word) {
   return is_reserved(word) || word == "x" || word == "y" || word == "z" || formula_constant(word);
@@ -35,7 +35,7 @@ bool is_no_name(std::string_view word) {
 struct InfixWord {
   std::string_view type;
   char mark;
-  std::string_view blend;  // {} of its width
+  std::string_view blend;  // name of the blend width inside {}; empty without a blend
 };
 constexpr InfixWord kInfixWords[] = {
     {"union", '+', ""},
@@ -77,7 +77,7 @@ std::string text_in(const SyntaxRecord& record, std::string_view name) {
   return text ? *text : "";
 }
 
-// An expression, and whether it is a row, which needs parentheses within others.
+// Printed expression. An operator chain (a row) needs parentheses inside other expressions.
 struct Printed {
   std::string text;
   bool is_row = false;
@@ -125,7 +125,7 @@ class TextPrinter {
     return candidate;
   }
 
-  // `let name "label"`, the label where it is not the name.
+  // `let name "label"`, with the label only if it differs from the name.
   static std::string head(const char* word, const std::string& label, const std::string& name) {
     return label == name ? fmt::format("{} {}", word, name) : fmt::format("{} {} {}", word, name, quoted_text(label));
   }
@@ -188,7 +188,7 @@ class TextPrinter {
         object.span);
   }
 
-  // word(name = value, ...), or (name = value, ...) of a record without a type.
+  // Prints word(name = value, ...), or (name = value, ...) for a record without a type.
   std::string call_text(const SyntaxRecord& record) {
     std::string word = text_in(record, "type"), fields;
     const std::string pattern = text_in(record, "pattern");
@@ -202,7 +202,7 @@ class TextPrinter {
     return word + "(" + fields + ")";
   }
 
-  // Whether the property's string is a word and no formula.
+  // True if the property's string is a word, not a formula.
   static bool is_choice(const SyntaxRecord& record, const Property& property) {
     for (const auto* family :
          {&camera_records(), &light_records(), &background_records(), &material_records(), &pattern_records()}) {
@@ -234,7 +234,7 @@ class TextPrinter {
     return "[" + out + "]";
   }
 
-  // The names of parameters may be others here.
+  // Replaces the names of parameters by their names in the text.
   std::string formula_text(const std::string& formula) const {
     std::string out;
     std::size_t copied = 0;
@@ -255,7 +255,7 @@ class TextPrinter {
     return out.empty() ? formula_text(lines[0]) : out + "in " + formula_text(lines.back());
   }
 
-  // A node's formula: a string, or lines.
+  // Prints a node's formula, which is a string or a list of lines.
   std::string formula_value(const SyntaxValue& value) {
     const auto* list = std::get_if<syntax::List>(&value.data);
     if (list == nullptr) return value_text(value);
@@ -284,7 +284,7 @@ class TextPrinter {
     return out;
   }
 
-  // A node of a type, before it is placed.
+  // Prints a node of a type, without its placement.
   Printed made(const SyntaxRecord& record) {
     const std::string type = text_in(record, "type");
     const NodeSpec& spec = *find_node(type);
@@ -309,7 +309,7 @@ class TextPrinter {
     return formula ? formula_value(*property.value) : value_text(*property.value);
   }
 
-  // The properties with a name, without those that every node may have.
+  // Prints the named properties, except those common to all nodes.
   std::string named(const SyntaxRecord& record, const NodeSpec& spec, std::span<const std::string_view> done,
                     bool comma) {
     constexpr std::string_view kCommon[] = {"type", "of", "scale", "rotate", "translate", "material", "name"};
@@ -333,7 +333,7 @@ class TextPrinter {
     return {fmt::format("{}({}{})", spec.name, fmt::join(operands, ", "), named(record, spec, {}, true))};
   }
 
-  // {0.1}, {round = 0.1}, {stairs = 0.1, steps = 3}
+  // Prints the blend of an operator, such as {0.1}, {round = 0.1} or {stairs = 0.1, steps = 3}.
   std::string blend_text(const SyntaxRecord& record, const NodeSpec& spec, const InfixWord& row) {
     if (row.blend.empty()) return "";
     std::string out;
@@ -348,7 +348,7 @@ class TextPrinter {
   }
 
   const SyntaxRecord& root_;
-  Chosen params_, materials_, nodes_;  // the names here, by those in the scene
+  Chosen params_, materials_, nodes_;  // names in the text, by name in the scene
   std::set<std::string> taken_;
   std::vector<PrintedStatement> out_;
 };

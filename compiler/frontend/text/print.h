@@ -1,4 +1,4 @@
-// A JSON scene as the text that says the same (docs/LANGUAGE.md): reading it gives an equal tree.
+// Printer of a JSON scene as an equivalent text (docs/LANGUAGE.md). Reading the text gives an equal tree.
 // Tested by: tests/compiler/frontend/text/text_convert_test.cpp
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace fathom::compiler::text {
 
-// `file` is a scene without errors, as its front end read it; `source` is its text, whose comments are kept beside
-// what they are about.
+// `file` is a scene without errors, as its front end read it. `source` is its text. Keeps each comment of the source
+// next to the statement it belongs to.
 std::string print_text(const syntax::File& file, const Source& source);
 
 }  // namespace fathom::compiler::text

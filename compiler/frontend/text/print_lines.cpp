@@ -5,10 +5,10 @@
 namespace fathom::compiler::text {
 namespace {
 
-constexpr std::size_t kWidestText = 120;  // columns of a line, where there is a choice
+constexpr std::size_t kWidestText = 120;  // columns, for lines that can be broken
 
-// The places in a statement where a line may begin: before the operators outside all brackets; where there is none
-// before the dots; and where there is none after the commas and the opening bracket.
+// Returns the offsets in a statement where a line may begin: before operators outside all brackets. Without such
+// operators, before the dots. Without dots either, after the opening bracket and the commas.
 std::vector<std::size_t> breaks(std::string_view text) {
   std::vector<std::size_t> operators, dots, commas;
   int depth = 0;
@@ -32,7 +32,7 @@ std::vector<std::size_t> breaks(std::string_view text) {
   return !operators.empty() ? operators : !dots.empty() ? dots : commas;
 }
 
-// In lines of at most kWidestText columns where that is possible.
+// Breaks the text into lines of at most kWidestText columns where possible.
 std::string in_lines(const std::string& text) {
   if (text.size() <= kWidestText) return text;
   std::string out;
@@ -76,7 +76,8 @@ std::vector<SourceComment> comments_of_json(std::string_view text) {
   return comments;
 }
 
-// Gives each comment to the statement it stands before or beside in the source; returns those behind the last.
+// Assigns each comment to the statement that it precedes or follows on the same line in the source. Returns the
+// comments after the last statement.
 std::vector<std::string> share_out(const Source& source, std::vector<PrintedStatement>& statements) {
   std::vector<PrintedStatement*> in_source;
   for (PrintedStatement& statement : statements) in_source.push_back(&statement);

@@ -1,4 +1,4 @@
-// The lines of a text that a JSON scene becomes: its statements in groups, no wider than a page, among its comments.
+// Line layout of the text made from a JSON scene: statements in groups, limited line width, comments in place.
 // Tested by: tests/compiler/frontend/text/text_convert_test.cpp
 #pragma once
 
@@ -11,14 +11,14 @@
 namespace fathom::compiler::text {
 
 struct PrintedStatement {
-  std::string_view group;  // the property of the scene that it is from
+  std::string_view group;  // the scene's property that contains the statement
   std::string text;
   Span span;                          // in the source
   std::vector<std::string> comments;  // on lines before it
-  std::string aside;                  // a comment at its end
+  std::string aside;                  // comment at the end of its line
 };
 
-// Comments of `source`, where it is JSON, stand before or beside the statements they stand before or beside there.
+// If `source` is JSON, keeps each comment on the lines before its statement or at the end of the statement's line.
 std::string print_lines(std::vector<PrintedStatement> statements, const Source& source);
 
 }  // namespace fathom::compiler::text

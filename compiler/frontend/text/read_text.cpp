@@ -28,7 +28,7 @@ std::optional<ReadText> read(Source& source, const ImportedFiles& files, const D
   text::append(tree, text::parse(source, diagnostics, limits), {.file = &source});
   text::load_imports(tree, source, files.reader, files.to_text, limits, diagnostics);
   if (diagnostics.has_errors()) return std::nullopt;
-  // What is wrong with names and values does not hide what is wrong with the rest.
+  // After an error in a name or a value, continue, so that errors elsewhere are reported too.
   const std::optional<std::vector<std::uint32_t>> order = text::resolve_names(tree, diagnostics);
   if (!order) return std::nullopt;
   text::Evaluated evaluated = text::evaluate(tree, *order, definitions, limits, diagnostics, keep_formulas);
@@ -59,7 +59,8 @@ std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, co
 }
 
 JsonComments comments_of_text(const Source& source, const syntax::File& file) {
-  std::set<std::uint32_t> places;  // that can have comments
+  // Offsets of properties and list elements that can have comments.
+  std::set<std::uint32_t> places;
   for (const syntax::Property& property : std::get<syntax::Record>(file.root.data).properties) {
     if (property.name_span.end > 0) places.insert(property.name_span.begin);
     if (property.name == "objects") {

@@ -1,4 +1,4 @@
-// Scenes in Fathom's own notation (docs/LANGUAGE.md), such as
+// Reader for scenes in Fathom's own notation (docs/LANGUAGE.md), such as
 //
 //     fathom 1
 //     def post(height) = cylinder(0.1, height/2).translate([0, height/2, 0])
@@ -21,33 +21,34 @@
 
 namespace fathom::compiler {
 
-// Whether a text is in this notation: its first word is `fathom`.
+// True if the text is in this notation: its first word is `fathom`.
 bool is_text_scene(std::string_view text);
-// Or its author forgot that: it is in a file *.fathom, or begins with a word that begins a statement.
+// True also if the author forgot that word: the file is named *.fathom, or begins with a statement word.
 bool is_meant_as_text(const Source& source);
 
-// The files that a text imports, which are added to its source.
+// Access to the files that a text imports. The reader adds them to the text's source.
 struct ImportedFiles {
   ImportReader reader = {};
   TextMaker to_text = {};
 };
 
-// The scene that a JSON file would have said, and its parameters; nullopt when the text is not understood. After
-// other errors it is what is left of the scene.
+// Returns the scene, as a JSON file would describe it, and its parameters. Returns nullopt if the text cannot be
+// parsed or has no objects. After other errors the scene is incomplete.
 std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, const Definitions& definitions,
                                                               const Limits& limits, Diagnostics& diagnostics,
                                                               const ImportedFiles& files = {});
 
-// The text's comments, by what of the scene each stands before or beside; those of functions before what comes next.
+// Returns the text's comments, keyed by the part of the scene that each comment precedes or follows on its line.
+// Comments of functions go to the next part.
 JsonComments comments_of_text(const Source& source, const syntax::File& file);
 
-// A text whose numbers are formulas of its parameters where they can be, and where they cannot.
+// Scene whose numbers are formulas of its parameters where possible, and the places where that is impossible.
 struct KeptScene {
   syntax::File file;
-  std::vector<Span> frozen;  // what the parameters' values decided: conditions, ranges, indices
+  std::vector<Span> frozen;  // places that depend on parameter values: conditions, ranges, indices
 };
 
-// The same scene as a JSON file that keeps the parameters.
+// Reads the same scene as a JSON file that keeps the parameters.
 std::optional<KeptScene> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
                                                  const ImportedFiles& files = {});
 

@@ -14,7 +14,7 @@ namespace {
 struct BlendWord {
   std::string_view word, prefix, width;
 };
-// `{0.1}` is `{k = 0.1}`.
+// Blends by the name in their braces. `{0.1}` is short for `{k = 0.1}`.
 constexpr BlendWord kBlendWords[] = {{"", "smooth", "k"},
                                      {"k", "smooth", "k"},
                                      {"chamfer", "chamfer", "radius"},
@@ -85,7 +85,7 @@ Value Evaluator::formula_of_pair(char mark, const Value& a, const Value& b, Span
   return formula(out_.store.formulas.call(function_of(mark), arguments, here(span)), span);
 }
 
-// Operation on two vectors, or on a vector and a number.
+// Applies an operator to two vectors, or to a vector and a number.
 Value Evaluator::elementwise(char mark, const Value& a, const Value& b, Span span) {
   const std::size_t count = a.is(Type::List) ? a.list->of.size() : b.list->of.size();
   if (a.is(Type::List) && b.is(Type::List) && b.list->of.size() != count) {
@@ -100,7 +100,7 @@ Value Evaluator::elementwise(char mark, const Value& a, const Value& b, Span spa
   return list(std::move(parts), span);
 }
 
-// Left to right; operands that are joined in one way are one combinator.
+// Evaluates from left to right. Consecutive operands with the same operator and blend become one combinator.
 Value Evaluator::evaluate_nodes(const Expr& expr, const Value& first) {
   std::vector<const Node*> operands = {node_of(first, "a row")};
   std::vector<Field> blend;
@@ -132,7 +132,7 @@ Value Evaluator::evaluate_nodes(const Expr& expr, const Value& first) {
   return made;
 }
 
-// The combinator that a mark and its blend stand for, and its properties.
+// Sets the combinator that an operator and its blend stand for, and its properties.
 void Evaluator::combine(const Joint& joint, const std::vector<Field>& blend, Node& made) {
   std::string name(combinator(joint.mark));
   for (const Field& field : blend) {

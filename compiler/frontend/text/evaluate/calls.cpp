@@ -20,7 +20,7 @@ std::string_view property_of(Placement placement) {
 
 std::string arguments_of(std::size_t count) { return fmt::format("{} argument{}", count, count == 1 ? "" : "s"); }
 
-// Steele et al., "Fast Splittable Pseudorandom Number Generators", 2014: the mixing function of SplitMix64.
+// Mixing function of SplitMix64. Source: Steele et al., "Fast Splittable Pseudorandom Number Generators", 2014.
 std::uint64_t mix(std::uint64_t z) {
   z += 0x9E3779B97F4A7C15;
   z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9;
@@ -28,7 +28,7 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ z >> 31;
 }
 
-// The value as it would be written, for notes.
+// Prints a value as written in a text, for notes.
 std::string shown(const Value& value) {
   if (value.is(Value::Type::Text)) return fmt::format("\"{}\"", *value.text);
   if (!value.is(Value::Type::List)) return describe(value);
@@ -46,9 +46,9 @@ Value Evaluator::call(const Expr& expr) {
   if (expr.reference.kind == Reference::Kind::Definition) {
     return call_definition(expr, tree_.statements[expr.reference.number]);
   }
-  if (expr.word == nullptr) throw Failure();  // reported when names were resolved
+  if (expr.word == nullptr) throw Failure();  // the name resolver has reported the error
   const Word& word = *expr.word;
-  // `noise` is a pattern, whose arguments have names, and a function of numbers.
+  // `noise` is both a pattern, with named arguments, and a function of numbers.
   const bool has_positional = std::ranges::any_of(expr.arguments, [](const Argument& a) { return a.name.empty(); });
   if (word.is_record() && !(word.formula && has_positional)) return call_record(expr);
   if (word.builtin == Builtin::Require) return call_require(expr);
@@ -64,7 +64,7 @@ Value Evaluator::call(const Expr& expr) {
   return word.formula ? call_formula(expr, arguments) : call_builtin(expr, arguments);
 }
 
-// Arguments without a name.
+// Returns the values of the arguments without a name.
 std::vector<Value> Evaluator::positional_arguments(const Expr& expr) {
   std::vector<Value> values;
   for (const Argument& argument : expr.arguments) {
@@ -119,7 +119,7 @@ Value Evaluator::call_definition(const Expr& expr, const Statement& definition) 
   return result;
 }
 
-// `length` takes a vector, too.
+// Calls a formula function. `length` also accepts a vector.
 Value Evaluator::call_formula(const Expr& expr, Values arguments) {
   const FormulaFunction& function = *expr.word->formula;
   if (arguments.size() == 1 && arguments[0].is(Type::List) && function.most > 1) arguments = arguments[0].list->of;
@@ -193,7 +193,8 @@ Value Evaluator::call_builtin(const Expr& expr, Values arguments) {
   return operate('/', arguments[0], number(length, expr.span), expr.span);
 }
 
-// In [0, 1), of whole numbers: the same on every machine, in any order.
+// Returns a random number in [0, 1) that depends only on the arguments, which are whole numbers: the same on every
+// platform and in any order of calls.
 Value Evaluator::call_random(const Expr& expr, Values arguments) {
   if (arguments.empty()) {
     fail("E0805", expr.span, "`random` takes whole numbers that say which random number it is",
@@ -211,7 +212,8 @@ Value Evaluator::call_random(const Expr& expr, Values arguments) {
   return number(static_cast<double>(hash >> 11) * 0x1p-53, expr.span);
 }
 
-// require(condition, "what is wrong", value): the value is not evaluated where the condition is false.
+// Evaluates require(condition, "what is wrong", value). A false condition is an error, and the value is not
+// evaluated.
 Value Evaluator::call_require(const Expr& expr) {
   const bool plain = std::ranges::all_of(expr.arguments, [](const Argument& argument) {
     return argument.name.empty() && argument.value->kind != Expr::Kind::Spread;
@@ -275,7 +277,7 @@ void Evaluator::add_operands(const Expr& expr, Values arguments, Node& made) {
   }
 }
 
-// box(1, 2, 3)
+// True for three numbers in place of a vector, as in box(1, 2, 3).
 bool Evaluator::is_spread_vector(const NodeSpec& node, Values arguments) {
   if (node.params.empty() || arguments.size() != 3) return false;
   return node.params[0].type == ParamType::Vec3 &&
@@ -312,7 +314,8 @@ void Evaluator::add_field(const Argument& argument, const Value& value, Node& ma
   made.fields.push_back({argument.name, here(argument.name_span), value});
 }
 
-// x.scale(2), x.rotate([0, 90, 0]), x.rotate(axis = [0, 1, 0], angle = 90), x.translate(v), x.material(m), x.name("n")
+// Adds a placement to a node: x.scale(2), x.rotate([0, 90, 0]), x.rotate(axis = [0, 1, 0], angle = 90),
+// x.translate(v), x.material(m) or x.name("n").
 Value Evaluator::place(const Expr& expr, Values arguments) {
   if (arguments.empty()) {
     fail("E0805", expr.name_span, fmt::format("`{}` has no node", expr.name),
@@ -336,7 +339,7 @@ Value Evaluator::place(const Expr& expr, Values arguments) {
   return node(std::move(made));
 }
 
-// As a record, of the arguments with a name.
+// Returns the named arguments as a record.
 Value Evaluator::rotation(const Expr& expr) {
   Record made;
   made.span = here(expr.span);

@@ -17,7 +17,7 @@
 namespace fathom::compiler::text {
 namespace {
 
-// Nodes in nodes: deeper ones become named nodes, for what reads them recurses.
+// Maximum nesting depth of nodes. Deeper nodes become named nodes, because code that reads the nodes recurses.
 constexpr int kDeepestNode = 64;
 
 using StatementKind = Statement::Kind;
@@ -42,23 +42,25 @@ class Emitter {
   }
 
  private:
-  // A node as it is written out, until its place is found.
+  // Node in converted form.
   struct Entry {
     const Node* node;
     std::uint32_t uses = 0;
-    std::string label = {};  // of an entry of `nodes`; empty when it is none
+    // Name of the entry in `nodes`; empty if the node has no entry.
+    std::string label = {};
     Span name_span = {};
-    std::optional<syntax::Value> value = {};  // until it is met, or put among the entries
+    // Converted node, until moved to its use or into `nodes`.
+    std::optional<syntax::Value> value = {};
     int height = 0;
   };
 
-  // The names of a table, and which number to try next beside each.
+  // Names of a table, and the next number to try for each name.
   struct Names {
     std::unordered_set<std::string> taken;
     std::unordered_map<std::string, int> next;
   };
 
-  // Names of the file stay as written; generated names avoid them.
+  // Reserves the names of the file, which stay as written. Generated names avoid them.
   void reserve_names() {
     for (std::uint32_t i = 0; i < tree_.modules[0].end; ++i) {
       const Statement& statement = tree_.statements[i];
@@ -72,7 +74,8 @@ class Emitter {
     }
   }
   void reserve(Names& names, const Statement& statement) {
-    if (names.taken.insert(label_of(statement)).second || statement.label.empty()) return;  // or said by names.cpp
+    // For a statement without a label names.cpp reports the duplicate.
+    if (names.taken.insert(label_of(statement)).second || statement.label.empty()) return;
     diagnostics_.error("E0802", statement.name_span, fmt::format("`{}` is declared twice", label_of(statement)), "",
                        {"labels are names in listings and messages: choose another"});
   }
@@ -104,7 +107,7 @@ class Emitter {
     }
   }
 
-  // Counts the uses of all nodes below and writes them out, operands first: without recursion.
+  // Counts the uses of all nodes below and lists the nodes, operands first. Does not recurse.
   void write(const Node* root) {
     struct Visit {
       const Node* node;
@@ -151,7 +154,7 @@ class Emitter {
     objects_.push_back({&node, &statement});
   }
 
-  // What a value is written for. A node's formula may be of several lines.
+  // Place that a value is converted for. A node's formula may have several lines.
   enum class Place { Background, Formula, Other };
 
   syntax::Value scene() {
@@ -229,7 +232,7 @@ class Emitter {
       entry.height = entry.label.empty() ? built.height : 0;
       entry.value = std::move(built.value);
     }
-    // Those of the file in its order.
+    // Add the file's named nodes in file order.
     for (const auto& [node, statement] : globals_) {
       Entry& entry = entries_[node->number - 1];
       int height = 0;
@@ -269,7 +272,7 @@ class Emitter {
     return {record.take(), height + 1};
   }
 
-  // A node where it is used: itself, or its name.
+  // Returns the node at a place of use: the node itself, or a reference by name.
   syntax::Value met(const Node& node, int& height) {
     Entry& entry = entries_[node.number - 1];
     height = std::max(height, entry.height);
@@ -277,7 +280,8 @@ class Emitter {
     return RecordMaker(node.span).add("use", std::string_view(entry.label)).take();
   }
 
-  // Scale, rotate and translate are applied in this order; in any other the placement is of a union of one.
+  // Adds a placement to its operand. Scenes apply scale, rotate and translate in this order. A placement in any other
+  // order is applied to a union of one node.
   Built placed(const Node& node) {
     int height = 0;
     syntax::Value inner = met(*node.of[0], height);
@@ -317,7 +321,7 @@ class Emitter {
     record.add(field.name, field.name_span, std::move(value));
   }
 
-  // The name of the material, which becomes one of the scene's where it is none yet.
+  // Returns the material's name. Adds the material to the scene if it has no name yet.
   syntax::Value material(const Value& value) {
     if (!value.is(Value::Type::Record) || !value.record->word || !value.record->word->material) {
       if (value.is(Value::Type::Text)) return make_value(value.span, *value.text);
@@ -328,7 +332,7 @@ class Emitter {
     const Record* record = value.record;
     const auto known = material_labels_.find(record);
     if (known != material_labels_.end()) return make_value(value.span, known->second);
-    // Equal ones are one, for a function makes another each time.
+    // Merge equal materials, because a function creates a new material per call.
     syntax::Value made = to_value(value, Place::Other);
     std::string key = syntax::print_syntax({std::move(made)});
     const auto [found, is_new] = equal_materials_.emplace(std::move(key), "");
@@ -340,7 +344,8 @@ class Emitter {
     return make_value(value.span, found->second);
   }
 
-  // A list may hold the same list many times: too many are refused before they are made.
+  // Reports a scene with too many values before creating them. A list may contain the same list many times, so a
+  // short text can expand to a huge scene.
   bool has_room(const Value& value) {
     if (full_) return false;
     full_ = values_ + extent_of(value).values > limits_.tokens;
@@ -380,7 +385,7 @@ class Emitter {
     return {value.span, {}};
   }
 
-  // A number as a JSON scene's formula.
+  // Returns a number as a formula of a JSON scene.
   static syntax::Value spelled(const Value& value, Place place) {
     const Spelling& spelling = *value.spelling;
     if (spelling.lines.empty()) return make_value(value.span, spelling.text);
@@ -409,13 +414,13 @@ class Emitter {
   const Limits& limits_;
   Diagnostics& diagnostics_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> pending_;  // entries in the order they are written in
+  std::vector<std::uint32_t> pending_;  // indices into entries_, in order of conversion
   std::vector<std::pair<const Node*, const Statement*>> objects_, globals_;
-  double values_ = 0;  // written out
+  double values_ = 0;  // number of values converted
   bool full_ = false;
   Names node_names_, material_names_, light_names_;
   std::unordered_map<const Record*, std::string> material_labels_;
-  std::unordered_map<std::string, std::string> equal_materials_;  // as they are written out
+  std::unordered_map<std::string, std::string> equal_materials_;  // by printed form
   RecordMaker params_{Span{}}, lights_{Span{}}, materials_{Span{}}, nodes_{Span{}};
 };
 

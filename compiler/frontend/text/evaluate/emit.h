@@ -1,7 +1,8 @@
-// From the values of a scene's text to the scene that a JSON file would have said.
+// Conversion of the values of a text to a syntax tree, as a JSON file would describe the scene.
 //
-// A node that a `let` of the file names is an entry of `nodes`; so is one that was given a name within the file's
-// functions and loops and is met more than once. All others stand where they are met.
+// Named nodes (entries of `nodes`) are the nodes that a `let` of the file names, and nodes that are used more than
+// once or nested too deeply. A node of the second kind has the name given within the file's functions and loops, if
+// any. All other nodes are placed where they are used.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp
 #pragma once
 

@@ -12,7 +12,7 @@ namespace fathom::compiler::text {
 
 namespace {
 
-// An element that no expression made takes memory all the same.
+// Number of steps per list element that no expression creates. Such an element also takes memory.
 constexpr double kStepsPerElement = 3;
 
 }  // namespace
@@ -28,7 +28,7 @@ Evaluator::Evaluator(const Tree& tree, const Definitions& definitions, const Lim
 void Evaluator::take_step(Span span) {
   if (++steps_ <= limits_.steps) return;
   const double most = limits_.steps;
-  steps_ = 0;  // for what is reported of other statements
+  steps_ = 0;  // so that other statements are still evaluated
   fail("E0312", span, fmt::format("the scene takes more than {} steps to evaluate", most),
        {raise(&Limits::steps, 2 * most)}, "evaluated when there were too many");
 }
@@ -36,7 +36,7 @@ void Evaluator::take_step(Span span) {
 Value Evaluator::evaluate(const Expr& expr) {
   using enum Expr::Kind;
   take_step(expr.span);
-  if (++depth_ > limits_.formula_nesting + 8) {  // levels beside those of a formula
+  if (++depth_ > limits_.formula_nesting + 8) {  // 8 levels in addition to those of a formula
     fail("E0406", expr.span, fmt::format("calls and expressions are nested more than {} deep", limits_.formula_nesting),
          {"give inner parts names of their own with `let`"});
   }
@@ -48,7 +48,7 @@ Value Evaluator::evaluate(const Expr& expr) {
         return value;
       }
       case Text:
-        return text(expr.text, expr.span);  // the tree keeps it
+        return text(expr.text, expr.span);  // the tree owns the string
       case Truth:
         return truth(expr.number != 0, expr.span);
       case Name:
@@ -134,7 +134,7 @@ Value Evaluator::evaluate_name(const Expr& expr) {
     case Reference::Kind::None:
       break;
   }
-  throw Failure();  // reported when names were resolved
+  throw Failure();  // the name resolver has reported the error
 }
 
 Value Evaluator::evaluate_if(const Expr& expr) {
@@ -157,7 +157,7 @@ Value Evaluator::evaluate_let(const Expr& expr) {
   return value;
 }
 
-// Numbers the loops that surround what is evaluated, for messages.
+// Records the call or the loop iteration that is being evaluated, for messages.
 void Evaluator::enter(const Expr& by, Span name, const Value* element) {
   const bool loop = by.kind != Expr::Kind::Call;
   const double value = element && element->is(Type::Number) ? element->number : std::nan("");
@@ -231,7 +231,7 @@ Value Evaluator::evaluate_index(const Expr& expr) {
        {list.of.empty() ? "" : fmt::format("elements are numbered from 0 to {}", list.of.size() - 1)});
 }
 
-// .x, .y and .z of a vector, and fields of records.
+// Evaluates .x, .y and .z of a vector, and the fields of a record.
 Value Evaluator::evaluate_member(const Expr& expr) {
   const Value of = evaluate(*expr.of[0]);
   if (of.is(Type::List) && expr.name.size() == 1 && expr.name[0] >= 'x' && expr.name[0] <= 'z') {
@@ -274,7 +274,7 @@ Value Evaluator::evaluate_range(const Expr& expr) {
     fail("E0809", expr.span, fmt::format("a range from {} to {}", from, to),
          {"ranges are of whole numbers; for fractions divide: [for i in 0..10: i/10]"});
   }
-  // Too many are refused before there are any.
+  // Count the steps first, so that a range over the limit is never created.
   steps_ += kStepsPerElement * std::max(0.0, to - from);
   take_step(expr.span);
   std::vector<Value> numbers;

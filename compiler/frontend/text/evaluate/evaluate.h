@@ -1,7 +1,7 @@
-// Evaluates a scene's text: parameters, names, functions and loops, until nothing is left but values.
+// Evaluator for texts. Resolves parameters, names, functions and loops to values.
 //
-// It always ends. Functions cannot call themselves (frontend/text/parse/names.h), loops go over lists, and every expression
-// that is evaluated is a step, of which there is a limit.
+// Evaluation always terminates. Functions cannot call themselves (frontend/text/parse/names.h), loops iterate over
+// lists, every evaluated expression counts as a step, and the number of steps is limited.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp, tests/golden/diagnostics (E0805 ...)
 #pragma once
 
@@ -15,7 +15,8 @@
 
 namespace fathom::compiler::text {
 
-// `order` is that of frontend/text/parse/names.h. With `keep_formulas` numbers keep how they came about (Value::spelling).
+// `order` comes from resolve_names() (frontend/text/parse/names.h). With `keep_formulas`, numbers keep the formulas
+// that they come from (Value::spelling).
 Evaluated evaluate(const Tree& tree, const std::vector<std::uint32_t>& order, const Definitions& definitions,
                    const Limits& limits, Diagnostics& diagnostics, bool keep_formulas = false);
 

@@ -1,4 +1,4 @@
-// The outcome of a text's evaluation: a value per statement.
+// Result of evaluating a text: one value per statement.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 
 namespace fathom::compiler::text {
 
-// Values of the statements.
+// Values of the statements, and the parameters.
 struct Evaluated {
   Store store;
-  std::vector<std::optional<Value>> values;  // [statement] nothing of a function, and after an error
+  std::vector<std::optional<Value>> values;  // [statement] nullopt for functions, and after an error
   Scope parameters;
-  // With keep_formulas: where a parameter's value was needed to go on, in a condition or a range.
+  // With keep_formulas: places where the value of a parameter was needed, such as a condition or a range.
   std::vector<Span> frozen;
 };
 

@@ -1,6 +1,6 @@
-// The evaluator's class, whose parts are in statements.cpp, evaluate.cpp (expressions), arithmetic.cpp (operators),
-// calls.cpp (functions), values.cpp and spelling.cpp. An error ends the statement it is in, by an exception that does
-// not leave evaluate().
+// Class of the evaluator. Its parts are in statements.cpp, evaluate.cpp (expressions), arithmetic.cpp (operators),
+// calls.cpp (functions), values.cpp and spelling.cpp. An error ends the current statement with an exception, which
+// does not leave evaluate().
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace fathom::compiler::text {
 
-// Thrown after an error was reported.
+// Thrown after reporting an error.
 struct Failure {};
 
 class Evaluator {
@@ -125,12 +125,12 @@ class Evaluator {
   const bool keep_formulas_;
   Diagnostics& diagnostics_;
   Evaluated out_;
-  std::vector<Scope> scopes_;                  // [module] parameters of the imports
-  std::vector<std::optional<Value>> objects_;  // [module] once they were asked for
-  std::vector<Value> locals_;                  // of all calls under way
-  std::size_t base_ = 0;                       // of the locals of the innermost
+  std::vector<Scope> scopes_;                  // [module] parameters of imports
+  std::vector<std::optional<Value>> objects_;  // [module] union of the objects, computed on demand
+  std::vector<Value> locals_;                  // of all active calls
+  std::size_t base_ = 0;                       // index of the innermost call's locals
   double steps_ = 0, depth_ = 0;
-  std::uint32_t trace_ = 0;  // where the innermost call or loop stands among the diagnostics' traces
+  std::uint32_t trace_ = 0;  // the innermost call or loop, among the traces of the diagnostics
 };
 
 }  // namespace fathom::compiler::text

@@ -1,4 +1,4 @@
-// How numbers came about, as formulas of a JSON scene: "2*r + 1" of a number that is 5 because the parameter r is 2.
+// Formulas that numbers come from, for JSON scenes: "2*r + 1" for a number that is 5 because the parameter r is 2.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,19 +10,19 @@ namespace fathom::compiler::text {
 namespace {
 
 constexpr int kSumLevel = 1, kProductLevel = 2, kSignLevel = 3, kPowerLevel = 4, kAtomLevel = 5;
-// Longer ones are given up: they are of loops, and numbers say as much.
+// Maximum length in characters. Longer spellings come from loops, and the plain number is as informative.
 constexpr std::size_t kLongestSpelling = 4000;
 
 int level_of(char mark) {
   return mark == '+' || mark == '-' ? kSumLevel : mark == '*' || mark == '/' ? kProductLevel : kPowerLevel;
 }
 
-// The operand of an operator that binds as tightly as `level`.
+// Adds parentheses to an operand that binds less tightly than `level`.
 std::string operand(const std::string& text, int precedence, int level) {
   return precedence >= level ? text : "(" + text + ")";
 }
 
-// Adds what another spelling needs to a spelling.
+// Adds the lines that `from` needs to `into`, and its dependence on parameters.
 void merge(Spelling& into, const Spelling& from) {
   into.is_parametric = into.is_parametric || from.is_parametric;
   for (const Spelling::Line* line : from.lines) {
@@ -31,7 +31,7 @@ void merge(Spelling& into, const Spelling& from) {
   std::ranges::sort(into.lines, {}, &Spelling::Line::number);
 }
 
-// Two lines of one name are of two places: neither can be kept.
+// True if two lines of the same name come from different places. A formula can keep neither.
 bool is_ambiguous(const Spelling& spelling) {
   for (std::size_t i = 0; i < spelling.lines.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -43,7 +43,7 @@ bool is_ambiguous(const Spelling& spelling) {
 
 }  // namespace
 
-// As it is spelt, or as the number it is.
+// Returns the spelling of a value. A number without a spelling is spelled as its digits.
 const Spelling* Evaluator::spelling_of(const Value& value) {
   if (value.spelling || !value.is(Type::Number)) return value.spelling;
   Spelling made;
@@ -87,7 +87,7 @@ void Evaluator::spell_pair(Value& value, char mark, const Value& a, const Value&
   if (plain && value.is(Type::Number) && !left->is_parametric && !right->is_parametric) return;
   const int level = level_of(mark);
   const std::string_view joint = mark == '+' ? " + " : mark == '-' ? " - " : mark == '*' ? "*" : mark == '/' ? "/" : "^";
-  // A power's base is an atom, its exponent may have a sign.
+  // The base of a power must be an atom, and the exponent may have a sign.
   const int left_level = mark == '^' ? kAtomLevel : level, right_level = mark == '^' ? kSignLevel : level + 1;
   Spelling made;
   made.text = operand(left->text, left->precedence, left_level) + std::string(joint) +
@@ -134,7 +134,7 @@ void Evaluator::spell_group(Value& value) {
   value.spelling = &out_.store.spellings.emplace_back(std::move(made));
 }
 
-// `let name = value in ...` is a line of its own in a JSON scene's formula.
+// Turns `let name = value in ...` into a line of its own in a JSON scene's formula.
 void Evaluator::spell_line(Value& value, std::string_view name) {
   if (value.spelling == nullptr || !is_number(value)) return;
   Spelling made = *value.spelling;
@@ -145,7 +145,7 @@ void Evaluator::spell_line(Value& value, std::string_view name) {
   value.spelling = &out_.store.spellings.emplace_back(std::move(made));
 }
 
-// Those of a formula's `let` stay its lines where they are not used, too.
+// Keeps the lines of a formula's `let` even if the formula does not use them.
 void Evaluator::keep_lines(Value& value, Values bindings) {
   if (value.spelling == nullptr || !value.is(Type::Formula)) return;
   Spelling made = *value.spelling;

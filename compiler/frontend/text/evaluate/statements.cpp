@@ -41,11 +41,11 @@ void Evaluator::run_statement(std::uint32_t number) {
     }
     out_.values[number] = statement.kind == Statement::Kind::Object ? object(statement, value) : value;
   } catch (const Failure&) {
-    // Reported. What uses the name fails without a word.
+    // Already reported. Statements that use the name fail silently.
   }
 }
 
-// A node of its own that is the same node.
+// Returns a new node that stands for the same node under another name.
 Value Evaluator::another_name(const Node& of) {
   Node made;
   made.span = of.span, made.word_span = of.word_span;
@@ -53,7 +53,7 @@ Value Evaluator::another_name(const Node& of) {
   return node(std::move(made));
 }
 
-// A node, or a list of nodes where they are objects each.
+// Returns a node, or a list of nodes if each of them is an object.
 Value Evaluator::object(const Statement& statement, const Value& value) {
   const auto as_node = [&](const Value& one) {
     Value made = blank(Type::Node, one.span);
@@ -66,7 +66,7 @@ Value Evaluator::object(const Statement& statement, const Value& value) {
   return list(std::move(nodes), value.span);
 }
 
-// Values for the parameters of a file.
+// Returns a record of the values that an import gives for the parameters of its file.
 Value Evaluator::run_import(const Statement& statement) {
   text::Record made;
   made.span = statement.span;
@@ -74,7 +74,7 @@ Value Evaluator::run_import(const Statement& statement) {
   return record(std::move(made));
 }
 
-// What the parameter's import gives it; null when it gives nothing.
+// Returns the value that the import gives for the parameter, or null without one.
 const Value* Evaluator::given_value(const Statement& parameter) {
   const Module& module = tree_.modules[parameter.module];
   if (!module.has_values) return nullptr;
@@ -85,14 +85,14 @@ const Value* Evaluator::given_value(const Statement& parameter) {
   return found == fields.end() ? nullptr : &found->value;
 }
 
-// A file's parameter as if a JSON scene had it. Its value is the command line's where that gives one, and the
-// import's in a file that is imported.
+// Reads a parameter like a parameter of a JSON scene. The command line overrides the value of the file's own
+// parameters, and the import overrides the value in an imported file.
 Value Evaluator::run_parameter(const Statement& statement) {
   const auto known_value = [&](const Value& value) {
     if (value.is(Type::Text)) return make_value(value.span, *value.text);
     const std::size_t frozen = out_.frozen.size();
     const double known = constant(value, "a parameter");
-    out_.frozen.resize(frozen);  // it is written as a formula
+    out_.frozen.resize(frozen);  // the parameter itself keeps its formula
     return make_value(value.span, known);
   };
   const auto constant_value = [&](const Expr& expr) { return known_value(evaluate(expr)); };
@@ -104,7 +104,7 @@ Value Evaluator::run_parameter(const Statement& statement) {
   const Value own = given ? *given : keep_formulas_ ? evaluate(*statement.value) : Value{};
   for (const Argument& field : statement.fields) record.add(field.name, constant_value(*field.value));
   property.value = std::make_unique<syntax::Value>(record.take());
-  if (given) property.value->span = given->span;  // of what is out of range
+  if (given) property.value->span = given->span;  // place of a range error
   const bool own_file = statement.module == 0;
   const Scope::Entry& entry = read_parameter(property, own_file ? definitions_ : Definitions{},
                                              own_file ? out_.parameters : scopes_[statement.module], diagnostics_);
@@ -114,7 +114,7 @@ Value Evaluator::run_parameter(const Statement& statement) {
   return value;
 }
 
-// All that is to be seen of a file, as one node.
+// Returns all objects of a file as one node.
 Value Evaluator::objects_of(std::uint32_t number, Span span) {
   if (objects_[number]) return *objects_[number];
   const Module& module = tree_.modules[number];

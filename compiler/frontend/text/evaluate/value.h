@@ -1,5 +1,5 @@
-// What an expression of a scene's text is worth: numbers, texts, lists, records and nodes. Values are small and
-// refer to what the Store owns; nothing in them changes once it is made.
+// Values of expressions in a text: numbers, texts, lists, records and nodes. Values are small and refer to data owned
+// by the Store. That data is immutable after construction.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp
 #pragma once
 
@@ -19,36 +19,36 @@ struct List;
 struct Record;
 struct Node;
 
-// A number as a formula of a JSON scene, for those who want a scene that keeps its parameters (`fathom convert`).
+// A number as a formula of a JSON scene, kept for scenes that retain their parameters (`fathom convert`).
 struct Spelling {
   struct Line {
     std::string_view name;
     std::string text;
-    std::size_t number;  // in the order they were made
+    std::size_t number;  // in order of creation
   };
   std::string text;
-  std::string inlined;              // without the names of `lines`
-  int precedence = 0;               // of the operator that is outermost, as in spelling.cpp
-  bool is_literal = false;          // a number as it is
-  bool is_parametric = false;       // parameters are in it
-  std::vector<const Line*> lines;   // definitions that the text needs, in order
+  std::string inlined;              // the text with the names of `lines` replaced by their formulas
+  int precedence = 0;               // of the outermost operator, as in spelling.cpp
+  bool is_literal = false;          // a plain number
+  bool is_parametric = false;       // depends on parameters
+  std::vector<const Line*> lines;   // definitions that `text` needs, in order
 };
 
-// How far a list or a record goes.
+// Size of a list or a record.
 struct Extent {
-  std::uint32_t depth = 0;  // levels of lists and records within each other
-  double values = 1;        // written out, where the same list may stand many times
+  std::uint32_t depth = 0;  // nesting depth of lists and records
+  double values = 1;        // number of values in converted form, where a shared list counts once per occurrence
 };
 
 struct Value {
   enum class Type : std::uint8_t { Truth, Number, Formula, Text, List, Record, Node };
   Type type;
   Span span;
-  const Spelling* spelling = nullptr;  // of a number, where they are kept
+  const Spelling* spelling = nullptr;  // of a number, if kept
   union {
     bool truth = false;
     double number;
-    FormulaId formula;  // a number that contains x, y or z
+    FormulaId formula;  // a number that depends on x, y or z
     const std::string* text;
     const List* list;
     const Record* record;
@@ -60,7 +60,7 @@ struct Value {
 
 Extent extent_of(const Value& value);
 
-// A value whose content is still to be set.
+// Returns a value whose content is not set yet.
 inline Value blank(Value::Type type, Span span) {
   Value value{};
   value.type = type, value.span = span;
@@ -78,18 +78,18 @@ struct Field {
   Value value;
 };
 
-// (a = 1, b = 2), or diffuse(color = 0.5), which has a word.
+// A record: (a = 1, b = 2), or diffuse(color = 0.5), whose `word` is diffuse.
 struct Record {
   const Word* word = nullptr;
   Span span;
   Span word_span;
   std::vector<Field> fields;
   Extent extent = {};
-  mutable std::string_view name = {};  // the first that it was given; empty when there is none
+  mutable std::string_view name = {};  // first name given to the record; empty without one
 };
 
-// A node, or one placed: scaled, turned, moved, painted or named, which has no word but one field and one operand; no
-// field when it is but another name.
+// A node of a type, or a wrapper without `spec` around one operand. The wrapper has one field (scale, rotate,
+// translate, material or name), or none if the wrapper is only another name.
 struct Node {
   const NodeSpec* spec = nullptr;
   Span span;
@@ -97,7 +97,7 @@ struct Node {
   std::vector<Field> fields;
   std::vector<const Node*> of;
   mutable std::string_view name = {};
-  mutable std::uint32_t number = 0;  // in frontend/text/evaluate/emit.cpp
+  mutable std::uint32_t number = 0;  // index + 1 in emit.cpp; 0 before conversion
 };
 
 struct Store {
@@ -109,7 +109,7 @@ struct Store {
   FormulaBuilder formulas;
 };
 
-// "a number", "a node", "a list of 3", ... as messages say it.
+// Describes a value in messages: "a number", "a node", "a list of 3", ...
 std::string describe(const Value& value);
 
 }  // namespace fathom::compiler::text

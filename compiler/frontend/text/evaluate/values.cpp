@@ -1,4 +1,4 @@
-// Values as the evaluator makes them and asks for them.
+// Construction of values, and access to them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::string describe(const Value& value) {
   return "a node";
 }
 
-// What reads a value recurses as deep.
+// Limits the nesting depth, because code that reads values recurses to that depth.
 void Evaluator::check_depth(std::uint32_t depth, Span span) {
   if (depth <= limits_.formula_nesting) return;
   fail("E0406", span, fmt::format("lists are nested more than {} deep", limits_.formula_nesting),
@@ -62,7 +62,7 @@ Value Evaluator::truth(bool value, Span span) const {
   return made;
 }
 
-// What came out constant is a number.
+// Returns a number if the formula is constant.
 Value Evaluator::formula(FormulaId id, Span span) {
   if (const auto known = out_.store.formulas.value(id)) return number(*known, span);
   if (static_cast<double>(out_.store.formulas.size()) > limits_.nodes) {
@@ -108,7 +108,7 @@ FormulaId Evaluator::formula_of(const Value& value) {
   return value.is(Type::Formula) ? value.formula : out_.store.formulas.constant(value.number, value.span);
 }
 
-// A node, or a list of them, which is their union.
+// True for a node, and for a list of nodes, which stands for their union.
 bool Evaluator::is_node(const Value& value) {
   return value.is(Type::Node) ||
          (value.is(Type::List) && !value.list->of.empty() && is_node(value.list->of.front()));

@@ -1,4 +1,4 @@
-// What operators stand between: numbers, words, calls, members, records and lists.
+// Parser for operands: numbers, words, calls, members, records and lists.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Expr* ExpressionParser::postfix() {
   return nullptr;
 }
 
-// .NAME or .NAME(arguments)
+// Grammar: .NAME or .NAME(arguments)
 Expr* ExpressionParser::member(Expr* of) {
   take();
   std::string_view text;
@@ -43,7 +43,7 @@ Expr* ExpressionParser::member(Expr* of) {
   return call(*made) ? made : nullptr;
 }
 
-// The arguments and the bracket after them.
+// Parses the arguments and the closing bracket.
 bool ExpressionParser::call(Expr& made) {
   const Span begin = made.span;
   made.span = take().span;
@@ -139,7 +139,7 @@ Expr* ExpressionParser::group() {
   return inner;
 }
 
-// ( [ NAME = expr { , NAME = expr } ] )
+// Parses the value of `argument` and appends the argument to `to`.
 bool ExpressionParser::add(Expr& to, Argument argument) {
   argument.value = expression();
   if (argument.value == nullptr) return false;
@@ -148,7 +148,7 @@ bool ExpressionParser::add(Expr& to, Argument argument) {
   return true;
 }
 
-// `made` begins with the bracket.
+// Expects the closing bracket. The span of `made` begins with the opening bracket.
 bool ExpressionParser::close(Expr& made, std::string_view bracket) {
   if (take_if(bracket)) {
     made.span.end = before().end;
@@ -165,6 +165,7 @@ bool ExpressionParser::close(Expr& made, std::string_view bracket) {
   return false;
 }
 
+// Grammar: ( [ NAME = expr { , NAME = expr } ] )
 Expr* ExpressionParser::record() {
   Expr* made = make(Expr::Kind::Record, take().span);
   while (!peek().is(")")) {
@@ -189,7 +190,7 @@ Expr* ExpressionParser::list() {
   return close(*made, "]") ? made : nullptr;
 }
 
-// for NAME in expr : item, if expr : item, ...expr or expr
+// Grammar: for NAME in expr : item, if expr : item, ...expr or expr
 Expr* ExpressionParser::item() { return bounded(nested(&ExpressionParser::any_item)); }
 Expr* ExpressionParser::any_item() {
   if (peek().is_word("for")) return loop();
@@ -218,7 +219,7 @@ Expr* ExpressionParser::loop() {
   return made;
 }
 
-// `if a: item`, or `if a then b else c`, which is an expression.
+// Parses `if a: item`, or the expression `if a then b else c`.
 Expr* ExpressionParser::guard() {
   const Span begin = take().span;
   Expr* condition = expression();

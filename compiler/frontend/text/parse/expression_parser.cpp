@@ -15,7 +15,7 @@ struct Operator {
 
 namespace {
 
-// Levels beside those of a formula: of a statement and of the call that the formula is an argument of.
+// Levels in addition to those of a formula: the statement, and the call that the formula is an argument of.
 constexpr double kRoom = 8;
 constexpr int kLoosest = 1, kRow = 5;  // precedences
 
@@ -45,7 +45,7 @@ Expr* ExpressionParser::make(Expr::Kind kind, Span span, std::vector<Expr*> of) 
 }
 Span ExpressionParser::join(Span a, Span b) { return {a.begin, std::max(a.end, b.end)}; }
 
-// Deeper than that neither this nor what walks the tree could go.
+// Limits the depth of an expression. Deeper expressions would overflow the stack here or in code that walks the tree.
 Expr* ExpressionParser::bounded(Expr* made) {
   if (made == nullptr || made->depth <= limits_.formula_nesting + kRoom) return made;
   return too_deep(made->span);
@@ -57,7 +57,7 @@ std::nullptr_t ExpressionParser::too_deep(Span span) {
   return nullptr;
 }
 
-// Every recursion comes through here.
+// Every recursion passes through here.
 Expr* ExpressionParser::nested(Reader read) {
   if (depth_ > limits_.formula_nesting + kRoom) return too_deep(peek().span);
   ++depth_;
@@ -74,7 +74,7 @@ Expr* ExpressionParser::any() {
   return bounded(operation(kLoosest));
 }
 
-// if expr then expr else expr; those in a row of else are one level of this.
+// Grammar: if expr then expr else expr. Each `else if` is one level of recursion.
 Expr* ExpressionParser::choice() {
   const Span begin = take().span;
   Expr* condition = expression();
@@ -89,14 +89,14 @@ Expr* ExpressionParser::choice(Span begin, Expr* condition) {
   return bounded(make(Expr::Kind::If, join(begin, no->span), {condition, yes, no}));
 }
 
-// Between a name and its value.
+// Expects the `=` between a name and its value.
 bool ExpressionParser::equals_sign() {
   if (!peek().is("(")) return expect("=", "after the name");
   unexpected("`=` is missing after the name", {"functions are statements of their own: def name(a, b) = ..."});
   return false;
 }
 
-// let NAME = expr { let NAME = expr } in expr
+// Grammar: let NAME = expr { let NAME = expr } in expr
 Expr* ExpressionParser::bindings() {
   const Span begin = peek().span;
   std::vector<Argument> names;
@@ -119,7 +119,7 @@ Expr* ExpressionParser::bindings() {
   return bounded(made);
 }
 
-// fold NAME = expr for NAME in expr : expr
+// Grammar: fold NAME = expr for NAME in expr : expr
 Expr* ExpressionParser::fold() {
   const Span begin = take().span;
   std::string_view result;
@@ -139,7 +139,7 @@ Expr* ExpressionParser::fold() {
   return bounded(made);
 }
 
-// Operators that bind as tightly as `least` or tighter.
+// Parses operators of precedence `least` or higher.
 Expr* ExpressionParser::operation(int least) {
   Expr* left = sign();
   while (left != nullptr) {
@@ -157,7 +157,7 @@ Expr* ExpressionParser::missing_operator(Expr* left, int least) {
   const Token& token = peek();
   const bool unit = token.is_word("deg") || token.is_word("rad");
   const bool product = left->kind == Expr::Kind::Number, named = left->kind == Expr::Kind::Name;
-  // The end of a range.
+  // Probably the end of a range.
   if (least == kRow && product) {
     return unexpected("`:` or an operator is missing before it", {"such as [for i in 0..3: sphere(i)]"});
   }
@@ -182,7 +182,7 @@ Expr* ExpressionParser::pair(Expr* left, const Operator& row) {
   return made;
 }
 
-// a + b - c: one row, however long it is.
+// Parses a chain of operators such as a + b - c. A chain of any length is one row.
 Expr* ExpressionParser::gather(Expr* first, int precedence) {
   std::vector<Expr*> of = {first};
   std::vector<Joint> joints;
@@ -205,7 +205,7 @@ Expr* ExpressionParser::gather(Expr* first, int precedence) {
   return made;
 }
 
-// `a + b & c` would be read in two ways.
+// False, after a report, for a mixture such as `a + b & c`, which readers would parse in two ways.
 bool ExpressionParser::is_clear(const std::vector<Joint>& joints) {
   const auto meets = [](const Joint& joint) { return joint.mark == '&'; };
   const auto both = std::ranges::find_if(joints, [&](const Joint& j) { return meets(j) != meets(joints[0]); });
@@ -215,7 +215,7 @@ bool ExpressionParser::is_clear(const std::vector<Joint>& joints) {
   return false;
 }
 
-// { expr } or { NAME = expr, ... }
+// Grammar: { expr } or { NAME = expr, ... }
 Expr* ExpressionParser::blend() {
   Expr* made = make(Expr::Kind::Record, take().span);
   do {

@@ -1,4 +1,4 @@
-// Expressions of a text, by recursive descent (frontend/text/parse/parser.h).
+// Recursive descent parser for the expressions of a text (frontend/text/parse/parser.h).
 #pragma once
 
 #include <deque>
@@ -13,7 +13,7 @@ namespace fathom::compiler::text {
 
 struct Operator;
 
-// Functions return nullptr after they reported what is wrong.
+// Functions return nullptr after reporting an error.
 class ExpressionParser : public TokenCursor {
  public:
   ExpressionParser(const Source& source, Diagnostics& diagnostics, const Limits& limits)
@@ -63,7 +63,7 @@ class ExpressionParser : public TokenCursor {
   Expr* guard();
 
   const Limits& limits_;
-  double depth_ = 0;  // of what is being read
+  double depth_ = 0;  // current recursion depth
 };
 
 }  // namespace fathom::compiler::text

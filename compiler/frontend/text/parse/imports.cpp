@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kAsText = " (as text)";  // behind the name of what was made of a file
+constexpr const char* kAsText = " (as text)";  // suffix of the name of a converted file
 
-// Where the file of a path stands, from the folder of the scene.
+// Returns the location of an imported path, relative to the scene's folder.
 std::string joined(const std::string& from, const std::string& path) {
   return (fs::path(from).parent_path() / path).lexically_normal().generic_string();
 }
 
-// What no path may be; empty when nothing is wrong with it.
+// Returns the reason why a path is invalid, or "" if the path is valid.
 std::string fault_of(const std::string& path) {
   if (path.empty()) return "the path is empty";
   if (path.starts_with('/') || path.find(':') != std::string::npos) return "the path is not relative";
@@ -50,7 +50,7 @@ class ImportLoader {
 
   void run() {
     for (std::uint32_t module = 0; module < tree_.modules.size() && !full_; ++module) {
-      const Module range = tree_.modules[module];  // a copy: others are added on the way
+      const Module range = tree_.modules[module];  // a copy, because load() adds modules
       for (std::uint32_t i = range.begin; i < range.end && !full_; ++i) {
         if (tree_.statements[i].kind == Statement::Kind::Import) load(module, i);
       }
@@ -93,7 +93,7 @@ class ImportLoader {
     tree_.statements[number].target = *target;
   }
 
-  // The files between an import and itself; empty when it closes no circle.
+  // Returns the files of the import cycle that this import would close, or {} if it closes none.
   std::vector<std::string> circle_of(const std::string& from, const std::string& to) const {
     std::vector<std::string> way = {to};
     std::set<std::string> seen;
@@ -114,7 +114,7 @@ class ImportLoader {
     return way;
   }
 
-  // The text of the file; nullptr after an error.
+  // Returns the text of the file, or nullptr after an error.
   const Source* file_of(const std::string& path, Span span) {
     const auto found = files_.find(path);
     if (found != files_.end()) return found->second;
@@ -124,7 +124,7 @@ class ImportLoader {
     return file;
   }
 
-  // Of the source as it was given.
+  // Returns a file that the source already contains, or nullptr.
   const Source* known_file(const std::string& path, bool derived) const {
     const auto same = [&](const Import& import) { return import.path == path && import.derived == derived; };
     const auto found = std::ranges::find_if(source_.imports(), same);
@@ -169,7 +169,7 @@ class ImportLoader {
     return nullptr;
   }
 
-  // A module of the file; nullopt after an error.
+  // Adds a module for the file. Returns nullopt after an error.
   std::optional<std::uint32_t> add(const Source& file, const std::string& path, std::uint32_t import, bool has_values) {
     const auto number = static_cast<std::uint32_t>(tree_.modules.size());
     const bool again = std::ranges::any_of(tree_.modules, [&](const Module& module) { return module.file == &file; });
@@ -199,7 +199,7 @@ class ImportLoader {
   const Limits& limits_;
   Diagnostics& diagnostics_;
   std::vector<std::string> paths_;                         // [module]
-  std::map<std::string, std::uint32_t> plain_;             // modules without values, by path
+  std::map<std::string, std::uint32_t> plain_;             // modules of imports without values, by path
   std::map<std::string, const Source*> files_;             // by path; null after an error
   std::map<std::string, std::set<std::string>> imports_;   // by path
   bool full_ = false;

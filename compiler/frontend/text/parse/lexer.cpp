@@ -16,7 +16,7 @@ struct ForeignText {
 
 constexpr std::string_view kProduct = "for a product write a*b";
 
-// What other languages have, and what is written here in its place.
+// Marks of other languages, with help on what to write instead.
 constexpr ForeignText kForeignTexts[] = {
     {";", "a statement ends where the next one begins"},
     {"|", "a union is written a + b; `or` of conditions is ||"},
@@ -38,7 +38,7 @@ constexpr ForeignText kForeignTexts[] = {
     {"\u00B0", "angles of a scene are in degrees: write 45; sin, cos and tan take radians: 45*pi/180"},
 };
 
-// Longer ones before their beginnings.
+// Longer marks come before their prefixes.
 constexpr std::string_view kMarks[] = {"...", "..", "==", "!=", "<=", ">=", "&&", "||", "+", "-", "*", "/", "^", "(",
                                        ")",   "[",  "]",  "{",  "}",  ",",  ".",  "=",  "<", ">", "&", "!", ":"};
 
@@ -57,7 +57,7 @@ class TextLexer {
     return std::move(out_);
   }
 
-  // Where the first token begins that is one too many; nothing when there is none.
+  // Returns the span of the first token above the limit, or nullopt if there is none.
   std::optional<Span> find_excess(double most) {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
     for (double count = 0; skip_blanks(); ++count) {
@@ -71,7 +71,7 @@ class TextLexer {
  private:
   std::string_view rest() const { return text_.substr(at_); }
 
-  // To the next token; comments are kept on the way. False at the end.
+  // Skips to the next token and stores the comments on the way. Returns false at the end.
   bool skip_blanks() {
     while (at_ < text_.size()) {
       const char c = text_[at_];
@@ -119,7 +119,7 @@ class TextLexer {
     }
   }
 
-  // "1..5" is 1 and "..".
+  // Reads a number. "1..5" is the number 1 and the mark "..".
   void number() {
     std::size_t end = at_;
     while (end < text_.size() && (is_figure(text_[end]) || text_[end] == '.') && !text_.substr(end).starts_with("..")) ++end;
@@ -128,7 +128,7 @@ class TextLexer {
     double value = 0;
     const auto [last, error] = std::from_chars(begin, text_.data() + (range ? end : text_.size()), value);
     const std::string digits(begin, last);
-    // Too large or too small for a double; strtod tells which, as infinity or zero.
+    // The number is out of the range of double. strtod says which way, by returning infinity or zero.
     if (error == std::errc::result_out_of_range) value = std::strtod(digits.c_str(), nullptr);
     push(Token::Kind::Number, digits.size());
     out_.tokens.back().value = value;
@@ -151,7 +151,7 @@ class TextLexer {
     for (const std::string_view mark : kMarks) {
       if (rest().starts_with(mark)) return push(Token::Kind::Mark, mark.size());
     }
-    std::size_t length = 1;  // a character, which in UTF-8 is a byte and its continuation bytes
+    std::size_t length = 1;  // one character: in UTF-8, a byte and its continuation bytes
     while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80) ++length;
     std::vector<std::string> help;
     for (const ForeignText& foreign : kForeignTexts) {
@@ -194,7 +194,7 @@ void append_utf8(unsigned code, std::string& out) {
   put(0x80 | (code >> 6 & 0x3F)), put(0x80 | (code & 0x3F));
 }
 
-// Four hexadecimal digits.
+// Returns the value of four hexadecimal digits.
 std::optional<unsigned> hex(std::string_view digits) {
   unsigned code = 0;
   if (digits.size() < 4) return std::nullopt;
@@ -202,7 +202,8 @@ std::optional<unsigned> hex(std::string_view digits) {
   return end == digits.data() + 4 && error == std::errc() ? std::optional(code) : std::nullopt;
 }
 
-// The character of an escape \uXXXX, of two for those beyond the first 65,536; takes what it reads from `rest`.
+// Returns the character of an escape \uXXXX, which is a pair of escapes for a character beyond the first 65,536.
+// Removes the characters it reads from `rest`.
 std::optional<unsigned> escaped_character(std::string_view& rest) {
   const auto high = hex(rest);
   if (!high) return std::nullopt;
@@ -268,7 +269,7 @@ std::string unquoted(const Token& token, Diagnostics& diagnostics) {
       if (code) append_utf8(*code, out);
     } else {
       good = good && std::string_view("bfnrt").find(which) != std::string_view::npos;
-      out += '\n';  // all of these are control characters
+      out += '\n';  // placeholder for a control character, which is reported below
     }
   }
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };

@@ -1,4 +1,4 @@
-// A scene's text as tokens (docs/LANGUAGE.md).
+// Lexer for scenes in text notation (docs/LANGUAGE.md).
 // Tested by: tests/compiler/text_parser_test.cpp
 #pragma once
 
@@ -14,10 +14,10 @@
 
 namespace fathom::compiler::text {
 
-// Words that begin a statement, where one can begin.
+// Words that begin a statement, in a position where a statement can begin.
 inline constexpr std::string_view kStatementWords[] = {"import", "param",  "let",  "def",    "object",
                                                        "light",  "camera", "film", "render", "background"};
-// Words of expressions, which no name can be.
+// Words of expressions, which cannot be names.
 inline constexpr std::string_view kReservedWords[] = {"let", "in",   "if",   "then", "else",
                                                       "for", "fold", "true", "false"};
 
@@ -27,35 +27,36 @@ struct Token {
   bool first_on_line;
   std::uint32_t column;  // 0-based, bytes
   Span span;
-  std::string_view text;  // as written; of a Text with its quotes
-  double value = 0;       // of a Number; infinite when it is too large
+  std::string_view text;  // as written; Text includes its quotes
+  double value = 0;       // for Number; infinite if the number is too large for a double
 
   bool is(std::string_view mark) const { return kind == Kind::Mark && text == mark; }
   bool is_word(std::string_view word) const { return kind == Kind::Name && text == word; }
 };
 
-// A comment with its marks, and between which tokens it stands.
+// A comment with its marks, and its position among the tokens.
 struct Comment {
   Span span;
-  std::size_t before;  // the number of the token it stands before
+  std::size_t before;  // index of the token after the comment
   bool first_on_line;
 };
 
 struct Tokens {
-  std::vector<Token> tokens;  // the last is of Kind::End
+  std::vector<Token> tokens;  // the last token has Kind::End
   std::vector<Comment> comments;
 };
 
-// All tokens of the text; what is no token is reported and left out. The tokens' texts are parts of the source's.
+// Returns all tokens of the text. Reports and skips invalid characters. Token texts point into the source.
 Tokens read_tokens(const Source& source, Diagnostics& diagnostics);
 
-// Whether there are no more tokens than `limits` allow, before any is kept; reports it.
+// True if the text has at most as many tokens as `limits` allow. Reports an excess. Does not store the tokens.
 bool check_tokens(const Source& source, const Limits& limits, Diagnostics& diagnostics);
 
-// The name that the text begins with, after blanks and comments; empty when it begins with something else.
+// Returns the name at the beginning of the text, after blanks and comments, or "" if the text begins with another
+// token.
 std::string_view first_word(std::string_view text);
 
-// What a Text token says, its escapes resolved; reports those that are none, and control characters.
+// Returns the string of a Text token with escapes resolved. Reports invalid escapes and control characters.
 std::string unquoted(const Token& token, Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler::text

@@ -19,7 +19,8 @@ namespace {
 
 using Kind = Statement::Kind;
 
-// Errors that are printed: of a file of many names looking for the nearest takes a while.
+// Maximum number of errors with a suggestion, which is also the number of errors printed. Finding the nearest name is
+// slow in a file with many names.
 constexpr std::size_t kMostSuggestions = 20;
 
 bool has_name(const Statement& statement) {
@@ -27,7 +28,7 @@ bool has_name(const Statement& statement) {
          statement.kind == Kind::Def;
 }
 
-// `of.name` or `of.name(...)` rather than `name(of)`.
+// True for `of.name` or `of.name(...)`, as opposed to `name(of)`.
 bool is_dotted(const Expr& expr) { return expr.span.begin < expr.name_span.begin; }
 
 class Resolver {
@@ -64,7 +65,7 @@ class Resolver {
     }
   }
 
-  // What is wrong with a file is said of the first of its modules.
+  // True for a file's second and later modules. Errors in a file are reported for its first module only.
   bool is_quiet() const { return tree_.modules[tree_.statements[current_].module].again; }
   void error(std::string code, Span span, std::string message, std::string label, std::vector<std::string> help) {
     if (is_quiet()) return;
@@ -117,7 +118,7 @@ class Resolver {
     statement.slots = slots_;
   }
 
-  // A name that is not declared yet since `from`.
+  // Declares a local name, which must not have been declared since `from`.
   std::uint32_t declare(std::string_view name, Span span, std::size_t from) {
     check_name(name, span);
     for (std::size_t i = from; i < locals_.size(); ++i) {
@@ -129,7 +130,7 @@ class Resolver {
     return slot;
   }
 
-  // The names since `from` end; those that nothing used are reported if `warn`.
+  // Ends the scope of the names declared since `from`. If `warn`, reports the unused names.
   void leave(std::size_t from, bool warn) {
     for (std::size_t i = from; i < locals_.size() && warn; ++i) {
       if (locals_[i].used || locals_[i].name[0] == '_') continue;
@@ -178,7 +179,7 @@ class Resolver {
     }
   }
 
-  // The import that a name stands for; nothing when it is another name.
+  // Returns the import that a name refers to, or nullopt if the name refers to something else.
   std::optional<std::uint32_t> import_of(const Expr& expr) const {
     if (expr.kind != Expr::Kind::Name || expr.groups > 0) return std::nullopt;
     if (std::ranges::any_of(locals_, [&](const Local& local) { return local.name == expr.name; }))
@@ -188,8 +189,8 @@ class Resolver {
     return found->second;
   }
 
-  // `gears.steel`, `gears.gear(...)` and `gears.scene`, where `gears` is an import, become what they stand for. True
-  // when nothing is left to resolve.
+  // Resolves `gears.steel`, `gears.gear(...)` and `gears.scene` where `gears` is an import. Returns true if nothing
+  // is left to resolve.
   bool enter_module(Expr& expr) {
     const bool call = expr.kind == Expr::Kind::Call && is_dotted(expr);
     if (!call && expr.kind != Expr::Kind::Member) return false;
@@ -201,7 +202,8 @@ class Resolver {
     return true;
   }
 
-  // Not inlined, nor what it calls: resolve() goes a thousand levels deep, and messages take room on the stack.
+  // Not inlined, like the functions it calls: resolve() recurses a thousand levels deep, and messages would enlarge
+  // its stack frame.
   [[gnu::noinline]] void refer_into(Expr& expr, std::uint32_t import, bool call) {
     imported_[import] = true;
     const Statement& statement = tree_.statements[import];
@@ -219,7 +221,7 @@ class Resolver {
     refer_to(expr, statement, call);
   }
 
-  // A name of the module that the import names.
+  // Resolves a name in the module that the import refers to.
   void refer_to(Expr& expr, const Statement& import, bool call) {
     const Module& module = tree_.modules[import.target];
     const auto found = globals_[import.target].find(expr.name);
@@ -259,7 +261,7 @@ class Resolver {
     expr.reference = {Reference::Kind::Objects, import.target};
   }
 
-  // The values that an import gives to parameters.
+  // Checks the values that an import gives for parameters.
   void check_values(const Statement& import) {
     std::vector<std::string_view> names;
     for (const Statement& statement : statements_of(tree_.modules[import.target])) {
@@ -374,7 +376,7 @@ class Resolver {
                  : nearest_of(expr.name, known)});
   }
 
-  // Of 160 words only those that are near.
+  // Suggests only the nearest of the 160 words.
   static std::string nearest_of(std::string_view name, const std::vector<std::string_view>& known) {
     const std::string_view meant = suggest(name, known);
     return meant.empty() ? "docs/GALLERY.md shows all nodes; a function of one's own is `def name(a, b) = ...`"
@@ -383,8 +385,8 @@ class Resolver {
 
   Tree& tree_;
   Diagnostics& diagnostics_;
-  std::vector<std::unordered_map<std::string_view, std::uint32_t>> globals_;  // [module] the statement's number
-  std::vector<bool> imported_;            // [statement] whether something uses the import
+  std::vector<std::unordered_map<std::string_view, std::uint32_t>> globals_;  // [module] number of the statement
+  std::vector<bool> imported_;            // [statement] true if a name of the import is used
   std::vector<std::vector<UseOf>> uses_;  // [statement]
   std::uint32_t current_ = 0;
   std::vector<Local> locals_;

@@ -1,5 +1,5 @@
-// What the names in a scene's text stand for, found before anything is evaluated: so that a misspelt name is an error
-// in a branch that is not taken, too, and a function that calls itself is found without calling it.
+// Name resolution for texts. Runs before evaluation, so that a misspelt name is an error even in a branch that is not
+// taken, and recursion is detected without calling a function.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp, tests/golden/diagnostics (E0802, E0803, E0804, E0806)
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace fathom::compiler::text {
 
-// Fills in the references, words and slots of the tree, and returns its statements with a value in an order in which
-// each comes after those it uses; reports what is wrong. nullopt when there is no such order.
+// Sets the references, words and slots of the tree and reports errors. Returns the statements to evaluate, each after
+// the statements that it uses, or nullopt if the uses form a cycle.
 std::optional<std::vector<std::uint32_t>> resolve_names(Tree& tree, Diagnostics& diagnostics);
 
 }  // namespace fathom::compiler::text

@@ -9,7 +9,7 @@
 namespace fathom::compiler::text {
 namespace {
 
-// Depth first, without recursion: chains of names may be as long as the file.
+// Depth-first topological sort without recursion, because chains of names may be as long as the file.
 class Sorter {
  public:
   Sorter(const Tree& tree, const std::vector<std::vector<UseOf>>& uses, Diagnostics& diagnostics)

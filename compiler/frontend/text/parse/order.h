@@ -1,4 +1,4 @@
-// The order in which a text's statements can be evaluated: each after those that it uses.
+// Order of evaluation of a text's statements: each statement comes after the statements that it uses.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp, tests/golden/diagnostics (E0806)
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace fathom::compiler::text {
 
-// A statement, and where another uses it.
+// A used statement, and the place of the use.
 struct UseOf {
   std::uint32_t statement;
   Span span;
 };
 
-// The statements that the file, module 0, leads to. nullopt after a report when one is made of itself, whether the
-// file leads to it or not. `uses` are of each statement.
+// Returns the statements reachable from the scene file, module 0, in order. Returns nullopt after reporting a cycle,
+// even if the cycle is not reachable. `uses` has one list per statement.
 std::optional<std::vector<std::uint32_t>> in_order(const Tree& tree, const std::vector<std::vector<UseOf>>& uses,
                                                    Diagnostics& diagnostics);
 

@@ -56,7 +56,7 @@ class StatementParser : public ExpressionParser {
     if (other) ++at_;
   }
 
-  // To the next line that can begin a statement.
+  // Skips to the next line that can begin a statement.
   void recover() {
     while (tokens_[at_].kind != Token::Kind::End) {
       ++at_;
@@ -64,7 +64,7 @@ class StatementParser : public ExpressionParser {
     }
   }
 
-  // After a whole statement.
+  // Reports tokens after the end of a statement.
   void report_rest(const Token& first) {
     const Token& rest = tokens_[at_];
     if (!rest.first_on_line || rest.column > column_) {
@@ -116,7 +116,7 @@ class StatementParser : public ExpressionParser {
     out.label = unquoted(token, diagnostics_);
   }
 
-  // import STRING [ record ] as NAME
+  // Grammar: import STRING [ record ] as NAME
   bool import(Statement& out) {
     if (peek().kind != Token::Kind::Text) {
       unexpected("the path of a file is missing", {"such as: import \"lib/gears.fathom\" as gears"});
@@ -132,7 +132,7 @@ class StatementParser : public ExpressionParser {
     return expect_word("as", "after the path") && name(out.name, out.name_span, "a name");
   }
 
-  // param NAME [ STRING ] [ record ] = expr, let NAME [ STRING ] = expr
+  // Grammar: param NAME [ STRING ] [ record ] = expr, let NAME [ STRING ] = expr
   bool named(Statement& out) {
     if (!name(out.name, out.name_span, "a name")) return false;
     label(out);
@@ -144,7 +144,7 @@ class StatementParser : public ExpressionParser {
     return equals_sign() && (out.value = expression()) != nullptr;
   }
 
-  // def NAME ( [ NAME [ = expr ] { , NAME [ = expr ] } ] ) = expr
+  // Grammar: def NAME ( [ NAME [ = expr ] { , NAME [ = expr ] } ] ) = expr
   bool definition(Statement& out) {
     if (!name(out.name, out.name_span, "a name") || !expect("(", "after the name")) return false;
     while (!peek().is(")")) {
@@ -158,7 +158,7 @@ class StatementParser : public ExpressionParser {
     return (out.value = expression()) != nullptr;
   }
 
-  // object [ STRING ] [ ... ] expr, camera expr
+  // Grammar: object [ STRING ] [ ... ] expr, camera expr
   bool part(Statement& out) {
     const bool labelled = out.kind == Statement::Kind::Object || out.kind == Statement::Kind::Light;
     if (labelled) {

@@ -1,7 +1,7 @@
-// A scene's text as a tree: recursive descent by the grammar of docs/LANGUAGE.md.
+// Recursive descent parser for texts, by the grammar of docs/LANGUAGE.md.
 //
-// A statement ends where a line begins that is not indented further than the statement's first word; there the parser
-// goes on after an error, so that several are reported.
+// A statement ends at a line that is not indented further than the statement's first word. After an error the parser
+// continues at the next such line, so that it reports several errors.
 // Tested by: tests/compiler/text_parser_test.cpp, tests/golden/diagnostics (E08xx)
 #pragma once
 
@@ -16,7 +16,7 @@ namespace fathom::compiler::text {
 
 inline constexpr int kTextVersion = 1;
 
-// The tree holds parts of the source's text. What is in error is left out of it.
+// Returns the statements without errors. Names in the tree point into the source's text.
 ParsedFile parse(const Source& source, Diagnostics& diagnostics, const Limits& limits);
 
 }  // namespace fathom::compiler::text

@@ -1,4 +1,4 @@
-// The tokens of a text, one after the other, as its parser takes them.
+// Cursor over the tokens of a text, base class of the parsers.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace fathom::compiler::text {
 
-// Words that no name can be.
+// True for words that cannot be names.
 bool is_reserved(std::string_view word);
 
 class TokenCursor {
@@ -19,28 +19,28 @@ class TokenCursor {
   TokenCursor(const Source& source, Diagnostics& diagnostics);
 
  protected:
-  // The next token; an End where a line begins that the statement does not reach to.
+  // Returns the next token, or an End token if the next line no longer belongs to the statement.
   const Token& peek() const;
-  const Token& after() const;  // the one behind it
+  const Token& after() const;  // the token after peek()
   const Token& take();
   bool take_if(std::string_view mark);
   Span before() const;
-  // Whether the statement ends before the next token.
+  // True if the statement ends before the next token.
   bool is_over() const;
 
-  // Take what must come, or report that it is missing.
+  // Consume an expected token, or report that it is missing.
   bool expect(std::string_view mark, const char* where);
   bool expect_word(std::string_view word, const char* where);
   bool name(std::string_view& text, Span& span, const char* what);
-  // Reports the next token.
+  // Reports the next token as unexpected.
   std::nullptr_t unexpected(std::string label, std::vector<std::string> help = {});
   static bool begins_value(const Token& token);
 
   Diagnostics& diagnostics_;
   std::vector<Token> tokens_;
   std::size_t at_ = 0;
-  std::uint32_t column_ = 0;  // of the statement's first word
-  bool inside_ = false;       // of a statement
+  std::uint32_t column_ = 0;  // of the current statement's first word
+  bool inside_ = false;       // true while parsing a statement
 
  private:
   mutable Token stop_{};

@@ -1,8 +1,9 @@
-// What a scene's text says, before anything in it has a value: statements, and the expressions in them.
+// Syntax tree of a text before evaluation: statements, and the expressions in them.
 //
 //     let tooth = box([1, 2, 1]).rotate([0, 30, 0])
 //
-// is a Statement::Let named tooth, of a Call of rotate with two arguments, the first of which is a Call of box.
+// is a Statement::Let named tooth, whose value is a Call of rotate with two arguments, the first of which is a Call
+// of box.
 // docs/LANGUAGE.md has the grammar. Tested by: tests/compiler/text_parser_test.cpp
 #pragma once
 
@@ -19,32 +20,33 @@ namespace fathom::compiler::text {
 struct Expr;
 struct Word;  // a function of the language (frontend/text/parse/vocabulary.h)
 
-// An argument of a call or a field of a record; those without a name are positional.
+// Argument of a call or field of a record. An argument without a name is positional.
 struct Argument {
   std::string_view name;
   Span name_span;
   Expr* value;
 };
 
-// What joins an operand of a row to those before it.
+// Operator in front of an operand of a row.
 struct Joint {
   char mark;                    // + - & * /
-  Span span;                    // of the mark and its blend
-  Expr* blend = nullptr;  // of +{...}: a Record; one field without a name is the width
+  Span span;                    // of the operator and its blend
+  // Blend of +{...}, a Record. A field without a name is the blend width.
+  Expr* blend = nullptr;
 };
 
-// What a name stands for, found before anything is evaluated (frontend/text/parse/names.h).
+// Target of a name, found before evaluation (frontend/text/parse/names.h).
 struct Reference {
   enum class Kind : std::uint8_t { None, Local, Global, Coordinate, Constant, Definition, Objects };
   Kind kind = Kind::None;
-  // A Local's slot, a Global's or Definition's statement, a Coordinate's axis, the module whose Objects it is.
+  // Slot of a Local, statement of a Global or Definition, axis of a Coordinate, or module of Objects.
   std::uint32_t number = 0;
-  double value = 0;          // of a Constant
+  double value = 0;          // for Constant
 };
 
 struct Expr {
   enum class Kind : std::uint8_t {
-    Number,   // number; the name is how it is written
+    Number,   // number; name is its spelling
     Text,     // text
     Truth,    // number: 1 or 0
     Name,     // name
@@ -67,61 +69,61 @@ struct Expr {
     // In lists only:
     For,     // for name in of[0]: of[1]
     Guard,   // if of[0]: of[1]
-    Spread,  // ...of[0]; an argument, too
+    Spread,  // ...of[0]; also allowed as an argument
   };
   Kind kind;
-  std::uint16_t groups = 0;  // parentheses round it
-  std::uint32_t depth = 1;  // levels of expressions in it
+  std::uint16_t groups = 0;  // number of parentheses around the expression
+  std::uint32_t depth = 1;  // levels of nested expressions, including this one
   Span span;
   Span name_span;
-  std::string_view name;  // part of the source's text
+  std::string_view name;  // points into the source's text
   double number = 0;
   std::string text;
   std::vector<Expr*> of;
   std::vector<Argument> arguments;
   std::vector<Joint> joints;
-  // Of the name, and of the slot of what For, Fold and Let declare: of Let the first of as many as it has arguments, of
-  // Fold the result's, followed by the element's.
+  // Target of the name, or slot of the variables that For, Fold and Let declare. Let uses consecutive slots, one per
+  // argument, starting here. Fold uses this slot for the result and the next for the element.
   Reference reference;
-  const Word* word = nullptr;  // of a Call that is of no definition
+  const Word* word = nullptr;  // of a Call without a Definition
 };
 
 struct Statement {
-  // As kStatementWords of lexer.h.
+  // In the order of kStatementWords in lexer.h.
   enum class Kind : std::uint8_t { Import, Param, Let, Def, Object, Light, Camera, Film, Render, Background };
   Kind kind;
-  bool is_spread = false;        // object ...[a, b]: an object each
-  bool has_fields = false;       // param a(...) = 1, with or without any
-  Span span;                     // of its keyword
+  bool is_spread = false;        // object ...[a, b]: each element is an object
+  bool has_fields = false;       // param a(...) = 1, even with empty parentheses
+  Span span;                     // of the keyword
   std::string_view name;         // of Import, Param, Let and Def
-  Span name_span;                // of the name, or of the label when there is no name
-  std::string label;             // in quotes, of Import the path; empty when there is none
-  std::vector<Argument>
-      fields;  // of Def its parameters and their defaults, of Param min, max and doc, of Import values
+  Span name_span;                // of the name, or of the label if there is no name
+  std::string label;             // string in quotes; the path for Import; empty without one
+  std::vector<Argument> fields;  // Def: parameters and their defaults. Param: min, max and doc. Import: values.
   Expr* value = nullptr;
-  std::uint32_t slots = 0;   // of locals, when it is evaluated
-  std::uint32_t module = 0;  // that it stands in
-  std::uint32_t target = 0;  // of Import: the module that it names; 0 when there is none
+  std::uint32_t slots = 0;   // number of locals during evaluation
+  std::uint32_t module = 0;  // the statement's module
+  std::uint32_t target = 0;  // Import: the imported module; 0 without one
 };
 
-// A file by itself. Expressions live as long as it does.
+// A parsed file. Expressions live as long as the ParsedFile.
 struct ParsedFile {
   std::vector<Statement> statements;
   std::deque<Expr> expressions;
   std::size_t tokens = 0;
 };
 
-// A file as it is imported: once for all imports without values for its parameters, and once for each with some.
+// Module of an imported file: one module for all imports without parameter values, and one for each import with
+// values.
 struct Module {
   const Source* file;
-  std::uint32_t begin = 0, end = 0;  // its statements
-  std::uint32_t values = 0;          // the import statement that has its parameters' values
+  std::uint32_t begin = 0, end = 0;  // range of its statements
+  std::uint32_t values = 0;          // import statement with the parameter values
   bool has_values = false;
-  bool again = false;  // another module is of the same file: what is wrong in it was said
+  bool again = false;  // an earlier module has the same file, so its errors are already reported
   std::size_t tokens = 0;
 };
 
-// A file, module 0, and those that it imports.
+// Modules of a scene: module 0 is the scene's file, and the others are imported.
 struct Tree {
   std::vector<Statement> statements;
   std::vector<Module> modules;

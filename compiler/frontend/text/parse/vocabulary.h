@@ -1,5 +1,5 @@
-// The functions of the language: one word for each row of the tables of nodes, materials, lights, backgrounds,
-// patterns, cameras and formulas, and the few that the language has of its own.
+// Functions of the language: one word per row of the tables of nodes, materials, lights, backgrounds, patterns,
+// cameras and formulas, and a few built-in functions.
 // Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp
 #pragma once
 
@@ -15,8 +15,9 @@ namespace fathom::compiler::text {
 enum class Builtin : std::uint8_t { None, Len, Dot, Normalize, Random, Require, Show };
 enum class Placement : std::uint8_t { None, Scale, Rotate, Translate, Material, Name };
 
-// What a word before `(` can mean. It has several meanings when tables have it in common: `round` is of nodes and of
-// numbers, which the first argument tells apart; `gradient` is a background and a pattern, which the place tells.
+// Meanings of a word before `(`. A word that occurs in several tables has several meanings. `round` applies to nodes
+// and to numbers, and the first argument decides. `gradient` is a background and a pattern, and the place of use
+// decides.
 struct Word {
   std::string_view text;
   const NodeSpec* node = nullptr;
@@ -32,11 +33,11 @@ struct Word {
   bool is_record() const { return material || light || background || pattern || camera; }
 };
 
-const Word* find_word(std::string_view text);      // nullptr when there is none
+const Word* find_word(std::string_view text);      // nullptr if the word is unknown
 const std::vector<std::string_view>& all_words();  // sorted
 
-// The properties of a node that are given without a name, in this order: its child, and what it cannot do without.
-// Combinators take operands in their place.
+// Returns the properties that a node takes without a name, in order: its child, then its required properties.
+// Combinators take operands instead.
 const std::vector<std::string_view>& positional(const NodeSpec& node);
 
 }  // namespace fathom::compiler::text
