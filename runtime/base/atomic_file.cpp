@@ -17,7 +17,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr const char* kOpenFiles = "/proc/self/fd";
-constexpr std::string_view kBeside = ".fathom-";  // short, for a name may be as long as names can be
+constexpr std::string_view kBeside = ".fathom-";  // short, because the target's name may have the maximum length
 
 std::string reason() { return std::strerror(errno); }
 
@@ -27,14 +27,14 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// What a new file gets from any other program, not only its owner's rights.
+// Returns the permissions that a new file gets from any other program, not only its owner's.
 mode_t usual_access() {
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return 0666 & ~mask;
 }
 
-// The file itself, where links lead to it; nothing where they lead nowhere.
+// Follows links to the file itself. Returns nothing when a link leads nowhere.
 std::optional<std::string> target_of(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_symlink(path, error)) return path;
@@ -42,7 +42,7 @@ std::optional<std::string> target_of(const std::string& path) {
   return error ? std::nullopt : std::optional(target.string());
 }
 
-// Calls make(name) with names in the folder until it succeeds or fails for another reason than that there is one.
+// Calls make(name) with names in the folder until it succeeds, or fails for another reason than an existing file.
 template <class Make>
 std::string find_name(const std::string& folder, const Make& make) {
   for (int i = 0; i < 1000; ++i) {
@@ -53,19 +53,20 @@ std::string find_name(const std::string& folder, const Make& make) {
   return "";
 }
 
-// A file of that name, locked for as long as it is open, by which it is known not to be left behind; -1 with errno.
+// Creates a file of that name and locks it while it is open, so that no program takes it for left behind. Returns -1
+// with errno on failure.
 int create_locked(const std::string& name) {
   const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file < 0) return -1;
   struct stat status {};
-  // Without locks nothing is ever taken for left behind.
+  // Without locks no file is ever taken for left behind.
   if (::flock(file, LOCK_EX) != 0 || ::fstat(file, &status) != 0 || status.st_nlink > 0) return file;
-  ::close(file);  // somebody took it for that before it was locked
+  ::close(file);  // another program took it for left behind before the lock
   errno = EEXIST;
   return -1;
 }
 
-// Whether the name is one of find_name().
+// True if the name is one of find_name().
 bool is_beside(std::string_view name) {
   if (!name.starts_with(kBeside)) return false;
   name.remove_prefix(kBeside.size());
@@ -76,7 +77,8 @@ bool is_beside(std::string_view name) {
   return dash != std::string_view::npos && is_number(name.substr(0, dash)) && is_number(name.substr(dash + 1));
 }
 
-// Whether the name still is the open file's: whoever locked it may have renamed it since, and begun another.
+// True if the name still is the open file's. The program that held the lock may have renamed its file since, and
+// begun another of that name.
 bool is_name_of(const char* name, int file) {
   struct stat open {};
   struct stat named {};
@@ -103,7 +105,7 @@ FileStamp to_stamp(const struct stat& status) {
 constexpr const char* kNowhere = "it is a link that leads nowhere";
 constexpr const char* kIrregular = "it is not a regular file";
 
-// So that the new name outlives a loss of power. The file is there either way: what cannot be synced is no failure.
+// Makes the new name survive a loss of power. The file exists either way, so a failure to sync is ignored.
 void sync_folder(const std::string& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -145,7 +147,7 @@ bool AtomicFile::open_beside() {
   return file_ >= 0;
 }
 
-// Renaming needs a name to rename.
+// Gives the file a name, which renaming needs.
 bool AtomicFile::name_beside() {
   if (!beside_.empty()) return true;
   const std::string file = fmt::format("{}/{}", kOpenFiles, file_);
@@ -155,7 +157,8 @@ bool AtomicFile::name_beside() {
   return !beside_.empty() || copy_beside();
 }
 
-// Where a file without a name can be made but not be given one: some network and layered file systems.
+// Copies the file to one with a name, where the system can make a file without a name but not name it later: some
+// network and layered file systems.
 bool AtomicFile::copy_beside() {
   const int from = file_;
   struct stat status {};
@@ -225,7 +228,7 @@ std::optional<std::string> AtomicFile::commit(const std::function<bool()>& may_r
   if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
   struct stat status {};
   if (::fstat(file_, &status) == 0) stamp_ = to_stamp(status);
-  ::close(std::exchange(file_, -1));  // not before: the name is known to be in use by the lock
+  ::close(std::exchange(file_, -1));  // not before: the lock shows that the name is in use
   if (!problem_) sync_folder(folder_of(target_));
   return problem_;
 }

@@ -1,9 +1,9 @@
-// Files that appear whole or not at all: written beside their target, synced, and renamed. Where the file system can,
-// what is written has no name until it is whole, so a program that is killed leaves nothing behind but for one that
-// is killed between naming and renaming. What it left there, `.fathom-PID-N`, goes when the next one asks whether it
-// can write in that folder.
+// Files that appear whole or not at all: the bytes go to a temporary file in the target's folder, which is synced and
+// renamed. If the file system can, the temporary file has no name until it is whole. A program that is killed then
+// leaves nothing behind, except between naming and renaming. The next check_file_path() in that folder removes the
+// file that was left there, `.fathom-PID-N`.
 //
-// A link's target is what is written; a file that is replaced leaves its permissions to the new one.
+// Writing to a link writes the link's target. A replaced file leaves its permissions to the new one.
 //
 //     AtomicFile file(path);
 //     file.write(bytes);
@@ -23,10 +23,10 @@
 
 namespace fathom::runtime {
 
-// Which file lies under a name, and since when: one that was put there later differs.
+// Identifies a file and its last change. A file put under the same name later has another stamp.
 struct FileStamp {
   std::uint64_t device = 0, file = 0;
-  std::int64_t seconds = 0, nanoseconds = 0;  // when it was written last
+  std::int64_t seconds = 0, nanoseconds = 0;  // time of the last change
 
   bool operator==(const FileStamp&) const = default;
 };
@@ -35,46 +35,46 @@ std::optional<FileStamp> stamp_of(const std::string& path);  // nothing where th
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
-  // No file: what is written is put into `memory`. Messages call it `name`.
+  // Writes into `memory` instead of a file. Messages call it `name`.
   AtomicFile(std::string name, std::vector<std::uint8_t>& memory) : path_(std::move(name)), memory_(&memory) {}
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  // Each is false after the first failure.
+  // Each returns false after the first failure.
   bool write(std::span<const std::uint8_t> bytes);
   bool seek(std::uint64_t position);  // from the file's beginning
   std::uint64_t position() const { return position_; }
-  const std::optional<std::string>& problem() const { return problem_; }  // the first failure, for people
-  const std::string& name() const { return path_; }                       // for people
+  const std::optional<std::string>& problem() const { return problem_; }  // the first failure, for messages
+  const std::string& name() const { return path_; }                       // for messages
 
-  // The reason when the file could not be written. `may_replace` is asked last, once renaming is all that is left to
+  // Returns the reason when the file could not be written. Calls `may_replace` last, when only renaming is left to
   // do.
   [[nodiscard]] std::optional<std::string> commit(const std::function<bool()>& may_replace = {});
-  // Of what commit() put there, whatever lies there now.
+  // Returns the stamp of the file that commit() put there, whatever lies there now.
   const std::optional<FileStamp>& stamp() const { return stamp_; }
 
  private:
-  bool give_up(std::string_view why);  // false
+  bool give_up(std::string_view why);  // returns false
   bool open_beside();
   bool name_beside();
   bool copy_beside();
 
-  std::string path_;    // for people
-  std::string target_;  // the same with links followed
-  std::string beside_;  // the name of what is written; empty: it has none yet
+  std::string path_;    // for messages
+  std::string target_;  // path_ with links followed
+  std::string beside_;  // name of the temporary file; empty while it has none
   int file_ = -1;
-  std::vector<std::uint8_t>* memory_ = nullptr;  // in place of a file
+  std::vector<std::uint8_t>* memory_ = nullptr;  // instead of a file
   std::uint64_t position_ = 0;
   std::optional<std::string> problem_;
   std::optional<FileStamp> stamp_;
 };
 
-// Whether a file can be written under this name, as far as can be known by trying: another beside it is created and
-// removed. The reason when not; to be asked before the work that makes it.
+// Tests if a file can be written under this name, by creating and removing another file in its folder. Returns the
+// reason if not. Callers ask before the work that makes the file.
 std::optional<std::string> check_file_path(const std::string& path);
 
-// The bytes as a file; the reason when it cannot be done, and then the target is as it was.
+// Writes the bytes to a file. Returns the reason when that fails, and then the target is as it was.
 [[nodiscard]] std::optional<std::string> write_file(const std::vector<std::uint8_t>& bytes, const std::string& path);
 
 }  // namespace fathom::runtime

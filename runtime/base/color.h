@@ -5,7 +5,7 @@
 
 namespace fathom::runtime {
 
-// The Y of CIE XYZ. Source: IEC 61966-2-1:1999.
+// Returns the Y of CIE XYZ. Source: IEC 61966-2-1:1999.
 inline float luminance(glm::vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 }  // namespace fathom::runtime

@@ -8,7 +8,7 @@
 namespace fathom::runtime {
 namespace {
 
-// A part of a row of pixels whose samples are alike: [x0, x1), and their ranges in order, none touching the next.
+// A part of a row of pixels with equal samples: [x0, x1), and the ranges in order, none touching the next.
 struct PixelColumn {
   int x0, x1;
   std::vector<SampleRange> ranges;
@@ -29,8 +29,8 @@ std::vector<SampleRange> joined(std::vector<SampleRange> ranges) {
   return result;
 }
 
-// Calls use(from, to, blocks) for the stretches of one axis between the blocks' sides, each with the blocks that it
-// lies in; stretches in none are left out. Begin and End give a block's sides.
+// Calls use(from, to, blocks) for the intervals of one axis between the blocks' sides, each with the blocks that
+// contain it. Intervals in no block are left out. Begin and End give a block's sides.
 template <class Begin, class End, class Use>
 void sweep(std::vector<SampleBlock> blocks, const Begin& begin, const End& end, const Use& use) {
   std::vector<int> sides;
@@ -69,7 +69,7 @@ std::vector<PixelColumn> columns_of(const std::vector<SampleBlock>& row) {
   return columns;
 }
 
-// `from` without what it has in common with `hole`, which lies in it.
+// Adds the parts of `from` outside of `hole` to `pieces`. `hole` lies in `from`.
 void cut(const SampleBlock& from, const SampleBlock& hole, std::vector<SampleBlock>& pieces) {
   const auto keep = [&](PixelRect area, SampleRange samples) {
     if (area.width() > 0 && area.height() > 0 && samples.first < samples.last) pieces.push_back({area, samples});
@@ -86,14 +86,15 @@ void cut(const SampleBlock& from, const SampleBlock& hole, std::vector<SampleBlo
 
 using Blocks = std::span<const SampleBlock>;
 
-// The first blocks, as many as have a side in common with the very first.
+// Returns the leading blocks that have a side in common with the first block.
 Blocks run_of(Blocks blocks, int PixelRect::*side) {
   std::size_t count = 1;
   while (count < blocks.size() && blocks[count].area.*side == blocks[0].area.*side) ++count;
   return blocks.first(count);
 }
 
-// Whether they are columns in order, apart and, where two touch, not alike; each of ranges in order and apart.
+// True if the row's columns are in order and disjoint, touching columns differ, and the ranges of each column are in
+// order and apart.
 bool is_tidy_row(Blocks row) {
   Blocks before;
   while (!row.empty()) {
@@ -114,7 +115,7 @@ bool is_tidy_row(Blocks row) {
   return true;
 }
 
-// Whether neither the tidy block `at` nor any that follows has anything in common with the piece.
+// True if the piece intersects neither the tidy block `at` nor any later block.
 bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
   const PixelRect &a = piece.area, &b = at.area;
   if (a.y1 <= b.y0) return true;
@@ -122,15 +123,15 @@ bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
   return a.x1 <= b.x0 || (a.x0 >= b.x0 && a.x1 <= b.x1 && piece.samples.last <= at.samples.first);
 }
 
-// Calls use() with those of the tidy blocks that have something in common with `block`, in order, while it says true.
-// What is in order is skipped by bisection: rows by y1, columns by x1, ranges by their ends.
+// Calls use() with each of the tidy blocks that intersects `block`, in order, while use() returns true. Bisection
+// skips the blocks before: rows by y1, columns by x1, ranges by their ends.
 template <class Use>
 void each_common(Blocks tidy, const SampleBlock& block, const Use& use) {
   const auto skip = [](Blocks from, const auto& before) {
     return from.subspan(
         static_cast<std::size_t>(std::partition_point(from.begin(), from.end(), before) - from.begin()));
   };
-  const auto split = [&](Blocks& from, const auto& in) {  // what is `in` of the front
+  const auto split = [&](Blocks& from, const auto& in) {  // takes the leading blocks that are `in`
     const Blocks rest = skip(from, in), front = from.first(from.size() - rest.size());
     from = rest;
     return front;

@@ -1,9 +1,10 @@
-// Which samples of which pixels a film has: blocks of pixels times samples.
+// Coverage: which samples of which pixels a film has, as blocks of pixels times samples.
 //
-// A block is a rectangle of pixels and a range of their samples: what a unit of work takes, what a sample range or a
-// crop asks for, and what two films must not both have. tidy() brings blocks into the one form that depends only on
-// what they cover: rows of the picture as high as they are alike, cut into columns as wide as they are alike, each
-// with its ranges. So films that were made in different ways and have the same samples say so in the same bytes.
+// A block is a rectangle of pixels and a range of their samples. A unit of work takes a block, a sample range or a
+// crop asks for a block, and no block may be in two films that are merged. tidy() brings blocks into a canonical
+// form, which depends only on the samples they cover: rows of the image as high as they are alike, cut into columns
+// as wide as they are alike, each with its ranges. Films with the same samples therefore have the same bytes, however
+// they were made.
 //
 //     Coverage covered;
 //     covered.add({{0, 0, 16, 16}, {0, 8}});
@@ -37,32 +38,32 @@ struct SampleBlock {
   bool operator==(const SampleBlock&) const = default;
 };
 
-// What two blocks have in common; nothing when they are apart.
+// Returns the intersection of two blocks; nothing when they are disjoint.
 std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b);
 
 class Coverage {
  public:
-  // tidy() is due before anything is asked.
+  // Every query needs a tidy() after the last add().
   void add(const SampleBlock& block) { blocks_.push_back(block); }
   void add(const Coverage& other);
   void tidy();
-  bool is_tidy() const;  // in one look at each block, which may be any
+  bool is_tidy() const;  // looks once at each block; any blocks are allowed
 
   const std::vector<SampleBlock>& blocks() const { return blocks_; }
   bool empty() const { return blocks_.empty(); }
   std::uint64_t size() const;               // samples of all pixels together
-  std::vector<SampleRange> ranges() const;  // of the samples that some pixel has, in order and apart
+  std::vector<SampleRange> ranges() const;  // samples that some pixel has, in order and disjoint
 
-  // What of the block is not covered, in blocks that are apart.
+  // Returns the part of the block that is not covered, as disjoint blocks.
   std::vector<SampleBlock> missing(const SampleBlock& block) const;
   bool covers(const SampleBlock& block) const { return missing(block).empty(); }
-  // Some block that both have; nothing when they are apart.
+  // Returns some block that both cover; nothing when they are disjoint.
   std::optional<SampleBlock> overlap(const Coverage& other) const;
 
   bool operator==(const Coverage&) const = default;
 
  private:
-  std::vector<SampleBlock> blocks_;  // in order of y0, then x0, then samples once they are tidy
+  std::vector<SampleBlock> blocks_;  // ordered by y0, then x0, then samples, once they are tidy
 };
 
 }  // namespace fathom::runtime

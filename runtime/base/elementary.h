@@ -1,5 +1,5 @@
-// Elementary functions in plain additions and multiplications: the same bits on every machine, which glibc's sinf,
-// expf and powf do not give (they take other paths on CPUs with fused multiply-add).
+// Elementary functions in plain additions and multiplications. They give the same bits on every machine. glibc's
+// sinf, expf and powf do not, because they take other paths on CPUs with fused multiply-add.
 //
 // Tested by: tests/runtime/base/elementary_test.cpp (error bounds against libm in double)
 #pragma once
@@ -25,7 +25,7 @@ inline SinCos sincos_turn(float u) {
   const float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * x + x;
   const float c =
       ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1;
-  // No branch on the quadrant: nothing foretells it.
+  // Avoids a branch on the quadrant, which no CPU can predict.
   const float pair[2] = {s, c};
   const auto q = static_cast<std::uint32_t>(quadrant);
   const auto signed_by = [](float magnitude, std::uint32_t bit) {
@@ -38,7 +38,7 @@ struct SinCosReal {
   double sin, cos;
 };
 
-// Sine and cosine of 2 pi u for |u| <= 2^20; absolute error <= 1e-15 beside that of u.
+// Sine and cosine of 2 pi u for |u| <= 2^20; absolute error <= 1e-15 in addition to that of u.
 // Reduced to a quarter turn, then Taylor's series on [-pi/4, pi/4], whose terms after x^17/17! are below 2^-60.
 inline SinCosReal sincos_turn(double u) {
   const double quarters = 4 * u, nearest = std::floor(quarters + 0.5);
@@ -101,7 +101,7 @@ inline float log(float x) {
     x *= 0x1p24f;
     n = -24;
   }
-  // The bits of sqrt(1/2) as zero of the exponent's steps.
+  // Subtracting the bits of sqrt(1/2) makes the exponent step there.
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x) - 0x3f3504f3u;
   n += static_cast<std::int32_t>(bits) >> 23;
   const float m = std::bit_cast<float>((bits & 0x007fffffu) + 0x3f3504f3u);
@@ -126,8 +126,8 @@ inline double tangent(double x) {
   return sine / cosine;
 }
 
-// x^(1/2.4) for x in (0,1]; relative error <= 1e-13. x^(5/12) is the cube root of the fourth root of x^5; the cube
-// root by Newton's iteration y <- (2y + a/y^2)/3, from y = 1, which lies above it.
+// x^(1/2.4) for x in (0,1]; relative error <= 1e-13. x^(5/12) is the cube root of the fourth root of x^5. Newton's
+// iteration y <- (2y + a/y^2)/3 gives the cube root, from y = 1, which lies above the root.
 inline double power_5_12(double x) {
   const double a = std::sqrt(std::sqrt(x * x * x * x * x));
   double y = 1;
@@ -157,8 +157,8 @@ inline double log2(double x) {
   return exponent + s * sum * 2.8853900817779268;  // 2 / ln 2
 }
 
-// 2^x in double for |x| <= 1000, exact for whole x; relative error <= 1e-15. The whole part is the exponent; of the
-// rest the exponential's Taylor series, whose terms fall below 2^-53 after the 13th.
+// 2^x in double for |x| <= 1000, exact for whole x; relative error <= 1e-15. The whole part of x is the exponent. The
+// rest goes into the exponential's Taylor series, whose terms fall below 2^-53 after the 13th.
 inline double exp2(double x) {
   const auto n = static_cast<std::int64_t>(x + (x < 0 ? -0.5 : 0.5));
   const double r = (x - static_cast<double>(n)) * 0.6931471805599453;
@@ -170,14 +170,14 @@ inline double exp2(double x) {
 // x^y for x >= 0, finite, and |y log2 x| <= 1000; relative error <= 1e-15 (1 + |y log2 x|). 0 for x = 0.
 inline double power(double x, double y) { return x > 0 ? exp2(y * log2(x)) : 0; }
 
-// Linear light to the sRGB signal, both clamped to [0,1]. Source: IEC 61966-2-1:1999. NaN becomes 0.
+// Converts linear light to the sRGB signal, both clamped to [0,1]. NaN becomes 0. Source: IEC 61966-2-1:1999.
 inline double srgb_encode(double linear) {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 1;
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * power_5_12(linear) - 0.055;
 }
 
-// The other way, for signals in [0,1].
+// Converts an sRGB signal in [0,1] to linear light.
 inline double srgb_decode(double signal) {
   return signal <= 0.04045 ? signal / 12.92 : power((signal + 0.055) / 1.055, 2.4);
 }

@@ -1,6 +1,6 @@
-// Whether files have changed, by their time of modification and size: what every system and file system can tell.
-// Who saves a file may write it in steps, and the first step often is to empty it: a change counts once nothing more
-// has happened from one look to the next.
+// Detects changes of files by their time of modification and size, which every system and file system can tell. A
+// program may save a file in steps, and the first step often empties the file. A change therefore counts once nothing
+// more has happened from one look to the next.
 // Tested by: tests/runtime/base/file_watch_test.cpp, tests/runtime/cli/cli_watch_test.cpp
 #pragma once
 
@@ -13,21 +13,21 @@
 
 namespace fathom::runtime {
 
-// How long who waits should let pass before each look.
+// Time between looks, for callers that wait.
 inline constexpr std::chrono::milliseconds kWatchInterval{200};
 
 class FileWatch {
  public:
   explicit FileWatch(const std::vector<std::string>& paths);
 
-  // Watches one more file, which may be away for good; nothing when it is watched.
+  // Watches one more file, which may be missing for good. Does nothing when the file is watched already.
   void add(const std::string& path);
 
-  // A look: whether one of the files is another than when a change settled last (the first time, than at the
-  // beginning), if only for a while. One that is away, as while an editor saves, has not changed until it is back.
+  // Looks at the files. True if some file has changed, if only for a while, since a change settled last (the first
+  // time, since the beginning). A missing file, as while an editor saves, has not changed until it is back.
   bool changed();
-  // A look: whether there is such a change, every file is there, and none is another than at the look before. The
-  // files as they are now are what the next change is from.
+  // Looks at the files. True if there is such a change, no needed file is missing, and no file has changed since the
+  // look before. The next change then counts from the files as they are now.
   bool settled();
 
  private:
@@ -39,9 +39,9 @@ class FileWatch {
   struct Watched {
     std::string path;
     std::optional<Stamp> seen;
-    bool is_needed;  // nothing is settled while it is away
+    bool is_needed;  // nothing settles while it is missing
   };
-  // What a look finds: whether files are others than at the look before, and whether one is away.
+  // Result of a look: `other` when some file has changed since the look before, `away` when a needed file is missing.
   struct Look {
     bool other = false, away = false;
   };

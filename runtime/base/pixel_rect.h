@@ -1,4 +1,4 @@
-// A rectangle of pixels: half open, the picture's top left pixel at (0, 0).
+// A rectangle of pixels: half open, with the image's top left pixel at (0, 0).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ struct PixelRect {
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
   std::size_t pixels() const { return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()); }
-  // Where the pixel is in [y][x] rows of this rectangle.
+  // Returns the pixel's index in [y][x] rows of this rectangle.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x - x0);
   }

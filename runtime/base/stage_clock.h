@@ -1,10 +1,10 @@
-// Where the time of a render goes: a clock that charges what passes to the stage under way.
+// Splits the time of a render into stages: a clock that charges the elapsed time to the current stage.
 //
-// A stage is entered for a batch of rays, not for each ray: reading the clock takes as long as a few field
-// evaluations. A clock that was not started reads nothing. One per thread.
+// A stage is entered per batch of rays, not per ray: reading the clock takes as long as a few field evaluations. A
+// clock that was not started reads no time. Each thread has one.
 //
 //     clock.start(Stage::March);
-//     clock.enter(Stage::Normals);   // what passed until here was marching
+//     clock.enter(Stage::Normals);   // the time until here was marching
 //     clock.stop();
 //
 // Tested by: tests/runtime/base/stats_test.cpp
@@ -19,12 +19,12 @@ namespace fathom::runtime {
 
 enum class Stage : std::uint8_t { March, Resolve, Normals, Shading, Film };
 
-// In the order of the enum.
+// Names of the stages, in the order of the enum.
 inline constexpr const char* kStages[] = {
-    "march",    // rays moved on together
+    "march",    // rays marched together
     "resolve",  // the search in double (certify.h)
     "normals",  // surfaces at the hits
-    "shading",  // materials, and the rays that set out
+    "shading",  // materials, and setting up new rays
     "film",     // paths added to their pixels
 };
 
@@ -38,7 +38,7 @@ class StageClock {
     since_ = Clock::now();
   }
 
-  // Ends the stage under way, which is returned.
+  // Ends the current stage and returns it.
   Stage enter(Stage next) {
     const Stage before = stage_;
     if (on_ && next != before) charge();

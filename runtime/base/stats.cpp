@@ -9,7 +9,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Every count, in the order of the table: the name in JSON, the words in the table, the value.
+// Every count, in the order of the table: JSON name, label in the table, value.
 struct Row {
   const char* name;
   const char* words;
@@ -48,7 +48,7 @@ std::uint64_t& count_of(Stats& stats, const Row& row) {
   return row.count ? stats.*row.count : stats.march.*row.march_count;
 }
 
-// What follows from the counts and the clock.
+// Values derived from the counts and the clock.
 struct Rate {
   const char* name;
   const char* words;
@@ -64,8 +64,8 @@ constexpr Rate kRates[] = {
 
 double ratio(std::uint64_t a, std::uint64_t b) { return b > 0 ? static_cast<double>(a) / static_cast<double>(b) : 0; }
 
-// The stages' seconds and shares of all threads' time. What is left is a thread's time before its first ray and
-// after its last.
+// Prints each stage's seconds and its share of all threads' time. The rest is a thread's time before its first ray
+// and after its last.
 std::string stage_table(const Stats& stats) {
   std::string text;
   const double all = stats.seconds * stats.threads;
@@ -118,7 +118,7 @@ double Stats::utilisation() const {
 
 double Stats::rays_per_second() const { return seconds > 0 ? static_cast<double>(march.rays) / seconds : 0; }
 
-// ru_maxrss of getrusage() would not do: a program that starts another leaves it its own.
+// ru_maxrss of getrusage() would not do: a program inherits it from the program that starts it.
 std::uint64_t peak_memory() {
   constexpr std::string_view kKey = "VmHWM:";  // proc(5); KiB
   std::ifstream status("/proc/self/status");

@@ -1,4 +1,4 @@
-// A rectangle of pixels cut into squares, which threads take one after another.
+// A rectangle of pixels cut into square tiles, which threads take one after another.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace fathom::runtime {
 
-// The side that cuts so many pixels into enough tiles for `threads`: `most`, or less when the picture is small. The
-// last tiles keep some threads waiting for one tile's time.
+// Returns the side of tiles: `most`, or less where a small image would not give each thread kTilesPerThread tiles. At
+// the end of the image some threads wait for the time of one tile.
 inline constexpr int kTilesPerThread = 64;
 inline int tile_side(int width, int height, int most, int threads) {
   const auto pieces = [](int length, int side) { return (length + side - 1) / side; };
@@ -24,7 +24,7 @@ inline int tile_side(int width, int height, int most, int threads) {
   return side;
 }
 
-// Tiles in rows from the top; the last of a row or column may be cut short. take() is safe from any thread.
+// Tiles in rows from the top. The last tile of a row or column may be cut short. Any thread may call take().
 class Tiles {
  public:
   Tiles(PixelRect area, int side) : area_(area), side_(side) {}

@@ -16,7 +16,8 @@ namespace {
 
 using MeasuredRows = std::vector<RayMeasurement>;
 
-// What tells a row's method from the others' but for the precision: rows alike in it share a colour.
+// Suffix that tells variants of one method apart: relaxation and step limit, where they vary among the rows. Rows
+// that differ only in precision share method and suffix, and so a colour.
 std::string variant_of(const RayMeasurement& row, std::span<const RayMeasurement> rows) {
   bool relaxed = false, limited = false;
   for (const RayMeasurement& other : rows) {
@@ -50,7 +51,7 @@ std::string tooltip_of(const RayMeasurement& row, const std::string& name) {
   return text + fmt::format("contacts {} ppm; {} rays", readable(row.contact_ppm), row.rays);
 }
 
-// The colours of a scene's methods, the same in every panel.
+// Assigns colours to the methods of one scene, the same in every panel.
 class Colors {
  public:
   explicit Colors(const MeasuredRows& rows) : rows_(rows) {
@@ -61,7 +62,7 @@ class Colors {
     }
   }
 
-  // The first colour is the default's; where there are more methods than colours, the next round is dashed.
+  // The default has the first colour. Once all colours are taken, they repeat with dashed lines.
   void paint(PlotSeries& series, const RayMeasurement& row) const {
     const std::string variant = variant_of(row, rows_);
     if (has_own_color(row)) {

@@ -1,8 +1,9 @@
-// Chart A, rays: what a ray costs against how far off its hit is, a panel for each class of rays.
+// Chart A, rays: cost per ray against the error of the hit distance, one panel per ray class.
 //
-// A polyline is a method in one precision, its points the tolerances eps; variants by relaxation or by a limit of
-// steps are polylines of their own. f32 has solid markers, f64 hollow ones. The staircase is reliable_front() and
-// rings mark on_pareto_front() (runtime/chart/pareto.h): where the default is on the front, it is on the staircase.
+// A polyline is one method in one precision, and its points are the tolerances eps. Variants by relaxation or step
+// limit are polylines of their own. Markers are solid for f32 and hollow for f64. The staircase is reliable_front()
+// and rings mark on_pareto_front() (runtime/chart/pareto.h): if the default is on the front, it is also on the
+// staircase.
 // Tested by: tests/runtime/chart/chart_charts_test.cpp
 #pragma once
 
@@ -14,12 +15,13 @@
 
 namespace fathom::runtime {
 
-// The rows of `scene` as SVG; camera, bounce and grazing first, in this order, other classes as they come.
+// Returns the chart of the rows of `scene` as SVG. The panels are camera, bounce and grazing rays in this order, then
+// other ray classes in order of first appearance.
 std::string chart_a(std::span<const RayMeasurement> rows, const std::string& scene, Cost cost,
                     const Provenance& provenance);
 
-// How a row is called in charts and tables: "sphere tracing f32", with relaxation and steps only where the rows have
-// the method in several.
+// Returns the row's name in charts and tables, for instance "sphere tracing f32". The name has relaxation and step
+// limit only where they vary among the method's rows.
 std::string name_of(const RayMeasurement& row, std::span<const RayMeasurement> rows);
 
 }  // namespace fathom::runtime

@@ -15,7 +15,7 @@
 namespace fathom::runtime {
 namespace {
 
-// The relMSE that a light chart says the time to.
+// The relMSE to which the light chart's names give the time.
 constexpr double kGoal = 1e-3;
 
 std::string slope_of(const ImageCurve& curve) {
@@ -35,7 +35,7 @@ std::string name_by_light(const ImageCurve& curve) {
   return std::isnan(seconds) ? name : name + fmt::format(", {} after {} s", scientific(kGoal), readable(seconds));
 }
 
-// What a chart of pictures shows: the curves that differ from the default in one thing alone.
+// Selects the curves of one image chart, those that differ from the default in one respect only, and names them.
 struct ImageChart {
   const char* title;
   bool (*shows)(const ImageCurve& curve);
@@ -62,7 +62,7 @@ std::string tooltip_of(const ImageMeasurement& row) {
                      readable(row.relmse_trimmed_med), readable(row.floor));
 }
 
-// The rows of one curve by samples.
+// Returns the rows of one curve, ascending in samples per pixel.
 std::vector<ImageMeasurement> points_of(const ImageCurve& curve, std::span<const ImageMeasurement> rows) {
   const auto key = [](const auto& of) {
     return std::tie(of.scene, of.method, of.precision, of.eps, of.sampler, of.lights);
@@ -89,7 +89,7 @@ PlotSeries series_of(const ImageCurve& curve, std::span<const ImageMeasurement> 
       point.y_range = Range{row.relmse_p05, row.relmse_p95};
       series.level = row.floor;
     }
-    // The samples are alike on all curves: labels on one say it.
+    // All curves have the same sample counts, so the labels on one curve suffice.
     if (series.emphasised) point.label = fmt::format("{} spp", row.spp);
     point.tooltip = tooltip_of(row);
     series.points.push_back(std::move(point));
@@ -97,7 +97,7 @@ PlotSeries series_of(const ImageCurve& curve, std::span<const ImageMeasurement> 
   return series;
 }
 
-// The first colour is the default's; where there are more curves than colours, the next round is dashed.
+// The default has the first colour. Once all colours are taken, they repeat with dashed lines.
 void paint(std::vector<PlotSeries>& all) {
   std::size_t others = 0;
   for (PlotSeries& series : all) {

@@ -1,10 +1,10 @@
-// Chart B, pictures: how long a picture takes against how far it is from the reference, relMSE.
+// Chart B, images: render time against the error of the image, relMSE to the reference.
 //
-// A polyline is a method in one precision with one eps, its points the numbers of samples per pixel; the second panel
-// is without the worst 0.1 % of the pixels. Where a curve's slope is given, it is fitted to all its points. A dashed
-// line is a curve's floor, its bias: more samples lead no further down. Of k seeds a floor below 1/k of the curve's
-// last point cannot be seen; what is drawn is the floor at the most samples. Tested by:
-// tests/runtime/chart/chart_charts_test.cpp
+// A polyline is one method in one precision with one eps, and its points are the numbers of samples per pixel. The
+// second panel excludes the worst 0.1 % of the pixels. A slope in a curve's name is a fit to all its points. A dashed
+// line is a curve's floor, its bias: more samples do not reduce the error any further. With k seeds, a floor below
+// 1/k of the curve's last point is not measurable. The chart draws the floor at the highest number of samples.
+// Tested by: tests/runtime/chart/chart_charts_test.cpp
 #pragma once
 
 #include <span>
@@ -14,11 +14,11 @@
 
 namespace fathom::runtime {
 
-// The rows of `scene` as SVG: those with the default's sampler and way to find light.
+// Returns the chart of the rows of `scene` as SVG, only rows with the default sampler and light sampling.
 std::string chart_b(std::span<const ImageMeasurement> rows, const std::string& scene, const Provenance& provenance);
 
-// Those with the default's method: a curve is a sampler and a way to find light, and its name says the time to a
-// relMSE of 1e-3 by the fitted law.
+// Returns the chart of rows with the default method. A curve is one sampler with one kind of light sampling, and its
+// name gives the time to a relMSE of 1e-3 by the fitted power law.
 std::string chart_light(std::span<const ImageMeasurement> rows, const std::string& scene,
                         const Provenance& provenance);
 

@@ -18,7 +18,7 @@ constexpr Rgb kViridis[] = {{0x44, 0x01, 0x54}, {0x48, 0x25, 0x76}, {0x41, 0x44,
                             {0x2a, 0x78, 0x8e}, {0x21, 0x90, 0x8c}, {0x22, 0xa8, 0x84}, {0x43, 0xbf, 0x71},
                             {0x7a, 0xd1, 0x51}, {0xbb, 0xdf, 0x27}, {0xfd, 0xe7, 0x25}};
 
-// Letters of 5 by 7 pixels, rows from the top, the leftmost pixel in bit 4: what numbers are written with.
+// A character of the numbers on the scale: 5 by 7 pixels, rows from the top, the leftmost pixel in bit 4.
 struct Glyph {
   char letter;
   std::array<std::uint8_t, 7> rows;
@@ -69,7 +69,7 @@ constexpr Rgb kPaper{255, 255, 255}, kLabelInk{40, 40, 40};
 constexpr int kMargin = 8, kBarHeight = 12, kBoxWidth = 18, kNarrowest = 160;
 constexpr int kBarTop = 5, kTickHeight = 3, kTextGap = 2;
 
-// 1, 2 or 5 times a power of ten, not less than `value`.
+// Returns the smallest 1, 2 or 5 times a power of ten that is not less than `value`.
 double round_up(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double digit : {1.0, 2.0, 5.0}) {
@@ -78,7 +78,8 @@ double round_up(double value) {
   return 10 * power;
 }
 
-// Where the strip has numbers: every decade or every so many, or steps of 1, 2 or 5 times a power of ten.
+// Returns the numbers on the strip, about `most` of them: every n-th decade on a logarithmic scale, multiples of 1, 2
+// or 5 times a power of ten on a linear one.
 std::vector<double> marks_of(const ColorScale& scale, int most) {
   std::vector<double> marks;
   if (scale.logarithmic) {
@@ -91,11 +92,11 @@ std::vector<double> marks_of(const ColorScale& scale, int most) {
   }
   const double step = round_up((scale.hi - scale.lo) / most);
   const double first = std::ceil(scale.lo / step - 1e-9), last = scale.hi / step + 1e-9;
-  for (double i = first; i <= last; ++i) marks.push_back(i * step + 0.0);  // no -0
+  for (double i = first; i <= last; ++i) marks.push_back(i * step + 0.0);  // turns -0 into 0
   return marks;
 }
 
-// A box of one colour with its name below; the strip goes on to the right of what is returned.
+// Draws a box of one colour with its name below. Returns the left end of the next element.
 int draw_box(Picture& picture, int left, int top, const Rgb& color, std::string_view name) {
   fill(picture, left, top + kBarTop, kBoxWidth, kBarHeight, color);
   write(picture, left + (kBoxWidth - width_of(name)) / 2, top + kBarTop + kBarHeight + kTickHeight + kTextGap, name,

@@ -1,9 +1,10 @@
-// Maps: a number per pixel as a picture, with the scale it is read by.
+// Maps: images of one number per pixel, with their colour scale.
 //
-// Colours run from dark violet to yellow, evenly to the eye and in grey as well: viridis (S. van der Walt, N. Smith,
-// "mpl colormaps", 2015), which its authors gave to the public domain, by eleven of its colours and straight lines
-// between them. NaN is grey. On a logarithmic scale 0 and what is negative is black; beyond the scale's ends the
-// end's colour. Tested by: tests/runtime/chart/chart_colormap_test.cpp
+// The colours run from dark violet to yellow, perceptually even and also readable in grey: viridis (S. van der Walt,
+// N. Smith, "mpl colormaps", 2015), which its authors gave to the public domain, as eleven colours with linear
+// interpolation between them. NaN is grey. On a logarithmic scale, 0 and negative values are black. Values beyond the
+// scale have the colour of its nearer end.
+// Tested by: tests/runtime/chart/chart_colormap_test.cpp
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ using Rgb = std::array<std::uint8_t, 3>;  // sRGB encoded
 inline constexpr Rgb kMissing{128, 128, 128};
 inline constexpr Rgb kNothing{0, 0, 0};
 
-// The colour of `fraction` in [0,1], clamped to it.
+// Returns the colour at `fraction`, clamped to [0,1].
 Rgb viridis(double fraction);
 
 struct ColorScale {
@@ -29,13 +30,14 @@ struct ColorScale {
   Rgb color(double value) const;
 };
 
-// The scale that holds all finite values, its ends round numbers: powers of ten, or for a linear scale 0 and 1, 2 or
-// 5 times a power of ten where nothing is negative. Values that are all 0 or missing give [1, 10] or [0, 1].
+// Returns a scale that holds all finite values and ends at round numbers. A logarithmic scale ends at powers of ten.
+// A linear scale runs from 0 to 1, 2 or 5 times a power of ten if no value is negative. If all values are 0 or
+// missing, the scale is [1, 10] (logarithmic) or [0, 1].
 ColorScale scale_for(std::span<const float> values, bool logarithmic);
 
-// The map [y][x], y downwards, above a strip that shows the scale with numbers, and what grey and black mean: boxes
-// named "nan" and "0". The picture is `kScaleHeight` pixels higher than the map; below 160 pixels wide it has no
-// numbers. Throws std::invalid_argument when there are not width * height values.
+// Draws the map [y][x], y downwards, above a strip with the numbered scale and boxes named "nan" and "0" that explain
+// grey and black. The image is `kScaleHeight` pixels higher than the map. Below 160 pixels of width the strip has no
+// text. Throws std::invalid_argument unless there are width * height values.
 inline constexpr int kScaleHeight = 34;
 Picture draw_map(std::span<const float> values, int width, int height, const ColorScale& scale);
 

@@ -1,4 +1,4 @@
-// Power laws through measured points: least squares of log y on log x.
+// Power laws fitted to measured points: least squares of log y on log x.
 // Tested by: tests/runtime/chart/chart_pareto_test.cpp
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace fathom::runtime {
 
-// y = factor * x^slope. Both are NaN where there are no two different x.
+// y = factor * x^slope. Both are NaN if fewer than two different x have a logarithm.
 struct PowerLaw {
   double slope, factor;
 };
 
-// Points that have no logarithm (0, negative, not finite) take no part. The spans are equally long.
+// Ignores points without a logarithm (a coordinate that is 0, negative or not finite). The spans have equal length.
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
-// relMSE over seconds for each scene, method, precision, eps, sampler and way to lights, in the order in which they
-// come first.
+// Fits relMSE over seconds for each scene, method, precision, eps, sampler and light sampling, in order of first
+// appearance.
 std::vector<ImageCurve> fit_curves(std::span<const ImageMeasurement> rows);
 
-// When a picture's error falls to relMSE if the law goes on; NaN where it does not fall.
+// Seconds after which the fitted law reaches `relmse`. NaN unless the error falls with time.
 double seconds_to(const ImageCurve& curve, double relmse);
 
 }  // namespace fathom::runtime

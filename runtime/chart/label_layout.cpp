@@ -5,11 +5,11 @@
 namespace fathom::runtime {
 namespace {
 
-// Which way from the point, y downwards, the best first: labels read best to the upper right.
+// Directions from the point to its label, y downwards, best first: labels read best to the upper right.
 constexpr glm::dvec2 kDirections[] = {{1, -1}, {1, 0}, {0, -1}, {-1, -1}, {1, 1}, {-1, 0}, {-1, 1}, {0, 1}};
 
 Rectangle beside(glm::dvec2 point, glm::dvec2 direction, double clearance, glm::dvec2 size) {
-  // At a corner the label is as far away as at a side.
+  // 0.71 = 1/sqrt(2): a label at a corner is as far from the point as one at a side.
   const double away = clearance * (direction.x != 0 && direction.y != 0 ? 0.71 : 1);
   const glm::dvec2 middle = point + direction * (away + 0.5 * size);
   return {middle - 0.5 * size, middle + 0.5 * size};
@@ -21,7 +21,7 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
   return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y;
 }
 
-// Clips the segment to the rectangle, side by side (Y.-D. Liang, B. Barsky, "A New Concept and Method for Line
+// Clips the segment to the rectangle, one axis at a time (Y.-D. Liang, B. Barsky, "A New Concept and Method for Line
 // Clipping", 1984).
 bool meets_segment(const Rectangle& rectangle, glm::dvec2 from, glm::dvec2 to) {
   double enter = 0, leave = 1;

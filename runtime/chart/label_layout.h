@@ -1,8 +1,10 @@
-// Where labels of points go: beside their point, over nothing else, or nowhere.
+// Places point labels: each label is next to its point and overlaps nothing, or is left out.
 //
-// Greedy, in the order asked: the first of eight places round the point that is free. Finding the most labels that
-// fit is NP-hard (M. Formann, F. Wagner, "A Packing Problem with Applications to Lettering of Maps", 1991); charts
-// have few points, and whoever asks first matters most. Tested by: tests/runtime/chart/chart_plot_test.cpp
+// The placement is greedy in the order of the calls and takes the first free one of eight positions around the point.
+// Placing the maximum number of labels is NP-hard (M. Formann, F. Wagner, "A Packing Problem with Applications to
+// Lettering of Maps", 1991). Greedy placement suffices because charts have few points and callers place the most
+// important labels first.
+// Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -26,8 +28,9 @@ class LabelLayout {
   void block(const Rectangle& area) { blocked_.push_back(area); }
   void avoid_segment(glm::dvec2 from, glm::dvec2 to) { segments_.push_back({from, to}); }
 
-  // The area for a label of this size round `point`, `clearance` pixels from it; it is blocked from then on. An
-  // `important` label may lie over the segments to avoid where there is no other place.
+  // Returns the area of a label of `size`, `clearance` pixels from `point`, and blocks that area for later labels.
+  // Returns nullopt if no position is free. An `important` label may cover the segments to avoid if every other
+  // position is taken.
   std::optional<Rectangle> place(glm::dvec2 point, double clearance, glm::dvec2 size, bool important);
 
  private:

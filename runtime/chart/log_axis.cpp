@@ -13,12 +13,12 @@ namespace fathom::runtime {
 namespace {
 
 constexpr double kZeroSlot = 26;           // pixels
-constexpr double kRoomForTwoAndFive = 28;  // pixels per decade from which lines at 2 and 5 do not crowd
-constexpr double kRoomForAll = 90;         // the same for 2 to 9
-constexpr double kAxisEdge = 1e-9;             // decades; a tick that is an end of the axis belongs to it
+constexpr double kRoomForTwoAndFive = 28;  // pixels per decade from which grid lines at 2 and 5 fit
+constexpr double kRoomForAll = 90;         // pixels per decade from which grid lines at 2 to 9 fit
+constexpr double kAxisEdge = 1e-9;             // decades; tolerance for ticks at the ends of the axis
 
 TickLabel power_label(double value) {
-  const std::string text = scientific(value);  // `1e-3`, `5e-3`
+  const std::string text = scientific(value);  // for example `1e-3`, `5e-3`
   const std::size_t e = text.find('e');
   const std::string mantissa = text.substr(0, e), power = text.substr(e + 1);
   return {mantissa == "1" ? "10" : mantissa + "×10", power[0] == '-' ? "−" + power.substr(1) : power};
@@ -58,7 +58,7 @@ double LogAxis::break_position() const { return begin_; }
 
 std::vector<Tick> LogAxis::ticks(double label_room) const {
   const double pixels_per_decade = (length_ - begin_) / decades_;
-  // The narrowest gap of 1, 2, 5, 10 is from 1 to 2 and from 5 to 10.
+  // The narrowest gaps between 1, 2, 5 and 10 are from 1 to 2 and from 5 to 10.
   const bool label_between = pixels_per_decade * std::log10(2.0) >= label_room;
   const int stride = std::max(1, static_cast<int>(std::ceil(label_room / pixels_per_decade)));
   std::vector<Tick> ticks;
@@ -69,7 +69,7 @@ std::vector<Tick> LogAxis::ticks(double label_room) const {
       if (pixels_per_decade < room) continue;
       const double at = decade + std::log10(digit) - low_;
       if (at < -kAxisEdge || at > decades_ + kAxisEdge) continue;
-      // Read as text, 1e-5 is the double nearest to it; a power of 10 computed may be its neighbour.
+      // Parsing "1e-5" gives the nearest double. A computed power of ten may be off by one unit in the last place.
       const std::string text = fmt::format("{}e{}", digit, decade);
       double value = 0;
       if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc()) continue;

@@ -1,7 +1,7 @@
-// A logarithmic axis: values to pixels, and where its ticks are.
+// A logarithmic axis: maps values to pixels and places ticks.
 //
-// Zero has no place on a logarithmic scale, yet errors are 0 now and then. An axis that is asked for one has a slot
-// before its lowest value, behind a break, where all zeros are drawn.
+// A logarithmic scale has no position for 0, but measured errors are sometimes 0. An axis with zeros has a slot
+// before its lowest value, separated by a break, in which all zeros are drawn.
 // Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
@@ -18,36 +18,39 @@ struct Tick {
 
 class LogAxis {
  public:
-  // An axis of `length` pixels that holds the values, `padding` pixels from its ends or farther. It spans a decade or
-  // more. Values that are 0 give it the slot for zeros; what is negative or not finite is not looked at.
+  // Makes an axis of `length` pixels that holds the values at least `padding` pixels from its ends. The axis spans at
+  // least one decade. Zeros among the values give the axis a slot for zeros. Negative and non-finite values are
+  // ignored.
   LogAxis(std::span<const double> values, double length, double padding);
 
-  // Pixels from the axis's low end: for 0 the middle of the slot. The value is 0, or positive and finite.
+  // Returns the pixels from the axis's low end, or the middle of the slot for 0. `value` is 0, or positive and
+  // finite.
   double position(double value) const;
 
-  // Ascending, positive; every decade, and between them what there is room for: 2 and 5, or 2 to 9. Labels are
-  // `label_room` pixels apart or more.
+  // Returns the ticks, ascending and positive: every decade, and between decades 2 and 5 or 2 to 9 as far as they
+  // fit. Labels are at least `label_room` pixels apart.
   std::vector<Tick> ticks(double label_room) const;
 
   bool has_zero() const { return has_zero_; }
   double length() const { return length_; }
-  double break_position() const;  // between the slot and the scale, pixels; there is a slot
+  double break_position() const;  // pixels; end of the slot for zeros, 0 without a slot
 
   static bool can_show(double value);
 
  private:
-  double low_ = 0, decades_ = 1;  // log10 of the value at the scale's low end, and how many decades it spans
+  double low_ = 0, decades_ = 1;  // log10 of the scale's lowest value; decades that the scale spans
   double begin_ = 0, length_;     // pixels; the scale is [begin, length]
   bool has_zero_ = false;
 };
 
-// How a tick is written: as a plain number, or as mantissa and power of ten.
+// Text of a tick: a plain number, or mantissa and power of ten.
 struct TickLabel {
   std::string text;   // `200`, `10`, `5×10`
   std::string power;  // the exponent; empty for a plain number
 };
 
-// The labels of the ticks in their order, empty where there is none: plain numbers where all are short, else powers.
+// Returns the labels in the order of the ticks, empty for unlabelled ticks. Numbers are plain if all of them are
+// short, else all are powers.
 std::vector<TickLabel> tick_labels(std::span<const Tick> ticks);
 
 }  // namespace fathom::runtime

@@ -8,7 +8,7 @@
 namespace fathom::runtime {
 namespace {
 
-// `2.5e-06` as people write it, `2.5e-6`.
+// Shortens an exponent: `2.5e-06` becomes `2.5e-6`.
 std::string plain_exponent(const std::string& text) {
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos) return text;

@@ -1,7 +1,7 @@
-// What `fathom chart` measured: plain numbers between those who take them and those who draw them.
+// Results of `fathom chart`: plain numbers that runtime/measure/ computes and runtime/chart/ draws.
 //
-// Shares of rays are in ppm, lengths in scene units, angles in radians. A quantity that could not be measured is NaN,
-// and is drawn and written as missing, never as 0.
+// Fractions of rays are in ppm, lengths in scene units, angles in radians. A quantity that could not be measured is
+// NaN, which charts and tables show as missing and never as 0.
 // Tested by: tests/runtime/chart/chart_csv_test.cpp
 #pragma once
 
@@ -14,43 +14,45 @@ inline constexpr const char* kDefaultMethod = "tiered";
 inline constexpr const char* kDefaultSampler = "blue";
 inline constexpr const char* kDefaultLights = "both";
 
-// One way to intersect one class of rays with one scene.
+// One method that intersects the rays of one class with one scene.
 struct RayMeasurement {
   std::string scene;
-  std::string method;     // kDefaultMethod, or another
+  std::string method;     // kDefaultMethod or another method's name
   std::string precision;  // "f32" or "f64"
-  double eps = 0;         // of a hit, scene units; 0: the method has none
-  double relax = 0;       // factor on the step; 0: automatic, 1: plain sphere tracing
-  int steps_max = 0;      // 0: none
+  double eps = 0;         // hit tolerance, scene units; 0: the method has none
+  double relax = 0;       // multiplier of the step; 0: automatic, 1: plain sphere tracing
+  int steps_max = 0;      // limit of steps per ray; 0: none
   std::string ray_class;  // "camera", "bounce" or "grazing"
   std::uint64_t rays = 0;
   double ns_med = 0, ns_min = 0, ns_max = 0;        // nanoseconds per ray on one thread, over the rounds
-  double evals_mean = 0, evals_p99 = 0;             // evaluations of the field per ray
-  double false_hit_ppm = 0;                         // rays that miss and were said to hit
-  double false_miss_ppm = 0;                        // rays that hit and were said to miss
+  double evals_mean = 0, evals_p99 = 0;             // field evaluations per ray
+  double false_hit_ppm = 0;                         // rays reported as hits that miss
+  double false_miss_ppm = 0;                        // rays reported as misses that hit
   double exhausted_ppm = 0;                         // rays that ran out of steps
-  double contact_ppm = 0;                           // misses that came too near to exclude a touch; no failures
-  double gross_ppm = 0;                             // hits far from the true one
+  double contact_ppm = 0;                           // misses too near the surface to exclude a touch; not failures
+  double gross_ppm = 0;                             // hits far from the true hit
   double terr_p50 = 0, terr_p99 = 0, terr_max = 0;  // |t - t_ref| of the hits, scene units
   double nerr_p50 = 0, nerr_p99 = 0, nerr_max = 0;  // angle between the normals, radians
-  bool reference = false;                           // the truth itself: its errors are 0 by definition
+  bool reference = false;                           // the reference itself: its errors are 0 by definition
 };
 
-// Pictures of one scene at one number of samples, each with its own seed. relMSE = mean((I - R)^2 / (R^2 + c)), R the
-// reference, c = 0.01 times the square of R's mean.
+// Images of one scene at one number of samples per pixel, each image with its own seed. relMSE = mean((I - R)^2 /
+// (R^2 + c)), where R is the reference and c is 0.01 times the square of R's mean.
 struct ImageMeasurement {
   std::string scene;
   std::string method;
   std::string precision;
   double eps = 0;  // scene units; 0: the method has none
   std::string sampler = kDefaultSampler;
-  std::string lights = kDefaultLights;  // how paths find them: "both" ways, "lights" are looked for, by "hits" alone
+  // Light sampling: "lights" is next-event estimation, "hits" is BSDF sampling, "both" is MIS of the two
+  std::string lights = kDefaultLights;
   int spp = 0;
-  int seeds = 0;                                             // pictures taken
-  double seconds_med = 0, seconds_min = 0, seconds_max = 0;  // for one picture
+  int seeds = 0;                                             // number of images
+  double seconds_med = 0, seconds_min = 0, seconds_max = 0;  // per image
   double relmse_med = 0, relmse_p05 = 0, relmse_p95 = 0;     // over the seeds
   double relmse_trimmed_med = 0;                             // without the worst 0.1 % of the pixels
-  double floor = 0;  // relMSE of the mean over the seeds: the bias, and what noise the mean still has
+  // relMSE of the mean over the seeds: the bias plus the noise that the mean still has
+  double floor = 0;
 };
 
 // A power law through the points of one method: relMSE = factor * seconds^slope.
@@ -60,17 +62,17 @@ struct ImageCurve {
   std::string precision;
   double eps = 0;
   std::string sampler, lights;
-  double slope = 0;   // -1 without bias and with independent samples; NaN where there are no two points
+  double slope = 0;   // -1 for independent, unbiased samples; NaN for fewer than two points
   double factor = 0;  // relMSE after one second
 };
 
-// Where the numbers are from.
+// Origin of the numbers.
 struct Provenance {
   std::string commit, cpu, compiler, isa, date, command;
-  int rounds = 0;  // each time is the median of so many
+  int rounds = 0;  // each time is the median of this many rounds
 };
 
-// In one line, for the foot of a chart.
+// Returns the provenance in one line, for the foot of a chart.
 inline std::string source_of(const Provenance& provenance) {
   std::string line;
   for (const std::string* part :

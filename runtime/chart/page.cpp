@@ -62,7 +62,7 @@ footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: 0.8re
 code { overflow-wrap: anywhere; }
 )";
 
-// A column of the table of rows; what the scene's rows are is needed for names and fronts.
+// A column of the table of rows. `text` needs all rows of the scene for names and Pareto fronts.
 struct TableColumn {
   const char* title;
   std::string (*text)(const RayMeasurement& row, const std::vector<RayMeasurement>& scene);

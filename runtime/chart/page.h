@@ -1,7 +1,7 @@
-// The page that shows all charts, maps and rows of a run: one HTML text that needs no network and runs no scripts.
+// The HTML page with all charts, maps and rows of a run: a single text that needs no network and runs no scripts.
 //
-// Charts stand in the page as SVG, maps are linked by the names of their files beside it. It follows the reader's
-// light or dark scheme and scrolls wide charts and tables on narrow screens.
+// Charts are inline SVG. Maps are links to files next to the page. The page follows the reader's light or dark scheme
+// and scrolls wide charts and tables on narrow screens.
 // Tested by: tests/runtime/chart/chart_page_test.cpp
 #pragma once
 
@@ -13,8 +13,8 @@
 namespace fathom::runtime {
 
 struct PageChart {
-  std::string svg;      // as plot_svg() gives it
-  std::string reading;  // a sentence: how to read it
+  std::string svg;      // from plot_svg()
+  std::string reading;  // explains how to read the chart
 };
 
 struct PageMap {
@@ -24,21 +24,21 @@ struct PageMap {
 };
 
 struct PageScene {
-  std::string name;  // that of its rows
+  std::string name;  // RayMeasurement::scene of its rows
   std::vector<PageChart> charts;
   std::vector<PageMap> maps;
 };
 
 struct Page {
   std::vector<PageScene> scenes;
-  std::vector<RayMeasurement> rays;  // the table of a scene has its own
-  std::vector<std::string> files;    // to download, relative to the page
+  std::vector<RayMeasurement> rays;  // of all scenes; each scene's table shows its own
+  std::vector<std::string> files;    // for download, relative to the page
   Provenance provenance;
 };
 
 std::string page_html(const Page& page);
 
-// How charts A and B are read: the sentences under them.
+// Captions that explain how to read charts A and B.
 extern const char* const kReadChartATime;
 extern const char* const kReadChartAEvaluations;
 extern const char* const kReadChartB;

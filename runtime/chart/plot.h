@@ -1,10 +1,11 @@
-// A plot as data: panels side by side that share both axes' scales and one legend. plot_svg.h draws it.
+// A plot as data: panels side by side that share both axes and one legend. plot_svg.h draws it.
 //
-// A series is a polyline through its points; a point may carry bars, a disc whose area grows with how often it fails,
-// and a label where there is room.
+// A series is a polyline through its points. A point may have bars, a disc whose area grows with its failures, and a
+// label where space permits.
 //
-// Colours to choose from are those of M. Okabe, K. Ito, "Color Universal Design", 2008, which the colour-blind tell
-// apart. Tested by: tests/runtime/chart/chart_plot_test.cpp
+// The colours are those of M. Okabe, K. Ito, "Color Universal Design", 2008, which colour-blind readers can tell
+// apart.
+// Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
 #include <array>
@@ -14,7 +15,8 @@
 
 namespace fathom::runtime {
 
-// Without the yellow, which is too light for lines on white; the first is for what the plot is about.
+// Okabe and Ito's colours without yellow, which is too light for lines on white. The first colour is for the subject
+// of the plot.
 inline constexpr std::array kPalette = {"#D55E00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"};
 inline constexpr const char* kNeutralColor = "#4d4d4d";
 
@@ -24,18 +26,18 @@ struct Range {
 
 struct PlotPoint {
   double x = 0, y = 0;
-  std::optional<Range> x_range, y_range;  // bars
-  double failures_ppm = 0;                // the disc's area, by logarithm; 0: no disc
+  std::optional<Range> x_range, y_range;  // error bars
+  double failures_ppm = 0;                // disc area grows with its logarithm; 0: no disc
   bool ringed = false;
   std::string label;    // a few characters
-  std::string tooltip;  // the numbers, lines by '\n'
+  std::string tooltip;  // the numbers, lines separated by '\n'
 };
 
 struct PlotSeries {
-  std::string name;  // in the legend, once for all panels
+  std::string name;  // legend entry, shared by all panels
   std::string color;
-  bool hollow = false;      // its markers
-  bool dashed = false;      // its line
+  bool hollow = false;      // markers without fill
+  bool dashed = false;      // dashed polyline
   bool emphasised = false;  // drawn last and bold
   std::vector<PlotPoint> points;
   std::optional<double> level;  // a dashed horizontal line
@@ -44,10 +46,11 @@ struct PlotSeries {
 struct PlotPanel {
   std::string title;
   std::vector<PlotSeries> series;
-  std::vector<PlotPoint> front;  // corners of a staircase, ascending in x, descending in y; what is beyond is shaded
+  // Corners of a staircase, ascending in x and descending in y. The region beyond is shaded.
+  std::vector<PlotPoint> front;
 };
 
-// Sentences of the legend are shown where the plot has what they explain.
+// The legend shows a *_words sentence only if the plot contains the marks that the sentence explains.
 struct Plot {
   std::string title, subtitle;
   std::string x_title, y_title;  // with units

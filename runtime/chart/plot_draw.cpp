@@ -10,7 +10,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kLargestDisc = 15;  // pixels, at a million ppm
+constexpr double kLargestDisc = 15;  // pixels; radius at a million ppm
 
 std::string text_attributes(glm::dvec2 at, const TextStyle& style) {
   return fmt::format(

@@ -14,7 +14,7 @@ namespace {
 constexpr double kRow = 21, kSampleWidth = 34, kColumnGap = 22;
 constexpr double kInner = kPlotWidth - kLeft - kRight;
 
-// A sample of what is meant, kSampleWidth wide or `width`, and the words for it.
+// An entry of the legend: a drawn sample, `sample_width` pixels wide, and its explanation.
 struct Entry {
   std::string words;
   bool bold;
@@ -79,7 +79,7 @@ bool any_point(const Plot& plot, bool (*holds)(const PlotPoint&)) {
   return false;
 }
 
-// Every series once: panels may lack some of them.
+// Lists every series once. A panel may lack some of the series.
 std::vector<Entry> series_entries(const Plot& plot) {
   std::vector<Entry> entries;
   for (const PlotPanel& panel : plot.panels) {
@@ -127,7 +127,7 @@ Legend draw_legend(const Plot& plot, double top) {
   for (const Entry& entry : series) {
     widest = std::max(widest, kSampleWidth + 4 + text_width(entry.words, kLegendSize, entry.bold) + kColumnGap);
   }
-  // Read down the columns, as many as fit, of the same height.
+  // Entries run down as many columns as fit, all of equal height.
   const auto columns = static_cast<std::size_t>(std::max(1.0, std::floor(kInner / widest)));
   const std::size_t rows = (series.size() + columns - 1) / columns;
   for (std::size_t i = 0; i < series.size(); ++i) {

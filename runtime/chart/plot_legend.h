@@ -1,4 +1,4 @@
-// The legend of a plot: its series, and the sentences that explain its marks, as SVG elements.
+// The legend of a plot: the series, and the sentences that explain the marks, as SVG elements.
 // Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace fathom::runtime {
 
-// The legend from `top` downwards.
+// The legend's SVG, drawn from `top` downwards, and its height in pixels.
 struct Legend {
   std::string svg;
   double height = 0;

@@ -24,7 +24,7 @@ std::string with_tooltip(const PlotPoint& point, const std::string& svg) {
   return fmt::format("<g class=\"point\"><title>{}</title>\n{}</g>\n", escape_markup(point.tooltip), svg);
 }
 
-// A path in pieces: the solid one between points on the scale, a dotted one to those in the slots for zeros.
+// SVG path data of a polyline: `solid` between points on the scale, `dotted` to and from points in a slot for zeros.
 struct Polyline {
   std::string solid, dotted;
 };
@@ -33,7 +33,7 @@ class PanelDrawing {
  public:
   PanelDrawing(const PlotPanel& panel, const Rectangle& area, const LogAxis& x, const LogAxis& y)
       : panel_(panel), area_(area), x_(x), y_(y) {
-    // The bold series last, over the others.
+    // Emphasised series are drawn last, over the others.
     for (const PlotSeries& series : panel.series) series_.push_back(&series);
     std::stable_partition(series_.begin(), series_.end(), [](const PlotSeries* s) { return !s->emphasised; });
   }
@@ -50,7 +50,7 @@ class PanelDrawing {
   double left(double value) const { return area_.lo.x + x_.position(value); }
   double top(double value) const { return area_.hi.y - y_.position(value); }
   glm::dvec2 at(const PlotPoint& point) const { return {left(point.x), top(point.y)}; }
-  // The end of a bar may be 0, which is where the scale begins.
+  // An end of a bar that is 0 is drawn where the scale begins.
   double bar_left(double x) const { return x > 0 ? left(x) : area_.lo.x + x_.break_position(); }
   double bar_top(double y) const { return y > 0 ? top(y) : area_.hi.y - y_.break_position(); }
 
@@ -223,7 +223,7 @@ std::string PanelDrawing::markers() const {
   return svg;
 }
 
-// What labels keep clear of: all markers, and where they can the lines.
+// Returns a label layout that keeps clear of all markers and, where possible, of the lines.
 LabelLayout PanelDrawing::obstacles() const {
   LabelLayout layout(area_);
   const auto avoid = [&](const std::vector<PlotPoint>& points, bool markers) {
@@ -244,8 +244,8 @@ LabelLayout PanelDrawing::obstacles() const {
   return layout;
 }
 
-// Who asks first gets the place: the bold series, then the ends of every series, then the points between. Of equal
-// labels close together one is enough.
+// Places labels by rank: the emphasised series first, then the ends of every series, then the points between. Skips a
+// label if an equal one is nearby.
 std::string PanelDrawing::labels() const {
   struct Wish {
     const PlotSeries* series;

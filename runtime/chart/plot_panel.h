@@ -10,7 +10,7 @@
 
 namespace fathom::runtime {
 
-// The panel's area is `area`; the axes are those of all panels, `first` has the labels of the y axis.
+// Draws the panel into `area`. The axes are shared by all panels, and only the `first` panel labels the y axis.
 std::string draw_panel(const PlotPanel& panel, const Rectangle& area, const LogAxis& x, const LogAxis& y, bool first);
 
 }  // namespace fathom::runtime

@@ -15,10 +15,10 @@ namespace fathom::runtime {
 namespace {
 
 constexpr double kPanelTop = 88, kPanelHeight = 330, kPanelGap = 28;
-constexpr double kPadding = 20;  // round the data, so that the largest discs stay within
+constexpr double kPadding = 20;  // pixels around the data, so that the largest discs stay inside
 constexpr double kBelowPanels = 62, kFooter = 24, kBottom = 12;
 
-// What an axis must show. The ends of bars count where they are on the scale.
+// Returns the values that an axis must hold. Ends of bars count only if they are positive.
 std::vector<double> shown_values(const Plot& plot, double PlotPoint::*value, std::optional<Range> PlotPoint::*range,
                                  bool levels) {
   std::vector<double> values;
@@ -40,7 +40,7 @@ std::vector<double> shown_values(const Plot& plot, double PlotPoint::*value, std
   return values;
 }
 
-// Which way the eye should look, in words and as an arrow.
+// Draws the arrow and the words that tell in which direction points are better.
 std::string draw_direction(glm::dvec2 right) {
   const glm::dvec2 tip = right - glm::dvec2{11, -1};
   return draw_text(tip - glm::dvec2{6, 1}, "lower left is better", {kTickSize, kSoftInk, "end", false, false}) +

@@ -1,9 +1,10 @@
-// Plots with logarithmic axes as SVG texts. plot.h says what a plot is.
+// Draws plots with logarithmic axes as SVG. plot.h describes the plot.
 //
-// Every point is drawn: 0 in a slot behind the axis's end, as a diamond; points whose coordinates are negative or not
-// finite are counted beside the panel's title.
+// Every point is drawn. A coordinate of 0 is a diamond in a slot beyond the axis's low end. Points with a negative or
+// non-finite coordinate are counted next to the panel's title.
 //
-// The text is the same for the same plot on every machine, has no ids, styles or scripts, and may stand within HTML.
+// The text is the same for the same plot on every machine, has no ids, styles or scripts, and may be embedded in
+// HTML.
 // Tested by: tests/runtime/chart/chart_plot_test.cpp
 #pragma once
 

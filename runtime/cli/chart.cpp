@@ -1,4 +1,4 @@
-// fathom chart: every way to follow rays, measured on a scene and drawn as charts, maps and a page.
+// fathom chart: measures all ray-marching methods on a scene and draws charts, maps and a page.
 //
 //     $ fathom chart scene.json -o charts
 //     scene: the default is on the Pareto front of time: camera yes, bounce yes, grazing yes
@@ -34,7 +34,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr int kMapSide = 320;  // pixels, the longer one; the other follows from the scene's film
+constexpr int kMapSide = 320;  // pixels of the longer side; the scene's film gives the aspect ratio
 
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -62,7 +62,7 @@ runtime::Provenance provenance_of(const ChartRequest& request) {
   return provenance;
 }
 
-// Collects what is measured and drawn, and writes it; remembers the first thing that went wrong.
+// Collects and writes the measurements, charts and maps. Remembers the first write error.
 class Charts {
  public:
   Charts(const ChartRequest& request, const Streams& streams)
@@ -70,7 +70,7 @@ class Charts {
     page_.provenance = provenance_;
   }
 
-  // Nothing more is measured once something could not be written.
+  // Measures and draws one scene. Does nothing after a write error.
   void add(const compiler::CompiledScene& scene, const std::string& name) {
     if (problem_) return;
     const runtime::Field field = runtime::make_field(scene, scene.settings.far);
@@ -127,7 +127,7 @@ class Charts {
     report_front(rows, section.name, Cost::Evaluations, "evaluations");
   }
 
-  // Whether anything else is better in every way than what renders do by default.
+  // Prints for each ray class whether the default is on the Pareto front, and which rows dominate the default.
   void report_front(const std::vector<runtime::RayMeasurement>& rows, const std::string& name, runtime::Cost cost,
                     const char* word) const {
     std::string line = fmt::format("{}: the default is on the Pareto front of {}:", name, word), why;
@@ -188,7 +188,7 @@ class Charts {
   std::optional<std::string> problem_;
 };
 
-// The folder exists and can be written to; otherwise the reason.
+// Creates the folder and checks that it is writable. Returns the problem, if any.
 std::optional<std::string> make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -210,7 +210,8 @@ std::variant<std::vector<SceneInput>, ExitCode> read_scenes(const ChartRequest& 
   return sources;
 }
 
-// Of the files: that of the scene's without its ending; `scene` for standard input.
+// Returns the stem of the output files' names: the scene file's name without its ending, or `scene` for standard
+// input.
 std::string name_of(const compiler::Source& source, const ChartRequest& request) {
   const std::string stem = std::filesystem::path(source.name()).stem().string();
   return request.scene.path == "-" || stem.empty() ? "scene" : stem;
@@ -240,7 +241,7 @@ int run_chart(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_chart(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const ChartRequest& request = std::get<ChartRequest>(parsed);
-  // A scene with errors leaves no folder behind.
+  // All scenes are compiled first, so that a scene with errors leaves no folder behind.
   const auto scenes = compile_scenes(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&scenes)) return *code;
   const std::filesystem::path folder = request.folder;

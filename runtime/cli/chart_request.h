@@ -14,16 +14,16 @@
 namespace fathom::cli {
 
 struct ChartRequest {
-  SceneArguments scene;  // path empty: the project's own scenes
+  SceneArguments scene;  // empty path: the project's own scenes
   std::string folder;
   int rays = 10000, rounds = 9;
   std::uint64_t seed = 1;
   runtime::ImagePlan images;
   bool no_images = false, quiet = false;
-  std::string command;  // as it was given
+  std::string command;  // command line as given
 };
 
-// The request, or the exit code after help or a message.
+// Returns the request, or the exit code after printing help or a message.
 std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, const Streams& streams);
 
 }  // namespace fathom::cli

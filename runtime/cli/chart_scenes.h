@@ -1,4 +1,4 @@
-// The scenes that `fathom chart` draws when it is given none: CMake puts the files' texts into the program.
+// The default scenes of `fathom chart`. CMake embeds the files' texts into the program.
 // Tested by: tests/runtime/cli/cli_chart_test.cpp
 #pragma once
 
@@ -8,7 +8,7 @@
 namespace fathom::cli {
 
 struct ChartScene {
-  std::string_view path;  // in the project
+  std::string_view path;  // relative to the project
   std::string_view text;
 };
 

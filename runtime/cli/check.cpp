@@ -1,5 +1,6 @@
-// fathom check: every error and warning of a scene, and the exactness report: how far each object's distance can be
-// trusted, how much of it a ray may step, and which node that is due to. --probe tries to refute it. No pixels.
+// fathom check: prints every error and warning of a scene and the exactness report. The report tells per object how
+// far its distance can be trusted, which fraction of the distance a ray may step, and which node is responsible.
+// --probe tries to refute the report. No image is rendered.
 // Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/cli_check_test.cpp
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
               {"choose the moment with -D time=1.5"});
 }
 
-// Prints what the probes saw; kFoundProblems when they refute anything.
+// Prints the results of the probes. Returns kFoundProblems if they refute a constant.
 ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& scene, const compiler::Scene& graph,
                    const Streams& streams) {
   compiler::ProbeOptions options;
@@ -75,7 +76,7 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   return culprits.empty() ? kDone : kFoundProblems;
 }
 
-// Compiles and warns of all there is to warn of; `graph` is what was read.
+// Compiles with all warnings. `graph` receives the scene graph before the first pass.
 std::variant<compiler::CompiledScene, ExitCode> compile_checked(const SceneInput& input,
                                                                 const SceneArguments& arguments,
                                                                 compiler::Scene& graph, const Streams& streams) {
@@ -106,8 +107,8 @@ ExitCode check_moment(const CheckRequest& request, const SceneInput& input, cons
   return request.probes ? run_probe(request, scene, graph, streams) : kDone;
 }
 
-// The moments that the shutter sees of a frame of the scene's own settings; false, after messages, when one of them
-// has errors.
+// Compiles the scene at the moments of a frame's open shutter, with the scene's own settings. Returns false, after
+// messages, if the scene has errors at one of them.
 bool check_shutter(const SceneInput& input, const SceneArguments& frame, const compiler::CompiledScene& scene,
                    const Sequence& sequence, int number, const Streams& streams) {
   if (!(scene.camera.shutter > 0) || !sequence.animation.time) return true;
@@ -125,7 +126,7 @@ bool check_shutter(const SceneInput& input, const SceneArguments& frame, const c
   return true;
 }
 
-// Reports the first frame that can be, and counts those that cannot.
+// Prints the report of the first frame without errors, and counts the frames with errors.
 ExitCode check_frames(const CheckRequest& request, SceneInput& input, const Streams& streams) {
   const auto asked = sequence_of(request.frames, input, request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&asked)) return *code == kBadScene ? kFoundProblems : *code;
@@ -174,7 +175,7 @@ int run_check(std::span<const std::string> args, const Streams& streams) {
       print(streams, fmt::format("{}{}:\n", i > 0 ? "\n" : "", source_name(request.scene.path)));
       streams.out.flush();
     }
-    worst = std::max(worst, check_scene(request, streams));  // larger is worse
+    worst = std::max(worst, check_scene(request, streams));  // a larger exit code is worse
   }
   return worst;
 }

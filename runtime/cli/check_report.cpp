@@ -18,7 +18,7 @@ using ReportJson = nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Columns as wide as their widest cell, two blanks apart; the first row is the heading.
+// Lays out a table whose columns are as wide as their widest cell and two blanks apart. The first row is the heading.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   const auto width_of = [](const std::string& cell) {  // in code points
     return std::count_if(cell.begin(), cell.end(),
@@ -40,7 +40,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return out;
 }
 
-// `twist "column" at scene.json:6:5`.
+// Describes a place: `twist "column" at scene.json:6:5`.
 std::string text(const Place& place, const compiler::Source& source) {
   if (place.span.end == 0) return describe(place);
   return fmt::format("{} at {}", describe(place), source.place(place.span.begin));
@@ -56,7 +56,7 @@ ReportJson json(const Place& place, const compiler::Source& source) {
   return json;
 }
 
-// JSON has no infinity: null.
+// Infinite components become null, because JSON has no infinity.
 ReportJson json(const glm::dvec3& v) {
   ReportJson list = ReportJson::array();
   for (int i = 0; i < 3; ++i) list.push_back(std::isfinite(v[i]) ? ReportJson(v[i]) : ReportJson(nullptr));
@@ -72,7 +72,7 @@ std::string describe_program(std::string_view name, const vm::VerifiedProgram& p
                      count_of(program.max_points(), "point"), count_of(program.cost(), "multiply-add"));
 }
 
-// A line each, as -D takes them.
+// Lists the parameters, one per line, in the form that -D takes.
 std::string describe_parameters(const std::vector<compiler::Parameter>& parameters) {
   std::string out;
   for (const compiler::Parameter& parameter : parameters) {
@@ -99,14 +99,14 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
   return table(rows);
 }
 
-// The text at a span, its beginning when it is long.
+// Returns the text of a span, truncated to kMost bytes.
 std::string excerpt(compiler::Span span, const compiler::Source& source) {
   constexpr std::size_t kMost = 60;
   std::string written(source.excerpt(span));
   return written.size() > kMost ? written.substr(0, kMost) + "..." : written;
 }
 
-// `  no bound on the slope of `floor(x)` at scene.json:4:70`.
+// Describes an operation: `  no bound on the slope of `floor(x)` at scene.json:4:70`.
 std::string describe_operation(compiler::Span span, const compiler::Source& source) {
   return fmt::format("  no bound on the slope of `{}` at {}\n", excerpt(span, source), source.place(span.begin));
 }

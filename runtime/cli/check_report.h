@@ -1,4 +1,4 @@
-// What `fathom check` prints of a scene without errors: for people, and as JSON lines.
+// The report of `fathom check` on a scene without errors, as text for people and as JSON lines.
 // Tested by: tests/runtime/cli/cli_check_test.cpp
 #pragma once
 
@@ -14,7 +14,7 @@ namespace fathom::cli {
 std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report);
 std::string report_json(const compiler::CompiledScene& scene, const compiler::Report& report);
 
-// `culprits` are those of `rows` that are to blame.
+// `culprits` are the rows of `rows` that have the wrong constants (see compiler::culprits()).
 std::string probe_text(const compiler::Source& source, const std::vector<compiler::ProbeRow>& rows,
                        const std::vector<const compiler::ProbeRow*>& culprits);
 std::string probe_json(const compiler::Source& source, const std::vector<compiler::ProbeRow>& rows,

@@ -1,4 +1,4 @@
-// fathom compile: a scene as a file of programs; fathom asm: such a file made of its listing.
+// fathom compile: writes a scene as a file of compiled programs. fathom asm: assembles such a file from its listing.
 // Tested by: tests/runtime/cli/cli_compile_test.cpp
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr const char* kAsmExamples =
     "fathom asm scene.txt -o same.fbc              # the same bytes\n"
     "echo 'sphere 1' | fathom asm - -o ball.fbc";
 
-// The file, or standard output for "-".
+// Writes the compiled scene to a file, or to standard output if `path` is "-".
 ExitCode write_compiled(const compiler::CompiledScene& scene, const compiler::FileContents& contents,
                         const std::string& path, const Streams& streams) {
   const std::vector<std::uint8_t> bytes = compiler::write_file(scene, contents);
@@ -41,7 +41,8 @@ ExitCode write_compiled(const compiler::CompiledScene& scene, const compiler::Fi
   return kDone;
 }
 
-// The kind of file that a name says and a compiled scene is not; nothing for .fbc, no ending or one nobody knows.
+// Returns the kind of file that the name's ending stands for if a compiled scene is not of that kind. Returns nullopt
+// for .fbc, for no ending and for unknown endings.
 std::optional<std::string_view> other_kind(const std::string& path) {
   constexpr std::pair<std::string_view, std::string_view> kKinds[] = {
       {".film", "a film"}, {".json", "a scene"}, {".vm", "a scene"}, {".stl", "a mesh"},

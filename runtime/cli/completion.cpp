@@ -1,4 +1,5 @@
-// fathom completion: scripts by which a shell completes verbs, options and values, made of the option tables.
+// fathom completion: scripts with which a shell completes verbs, options and values, generated from the option
+// tables.
 // Tested by: tests/runtime/cli/options/cli_completion_test.cpp
 #include <fmt/format.h>
 
@@ -21,14 +22,14 @@ constexpr const char* kCompletionExamples =
 
 const std::vector<std::string> kHelpTopics = {"help", "limits"};
 
-// The start of an option's text, as far as it says what the option is.
+// Returns the first clause of an option's help, which is enough to identify the option.
 std::string brief(std::string_view doc) {
   std::string text(doc.substr(0, std::min({doc.find(": "), doc.find("; "), doc.find(" ("), doc.find(". ")})));
   if (text.ends_with('.')) text.pop_back();
   return text;
 }
 
-// In single quotes for a shell. Fish knows two escapes in them, the others none.
+// Returns the text in a shell's single quotes. Inside them fish has two escapes, the other shells none.
 std::string quoted_for_shell(std::string_view text, bool fish) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -51,7 +52,7 @@ std::vector<std::string> verb_names() {
   return names;
 }
 
-// The words that may follow the verb itself, as `cpp` follows `emit`; empty: file names.
+// Returns the words that may follow the verb, for instance `cpp` after `emit`. Empty: file names.
 std::vector<std::string> first_words(const OptionTable& table) {
   return table.positionals.empty() ? std::vector<std::string>() : table.positionals.front().words;
 }
@@ -133,7 +134,7 @@ _fathom() {
   local -a verbs
 )";
 
-// The file is the body of an autoloaded function, or it is read by `source`.
+// The file serves both as the body of an autoloaded function and for `source`.
 constexpr const char* kZshTail = R"(  esac
 }
 if [[ $funcstack[1] == _fathom ]]; then
@@ -143,7 +144,7 @@ else
 fi
 )";
 
-// Text within a specification of _arguments, where brackets and colons separate.
+// Escapes text for a specification of _arguments, in which brackets and colons are separators.
 std::string zsh_text(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
@@ -153,7 +154,7 @@ std::string zsh_text(std::string_view text) {
   return escaped;
 }
 
-// ":FILE:_files", ":CURVE:(none filmic)".
+// Returns the value's part of a specification: ":FILE:_files", ":CURVE:(none filmic)".
 std::string zsh_value(const OptionRow& row) {
   if (row.value.empty()) return "";
   const std::string action = takes_file(row)     ? "_files"

@@ -1,4 +1,4 @@
-// fathom convert: scenes from JSON to text and back.
+// fathom convert: converts scenes from JSON to text and back.
 // Tested by: tests/runtime/cli/cli_convert_test.cpp
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ constexpr const char* kConvertExamples =
     "to, "
     "and its parameters where they decide no loop or condition.";
 
-// Where parameters were needed as numbers.
+// Notes the places where the conversion replaced parameters by their values, because it needed numbers.
 void note_frozen(const std::vector<compiler::Span>& frozen, const compiler::Source& source, const Streams& streams) {
   std::vector<std::string> places;
   for (const compiler::Span span : frozen) {
@@ -59,7 +59,7 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   compiler::Source& source = std::get<SceneText>(read).source;
   const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  compiler::Diagnostics ignored;  // compiling it read it without any
+  compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::string text;
   if (compiler::is_text_scene(source.text())) {
     const auto kept =

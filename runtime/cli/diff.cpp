@@ -1,4 +1,4 @@
-// fathom diff: how far a picture is from another, in numbers and as a map.
+// fathom diff: measures the difference between two images, as numbers and as a map.
 //
 //     $ fathom diff out.png reference.png
 //     mse      0.0012
@@ -38,10 +38,10 @@ constexpr const char* kDiffExamples =
     "the\n"
     "square of the second. flip is the difference that an eye sees on a screen, from 0 to 1.";
 
-// Of both pictures' colours and of FLIP's planes; measured.
+// Memory for the colours of both images and the planes of FLIP, measured.
 constexpr double kBytesPerPixel = 80;
 
-// Every number that is printed, and whether --tol can be about it.
+// The metrics, and whether --tol can bound each of them.
 struct Measured {
   runtime::Differences differences;
   runtime::Flip flip;
@@ -62,14 +62,14 @@ constexpr Metric kMetrics[] = {
 struct DiffRequest {
   std::string first, second;
   std::optional<Output> map;
-  int format = -1;  // of -o -, see put_formats()
+  int format = -1;  // format of -o -, see put_formats()
   std::optional<double> tolerance;
   compiler::Limits limits;
   int metric = -1;  // an index into kMetrics; -1: not given
   bool json = false;
 };
 
-// The map, or nothing.
+// Returns the map's output as a span, empty if no map is requested.
 std::span<Output> map_of(DiffRequest& request) {
   return request.map ? std::span<Output>(&*request.map, 1) : std::span<Output>();
 }
@@ -106,7 +106,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return put_formats(map_of(request), request.format, streams);
 }
 
-// Colours of a file: red, green and blue or one channel for all.
+// Linear colours of an image file. A file with a single channel has equal red, green and blue.
 struct Colors {
   int width = 0, height = 0;
   std::vector<float> rgb;
@@ -159,7 +159,7 @@ runtime::Picture map_picture(const runtime::Flip& flip, int width, int height) {
   return picture;
 }
 
-// kFoundProblems when the pictures are further apart than was asked for.
+// Returns kFoundProblems if the metric exceeds --tol.
 ExitCode judge(const DiffRequest& request, const Measured& measured, const Streams& streams) {
   if (!request.tolerance) return kDone;
   if (measured.differences.invalid > 0) {

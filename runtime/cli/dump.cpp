@@ -1,4 +1,4 @@
-// fathom dump: what the compiler made of a scene, after its front end, after a pass, or as bytecode.
+// fathom dump: prints the compiler's stages of a scene: after the front end, after a pass, or as bytecode.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #include <fmt/format.h>
 
@@ -45,11 +45,11 @@ struct DumpRequest {
   int program = -1;  // 0 distance, 1 surface; -1: not given
   std::optional<std::string> after;
   std::optional<glm::dvec3> region, at;
-  std::string other;  // what --diff compares with; empty: the passes with each other
+  std::string other;  // second operand of --diff; empty: --diff compares the passes
   bool stats = false, diff = false, run = false;
 };
 
-// What the flags do not say follows from those that are there.
+// Infers the stage from the other flags if --stage is not given.
 void fill_in(DumpRequest& request) {
   const bool programs = request.diff && !request.other.empty();
   const bool bytecode = request.stats || request.program >= 0 || request.run || programs;
@@ -58,7 +58,7 @@ void fill_in(DumpRequest& request) {
   if (request.stage < 0) request.stage = graph && !bytecode ? kGraph : kBytecode;
 }
 
-// An ExitCode, after a message, when the flags do not go together.
+// Prints a message and returns an exit code if the flags do not go together.
 std::optional<ExitCode> check_request(const DumpRequest& request, const Streams& streams) {
   const auto refuse = [&](std::string_view problem, const char* help) {
     return fail(streams, kUsage, problem, {help});
@@ -147,7 +147,7 @@ std::string print(const compiler::Scene& scene, const compiler::Source& source, 
   return print_graph(scene, source);
 }
 
-// Where the zero of what follows is in the scene.
+// Returns a comment with the scene position of the listing's origin, empty if that is 0.
 std::string origin_line(const compiler::CompiledScene& scene) {
   const glm::dvec3 origin = scene.origin;
   return origin == glm::dvec3(0) ? "" : fmt::format("; origin {} {} {}\n", origin.x, origin.y, origin.z);
@@ -179,14 +179,14 @@ std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const
               {"--region lists the few of them that matter in the region at a point"});
 }
 
-// What is printed of a compiled scene alone, without the way to it.
+// Prints the stages that need only the compiled scene, not the compilation.
 std::string print_compiled(const compiler::CompiledScene& scene, const DumpRequest& request,
                            const compiler::FileContents& contents) {
   if (request.stage == kBytecode) return print_bytecode(scene, request);
   return compiler::write_listing(scene, contents);
 }
 
-// The stages that are made on the way from the text to the programs.
+// Prints the stages that need a compilation from the scene's text.
 ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& source, const Streams& streams) {
   std::string syntax;
   compiler::Scene graph;
@@ -201,7 +201,7 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
     options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = scene; };
   }
   const auto compiled = compile_scene({source, std::nullopt}, request.scene, streams, options);
-  if (request.stage == kSyntax) print(streams, syntax);  // of a scene with errors in it, too
+  if (request.stage == kSyntax) print(streams, syntax);  // also for a scene with errors
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   if (request.diff && !request.after) diff.add_fused(scene.distance);
@@ -225,7 +225,7 @@ ExitCode dump_compiling(const DumpRequest& request, const compiler::Source& sour
   return kDone;
 }
 
-// The compiled scene of one side of --diff a b, or the exit code after a message.
+// Returns the compiled scene of one side of --diff a b, or the exit code after a message.
 std::variant<compiler::CompiledScene, ExitCode> read_side(const DumpRequest& request, const std::string& path,
                                                           const Streams& streams) {
   SceneArguments arguments = request.scene;
@@ -264,7 +264,7 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
     if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
-    const bool whole = request.stage == kFile;  // claims and all
+    const bool whole = request.stage == kFile;  // print claims as stored, without proving them
     streams.out << print_compiled(whole ? input.stored->scene : proved_or_claimed(input), request,
                                   input.stored->contents);
     return kDone;

@@ -94,7 +94,7 @@ std::string vim_syntax() {
   out += fmt::format("syn match fathomStatement /^\\(fathom\\|{}\\)\\>/\n", fmt::join(kStatementWords, "\\|"));
   out += fmt::format("syn keyword fathomKeyword {}\n", fmt::join(kReservedWords, " "));
   out += fmt::format("syn keyword fathomConstant {}\n", fmt::join(kValues, " "));
-  // No keywords: a value may have the name of a function.
+  // Function names are matches and not keywords, because a value may have the name of a function.
   for (const std::string_view word : compiler::text::all_words()) {
     out += fmt::format("syn match fathomFunction /\\<{}\\ze\\s*(/\n", word);
   }

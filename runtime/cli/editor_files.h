@@ -1,4 +1,4 @@
-// What editors read to colour texts in Fathom's own notation, made from the language's tables of words.
+// Editor support for Fathom's own notation, generated from the language's vocabulary: syntax highlighting and more.
 // Tested by: tests/runtime/cli/cli_editor_test.cpp
 #pragma once
 
@@ -8,15 +8,15 @@
 namespace fathom::cli {
 
 struct EditorFile {
-  std::string path;  // below the extension's folder
+  std::string path;  // relative to the extension's folder
   std::string text;
 };
 
-// A syntax file of Vim and Neovim.
+// Returns a syntax file for Vim and Neovim.
 std::string vim_syntax();
 
-// An extension of Visual Studio Code: colours, brackets, comments, and a problem matcher for what
-// `fathom check --error-format short` prints.
+// Returns an extension for Visual Studio Code: colours, brackets, comments, and a problem matcher for the output of
+// `fathom check --error-format short`.
 std::vector<EditorFile> vscode_extension();
 
 }  // namespace fathom::cli

@@ -33,7 +33,7 @@ struct EmitRequest {
   std::optional<std::string> output, name_space, name;
 };
 
-// A Setter for names that `problem_with` has nothing against.
+// Makes a Setter that accepts a name unless `problem_with` returns a problem.
 Setter identifier(std::string (*problem_with)(std::string_view), std::optional<std::string>& target) {
   return [problem_with, &target](std::string_view text) -> Verdict {
     if (std::string problem = problem_with(text); !problem.empty()) {

@@ -1,4 +1,5 @@
-// fathom eval: the field at points, one line each, in the fewest digits that read back to the same number.
+// fathom eval: evaluates the field at points and prints one line per point, each number with the fewest digits that
+// read back to the same value.
 //
 //     $ fathom eval ball.json --at 0,2,0
 //     1.5 0 1 0 ball
@@ -32,7 +33,7 @@ struct EvalRequest {
   std::optional<std::string> points_file;
   std::vector<PointBox> boxes;
   int number = -1;  // a Number; -1: not given
-  int stage = -1;   // 0: --stage graph
+  int stage = -1;   // 0: --stage graph; -1: not given
   std::optional<std::string> after;
 };
 
@@ -68,7 +69,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-// Appends the file's points to `points`; otherwise the exit code after a message.
+// Appends the file's points to `points`. Returns an exit code after a message if the file cannot be read.
 std::optional<ExitCode> read_points(const std::string& path, const compiler::Limits& limits, const Streams& streams,
                                     std::vector<glm::dvec3>& points) {
   const auto read = read_text(path, limits, streams);
@@ -122,7 +123,7 @@ void print_f32(const compiler::CompiledScene& scene, const std::vector<glm::dvec
   }
 }
 
-// The box in the programs' coordinates, grown by more than the rounding of its corners.
+// Returns the box in the programs' coordinates, widened by more than the rounding error of its corners.
 PointBox local(const PointBox& box, glm::dvec3 origin) {
   if (origin == glm::dvec3(0)) return box;
   const glm::dvec3 lo = box.lo - origin, hi = box.hi - origin;

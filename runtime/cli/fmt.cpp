@@ -1,4 +1,4 @@
-// fathom fmt: the layout of scenes in Fathom's own notation.
+// fathom fmt: lays out scenes in Fathom's own notation.
 // Tested by: tests/runtime/cli/cli_convert_test.cpp
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ constexpr const char* kFmtExamples =
 
 enum class FmtMode { Print, Write, Check };
 
-// What becomes of one file.
+// Prints, rewrites or checks one file, depending on `mode`.
 ExitCode format_file(const std::string& path, FmtMode mode, const compiler::Limits& limits, const Streams& streams) {
   auto read = read_text(path, limits, streams);
   if (const auto* unreadable = std::get_if<Unreadable>(&read)) return fail(streams, path, *unreadable);

@@ -1,4 +1,4 @@
-// fathom import: models in formats from elsewhere as ordinary scene files.
+// fathom import: writes models of other formats as ordinary scene files.
 // Tested by: tests/runtime/cli/input/cli_import_test.cpp
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ constexpr const char* kImportExamples =
     "\n"
     "Every verb reads these formats itself. `fathom import` is for changing the model.";
 
-// For a comment of one line.
+// Replaces control characters, so that the text fits into a one-line comment.
 std::string printable(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
@@ -55,7 +55,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   }
   const auto compiled = compile_scene({source, std::nullopt}, scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  compiler::Diagnostics ignored;  // compiling it read it without any
+  compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::optional<compiler::ReadScene> model =
       compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments, streams));
   const bool foreign =

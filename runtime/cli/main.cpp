@@ -1,4 +1,4 @@
-// fathom: finds the verb and runs it; `help`, `--help` and `--version` are its own.
+// The program fathom: finds the verb and runs it. Implements `help`, `--help` and `--version` itself.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 #include <unistd.h>
@@ -44,7 +44,7 @@ std::string version() {
   return fmt::format("fathom {}{}\n", kVersion, kCommit.empty() ? "" : fmt::format(" ({})", kCommit));
 }
 
-// `fathom help limits`: the table.
+// Returns the table of `fathom help limits`.
 std::string limits_text(int columns) {
   std::string text =
       paragraph("A file that asks for more than a limit is refused. --limit NAME=VALUE sets a limit.", 0, columns) +
@@ -62,8 +62,8 @@ std::string limits_text(int columns) {
   return text;
 }
 
-// Of a thread whose exception nobody catches, or of one that the main thread's exception leaves without being joined:
-// with memory or threads at an end nothing is left but to say so.
+// Terminate handler: prints the reason and exits. std::terminate is called for an uncaught exception in a thread, and
+// for a thread not joined when the main thread throws. Both happen when memory or threads run out.
 [[noreturn]] void end_at_once() {
   std::string_view reason = "not enough memory, or not enough threads";
   try {
@@ -120,7 +120,7 @@ int run(std::span<const std::string> args, const Streams& streams) {
   return verb->run(help ? std::span<const std::string>(show_help) : args.subspan(1), streams);
 }
 
-// Runs, and makes sure that the data arrived.
+// Runs the verb and checks that its output reached standard output.
 int run_and_flush(std::span<const std::string> args, const Streams& streams) {
   const int code = run(args, streams);
   streams.out.flush();
@@ -139,9 +139,9 @@ int main(int argc, char** argv) {
   const bool dumb = term == nullptr || std::string_view(term) == "dumb";
   const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
   std::ios::sync_with_stdio(false);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, not the end
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the limit of file size makes a write fail instead of ending the program
   std::set_terminate(end_at_once);
-  std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // how a failed CHECK ends, after its message
+  std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // a failed CHECK aborts after its message
   const Streams streams{std::cin,          std::cout, std::cerr, terminal && !dumb, color, isatty(STDOUT_FILENO) != 0,
                         terminal_columns()};
   try {

@@ -1,4 +1,4 @@
-// fathom man: the manual page, made of the option tables.
+// fathom man: the manual page, generated from the option tables.
 // Tested by: tests/runtime/cli/options/cli_completion_test.cpp
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ constexpr const char* kManExamples =
     "fathom man | man -l -\n"
     "fathom man > ~/.local/share/man/man1/fathom.1";
 
-// Text as roff prints it: a line must not begin with a point or an apostrophe, and a minus is not a hyphen.
+// Escapes text for roff: a line must not begin with a point or an apostrophe, and a minus is not a hyphen.
 std::string roff(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
@@ -38,7 +38,7 @@ std::string roff(std::string_view text) {
   return escaped;
 }
 
-// "\fB\-o\fR, \fB\-\-output\fR \fIFILE\fR".
+// Returns an option's names and value: "\fB\-o\fR, \fB\-\-output\fR \fIFILE\fR".
 std::string heading(const OptionRow& row) {
   std::string text;
   for (const std::string& name : names_of(row)) {

@@ -1,5 +1,5 @@
-// fathom merge: the films of parts of a render become the film, or the pictures, of the whole. Sums of whole numbers:
-// neither the order of the parts nor how the work was split leaves a trace.
+// fathom merge: adds films of parts of a render up to the film or the images of the whole. Film sums are integers, so
+// the result is independent of the order of the parts and of the way in which the work was split.
 // Tested by: tests/runtime/cli/cli_merge_test.cpp
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return check_paths(request.pictures, streams);
 }
 
-// A file of the command line, without its sums.
+// A film file of the command line: its path and header, without the sums.
 struct Part {
   std::string path;
   runtime::FilmFile file;
@@ -80,7 +80,8 @@ std::variant<std::vector<Part>, ExitCode> read_parts(const MergeRequest& request
     if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return fail_to_read(*unread, streams);
     parts.push_back({path, std::get<runtime::FilmFile>(std::move(read))});
   }
-  // What the sum takes from the first of them does not depend on the order either.
+  // The parts are sorted because the sum takes some facts from the first part. The order of the command line must not
+  // matter.
   const auto place = [](const Part& part) {
     const runtime::PixelRect area = part.file.shape.area;
     return std::array<std::int64_t, 3>{area.y0, area.x0, part.file.header.samples.first};
@@ -94,7 +95,7 @@ std::string text_of(const runtime::SampleBlock& block) {
                      block.area.x0, block.area.y0, block.area.x1, block.area.y1);
 }
 
-// Whether the parts are of one render and apart.
+// Checks that the parts belong to one render and do not overlap. Otherwise prints a message and returns an exit code.
 std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Streams& streams) {
   const Part& first = parts.front();
   for (const Part& part : parts) {
@@ -129,7 +130,7 @@ std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Stream
   return std::nullopt;
 }
 
-// The sum's head: what the parts lie in.
+// Returns the header of the sum: the bounding rectangle and the sample range of all parts.
 runtime::FilmFile frame_of(const std::vector<Part>& parts) {
   runtime::FilmFile sum = parts.front().file;
   runtime::PixelRect& area = sum.shape.area;
@@ -144,7 +145,7 @@ runtime::FilmFile frame_of(const std::vector<Part>& parts) {
   return sum;
 }
 
-// The sum lies in memory whole, and one part beside it.
+// Checks the memory for the whole sum plus the largest part, which are in memory at the same time.
 std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vector<Part>& parts,
                                      const runtime::FilmShape& sum, const Streams& streams) {
   const auto film = static_cast<double>(runtime::Film::memory_per_pixel(sum.layers, sum.stages));
@@ -163,7 +164,7 @@ std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vec
        compiler::raise(&compiler::Limits::memory, needed)});
 }
 
-// The part once more, with its sums.
+// Reads the part again, now with its sums.
 std::variant<runtime::FilmFile, ExitCode> read_sums(const Part& part, const compiler::Limits& limits,
                                                     const Streams& streams) {
   auto read = runtime::read_film(part.path, read_limits(limits));
@@ -177,7 +178,7 @@ std::variant<runtime::FilmFile, ExitCode> read_sums(const Part& part, const comp
               {"merge once nobody writes to it any more"});
 }
 
-// Into `sum`, which is the parts' frame, part by part; their heads are known to fit.
+// Adds the parts to `sum`, which is frame_of(parts). The caller has checked that the headers match.
 std::optional<ExitCode> add_up(const std::vector<Part>& parts, const compiler::Limits& limits, runtime::FilmFile& sum,
                                const Streams& streams) {
   if (parts.size() > 1)

@@ -1,4 +1,4 @@
-// fathom plan: a render cut into units for many machines; and how far they are.
+// fathom plan: cuts a render into units for many machines, and reports the progress of the units.
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #include <fmt/format.h>
 
@@ -28,16 +28,16 @@ constexpr const char* kPlanExamples =
 struct PlanRequest {
   RenderRequest render;
   std::optional<std::string> output;
-  std::optional<PixelSize> tiles;   // columns and rows
-  std::optional<int> block;         // samples
-  std::optional<double> unit_time;  // seconds
+  std::optional<PixelSize> tiles;   // --tiles, columns and rows
+  std::optional<int> block;         // --sample-block, samples per pixel
+  std::optional<double> unit_time;  // --unit-time, seconds
   std::optional<int> workers, per_task;
   bool no_pilot = false, status = false, sums = false, json = false;
-  std::vector<std::string> arguments;  // of the plan
-  std::vector<std::string> running;    // of the pilot
+  std::vector<std::string> arguments;  // arguments that the plan records
+  std::vector<std::string> running;    // arguments for the pilot only
 };
 
-// Options that say nothing of what is rendered, and limits, which whoever renders may raise.
+// Options that do not change the rendered images, and limits, which a worker may raise.
 constexpr std::array<std::string_view, 14> kOwn = {
     "--limit",    "--output",   "--frames", "--tiles", "--sample-block", "--unit-time", "--workers",
     "--no-pilot", "--per-task", "--status", "--quiet", "--threads",      "--root",      "--error-format",
@@ -89,14 +89,14 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-// The scene's text with all that it imports, and its values of parameters among the plan's arguments.
+// Stores the scene's text with all imports in the plan, and the values of its parameters in the plan's arguments.
 std::optional<ExitCode> take_scene(PlanRequest& request, RenderPlan& plan, const Streams& streams) {
   SceneArguments& arguments = request.render.scene;
   const std::size_t given = arguments.definitions.size();
   auto text = read_scene_text(arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&text)) return *code;
   SceneInput input{std::get<SceneText>(std::move(text)).source, std::nullopt};
-  // Those that a compiled file came with come first.
+  // Definitions from a compiled file precede those of the command line, which override them.
   for (std::size_t i = 0; i + given < arguments.definitions.size(); ++i) {
     const auto& [name, value] = arguments.definitions[i];
     plan.arguments.push_back(fmt::format("--define={}={}", name, value));
@@ -114,7 +114,7 @@ std::optional<ExitCode> take_scene(PlanRequest& request, RenderPlan& plan, const
   return std::nullopt;
 }
 
-// What the first frame says of all.
+// Takes from the first frame the settings that all frames share.
 std::optional<ExitCode> take_settings(const Picture& picture, RenderPlan& plan, const Streams& streams) {
   const runtime::RenderOptions& options = picture.request.options;
   const runtime::Settings settings = runtime::resolve(picture.scene, options);
@@ -174,7 +174,8 @@ void describe(const PlanRequest& request, const RenderPlan& plan, const Pilot& p
                            count_of(pilot.frames(), "small picture"), in_time(pilot.seconds())));
   say(streams, fmt::format("all of them take {}", in_time(all)));
   if (!request.workers) return;
-  // Whoever is free takes the next. Source: R. L. Graham, Bounds on Multiprocessing Timing Anomalies, 1969.
+  // Bounds of list scheduling, in which an idle machine takes the next unit. Source: R. L. Graham, Bounds on
+  // Multiprocessing Timing Anomalies, 1969.
   const double n = *request.workers;
   const double least = std::max(all / n, unit.longest), most = all / n + unit.longest * (n - 1) / n;
   say(streams, fmt::format("{} like it: {} to {}", count_of(static_cast<std::size_t>(*request.workers), "machine"),

@@ -1,4 +1,5 @@
-// fathom render: scene file to pictures. Everything that can be found wrong is found before the first ray.
+// fathom render: renders a scene file to images. The verb reports every error that can be detected in advance before
+// it traces the first ray.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ bool asks_for_checkpoint(std::span<const std::string> args) {
   });
 }
 
-// One picture of the file as it is now.
+// Renders one image of the scene file in its current state.
 ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams& streams, Watching* watching,
                      std::optional<Interruption>& interruption) {
   const auto input = read_scene(request.scene, streams);
@@ -33,7 +34,8 @@ ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams
   return PictureJob(*std::get<std::unique_ptr<Picture>>(picture), streams, watching, interruption).run();
 }
 
-// Until a signal ends the program: files are written whole or not at all, so any moment will do.
+// Renders again after every change until a signal ends the program. Files are written atomically, so the signal may
+// come at any moment.
 [[noreturn]] void render_on_change(RenderRequest request, const Streams& streams) {
   Watching watching{runtime::FileWatch({request.scene.path})};
   request.scene.on_import = [&](const std::string& path) { watching.files.add(path); };
@@ -41,7 +43,7 @@ ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams
   KeptWork kept;
   for (bool first = true;; first = false) {
     watching.changed = false;
-    kept.background = nullptr;  // its file may be another by now
+    kept.background = nullptr;  // the background's file may have changed
     kept.messages.clear();
     render_once(request, kept, streams, &watching, none);
     if (first && !request.quiet) {
@@ -57,11 +59,12 @@ ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams
 }  // namespace
 
 int run_render(std::span<const std::string> args, const Streams& streams) {
-  std::signal(SIGUSR1, SIG_IGN);  // who asks for a picture when there is none gets none
-  // Whoever asks for a checkpoint gets one from the first moment on, while the scene is read and compiled, too.
+  std::signal(SIGUSR1, SIG_IGN);  // ignore requests for an image while there is none
+  // The Interruption exists from the start, so that a signal yields a checkpoint even while the scene is read and
+  // compiled.
   std::optional<Interruption> interruption;
   if (asks_for_checkpoint(args)) interruption.emplace();
-  std::signal(SIGPIPE, SIG_IGN);  // who reads the messages may go before the render is done
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of the messages may close its pipe before the render is done
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);

@@ -1,4 +1,4 @@
-// fathom schema: what editors want to know of scene files: the JSON Schema, and the words of the notation.
+// fathom schema: prints the files that editors need for scenes: the JSON Schema, and the vocabulary of the notation.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp, tests/runtime/cli/cli_editor_test.cpp
 #include "compiler/frontend/records/schema.h"
 

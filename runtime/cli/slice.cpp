@@ -1,4 +1,4 @@
-// fathom slice: the field on a plane as a picture, where it is solid or how far the surface is.
+// fathom slice: draws the field on a plane, as inside and outside or as distances.
 //
 //     $ fathom slice ball.json --show sign -o ball.png
 //     inside 107968 of 262144 pixels
@@ -78,7 +78,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-// In the programs' coordinates.
+// Returns the requested slice in the programs' coordinates.
 runtime::Slice place_slice(const SliceRequest& request, const compiler::CompiledScene& scene) {
   const auto axis = static_cast<runtime::Axis>(request.axis);
   const double at = request.at.value_or(0) - scene.origin[request.axis];
@@ -90,23 +90,23 @@ runtime::Slice place_slice(const SliceRequest& request, const compiler::Compiled
   return slice;
 }
 
-// The line that is printed for a picture of the signs.
+// Returns the line printed for an image of the signs.
 std::string count_inside(const std::vector<float>& field) {
   const auto inside = std::count_if(field.begin(), field.end(), [](float value) { return value < 0; });
   return fmt::format("inside {} of {} pixels\n", inside, field.size());
 }
 
-// The line that is printed for a picture of the distances.
+// Returns the line printed for an image of the distances.
 std::string describe_bands(const std::vector<float>& field, double step) {
   float least = std::numeric_limits<float>::infinity(), most = -least;
   for (const float value : field) {
-    least = std::min(least, value);  // leaves NaN aside: it is the second argument
+    least = std::min(least, value);  // ignores NaN, which is the second argument
     most = std::max(most, value);
   }
   return fmt::format("a line every {:.6g} scene units, distances from {} to {}\n", step, least, most);
 }
 
-// A picture and the line that is printed of it: on standard output, unless the picture goes there.
+// An image and its line of text. The line goes to standard output unless the image does.
 struct Drawing {
   runtime::Picture picture;
   std::string line;

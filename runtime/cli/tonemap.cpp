@@ -1,5 +1,5 @@
-// fathom tonemap: numbers to a picture. Of the OpenEXR file of a render it makes, bit for bit, the picture that the
-// render would have written itself.
+// fathom tonemap: converts HDR values to a displayable image. From a render's OpenEXR file it makes, bit for bit, the
+// image that the render itself would have written.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ constexpr const char* kTonemapExamples =
 struct TonemapRequest {
   std::string input;
   std::optional<Output> output;
-  int format = -1;  // of -o -, see put_formats()
+  int format = -1;  // format of -o -, see put_formats()
   std::optional<double> exposure;
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int layer = 0;  // a runtime::Layer

@@ -1,4 +1,4 @@
-// The verbs of the program: the one table that `fathom --help`, the dispatch, did-you-mean, completion and man read.
+// The table of the program's verbs, shared by `fathom --help`, the dispatch, did-you-mean, completion and the manual.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace fathom::cli {
 
-// Each takes what follows the verb on the command line and returns an ExitCode.
+// Each function takes the arguments after the verb and returns an ExitCode.
 int run_render(std::span<const std::string> args, const Streams& streams);
 int run_check(std::span<const std::string> args, const Streams& streams);
 int run_dump(std::span<const std::string> args, const Streams& streams);
@@ -61,13 +61,13 @@ inline constexpr std::array kVerbs = {
     Verb{"man", "", "prints the manual page", run_man},
 };
 
-// "fathom render scene.json -o out.png".
+// Returns an example of the verb's usage: "fathom render scene.json -o out.png".
 inline std::string usage_of(const Verb& verb) {
   std::string usage = "fathom " + std::string(verb.name);
   return verb.arguments.empty() ? usage : usage + ' ' + std::string(verb.arguments);
 }
 
-// The options of the verb `name`, which exists.
+// Returns the options of the verb `name`, which must exist.
 OptionTable option_table(std::string_view name);
 
 }  // namespace fathom::cli

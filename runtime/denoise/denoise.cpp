@@ -19,7 +19,7 @@ std::size_t pixels_of(const DenoiseInput& input) {
 
 #ifdef FATHOM_OIDN
 
-// Open Image Denoise 1.4 to 2: radiance, albedo and normals in, radiance out, in memory of its device.
+// Open Image Denoise 1.4 to 2: radiance, albedo and normals in, radiance out, in memory of the library's device.
 std::vector<float> filter(const DenoiseInput& input, int threads) {
   oidn::DeviceRef device = oidn::newDevice(oidn::DeviceType::CPU);
   device.set("numThreads", threads);
@@ -50,7 +50,7 @@ std::vector<float> filter(const DenoiseInput& input, int threads) {
 
 #else
 
-// Light is smoother than what it falls on: radiance is filtered per albedo, but for black surfaces.
+// Light is smoother than the texture it falls on, so radiance is filtered per albedo, except on black surfaces.
 constexpr float kLeastAlbedo = 0.05f;
 float divisor(float albedo) { return std::isfinite(albedo) ? std::max(albedo, kLeastAlbedo) : 1; }
 

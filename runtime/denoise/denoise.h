@@ -1,9 +1,9 @@
-// The denoiser: what a picture of few samples would be with many more, as far as its neighbourhood tells.
+// The denoiser: estimates the image that many more samples would give, from each pixel's neighbourhood.
 //
 // Rousselle, Manzi, Zwicker, "Robust Denoising using Feature and Color Information", Pacific Graphics 2013: means
-// over a window, weighted by how alike pixels are in colour, in what is seen there, or in both; each pixel takes the
-// one of the three with the least error, which is estimated without knowing the truth (runtime/denoise/nl_means.h).
-// Built where Open Image Denoise is installed, that does the work instead (FATHOM_OIDN).
+// over a window, weighted by how similar pixels are in colour, in features, or in both. Each pixel takes the mean
+// with the least error of the three, which is estimated without knowing the truth (runtime/denoise/nl_means.h). A
+// build with Open Image Denoise uses that library instead (FATHOM_OIDN).
 //
 // Tested by: tests/runtime/denoise/denoise_test.cpp
 #pragma once
@@ -15,24 +15,25 @@
 
 namespace fathom::runtime {
 
-// All [y][x] or [y][x][component], y downwards, each of one size. What is not finite is made up from its neighbours.
+// All [y][x] or [y][x][component], y downwards, each of one size. A pixel that is not finite is made up by its
+// neighbours.
 struct DenoiseInput {
   int width = 0, height = 0;
-  // Mean radiance, linear sRGB, of two halves of each pixel's samples: what they have in common is the picture, in
-  // what they differ is noise. Not looked at together, so that noise cannot choose its own weights.
+  // Mean radiance, linear sRGB, of two halves of each pixel's samples. The halves have the image in common and differ
+  // in noise. The filter keeps them apart, so that noise cannot choose its own weights.
   std::span<const float> first, second;
-  // Of the first surface met, means over the samples and as good as free of noise.
-  std::span<const float> albedo;  // [0,1]; 1 where nothing was met
-  std::span<const float> normal;  // not normalised; 0 where nothing was met
-  std::span<const float> depth;   // scene units; 0 where nothing was met
+  // Features of the first hit, means over the samples and nearly free of noise.
+  std::span<const float> albedo;  // [0,1]; 1 for misses
+  std::span<const float> normal;  // not normalised; 0 for misses
+  std::span<const float> depth;   // scene units; 0 for misses
 };
 
-// Denoised radiance, [y][x][rgb]. The bits do not depend on `threads`; with Open Image Denoise they may depend on the
-// machine.
+// Returns denoised radiance, [y][x][rgb]. The bits do not depend on `threads`. With Open Image Denoise they may
+// depend on the machine.
 std::vector<float> denoise(const DenoiseInput& input, int threads);
 
-// Gives the film denoised radiance (Film::set_denoised); it must keep FilmLayers::first_hit and ::halves, with two
-// samples a pixel or more.
+// Gives the film denoised radiance (Film::set_denoised). The film must keep FilmLayers::first_hit and ::halves, with
+// at least two samples per pixel.
 void denoise(Film& film, int threads);
 
 }  // namespace fathom::runtime

@@ -11,7 +11,7 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr float kAlike = 0.15f;  // difference of a feature that halves a weight, about
+constexpr float kAlike = 0.15f;  // difference of a feature that about halves a weight
 constexpr int kVarianceRadius = 1, kErrorRadius = 4, kChoiceRadius = 2;
 
 Plane box_mean(const Plane& plane, int width, int height, int radius) {
@@ -32,7 +32,8 @@ Plane box_mean(const Plane& plane, int width, int height, int radius) {
   return pass(pass(plane, width, height, 1, row), height, width, row, 1);
 }
 
-// The lesser change to the neighbours on both sides along an axis: that of the surface itself, at its edge, too.
+// Returns the smaller of the changes to the neighbours on both sides along an axis: the slope of the surface itself,
+// even at its edge.
 Plane slope(const Plane& plane, int width, int height, bool across) {
   const auto at = [&](int x, int y) {
     return plane[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
@@ -51,9 +52,9 @@ Plane slope(const Plane& plane, int width, int height, bool across) {
   return result;
 }
 
-// Pixels that show the edge between two surfaces in part are like none: their slopes are steep on both sides, and by
-// so much their neighbours may differ (RMZ 2013, equation 5; there the gradient, which is steep beside the edge,
-// too).
+// Weight of squared differences in three features. A pixel on the edge between two surfaces resembles no other pixel:
+// its slopes are steep on both sides, and its neighbours may differ by that slope (RMZ 2013, equation 5; there by the
+// gradient, which is steep next to the edge, too).
 Plane sharpness_of(const NlMeansInput& input, std::size_t first) {
   Plane squares(input.valid.size(), kAlike * kAlike);
   for (std::size_t i = first; i < first + 3; ++i) {
@@ -66,8 +67,8 @@ Plane sharpness_of(const NlMeansInput& input, std::size_t first) {
   return squares;
 }
 
-// The two copies differ by their noise: half the square of the difference is the variance of one, in the mean. What
-// is beyond float's range of squares counts as the most of which sums are still numbers.
+// Estimates the noise: half the squared difference of the copies is the variance of one copy, in the mean. Squares
+// beyond float's range count as the largest value whose sums are still finite.
 Plane noise_of(const NlMeansInput& input) {
   Plane noise(input.valid.size(), 0);
   for (std::size_t i = 0; i < noise.size(); ++i) {
@@ -114,7 +115,8 @@ NlMeansFiltered filter(const NlMeansFrame& framing, int threads) {
   return filtered;
 }
 
-// Every pixel's share of every candidate: the best one's by the errors around it, with soft seams.
+// Returns every pixel's share of every candidate: 1 for the candidate with the least error around the pixel, with
+// soft seams.
 std::array<Plane, kCandidates> choose(NlMeansFiltered& filtered, int width, int height) {
   for (Plane& error : filtered.errors) error = box_mean(error, width, height, kErrorRadius);
   std::array<Plane, kCandidates> shares;

@@ -1,5 +1,5 @@
-// The loops over rows, compiled once for each instruction set and chosen at run time (Highway's foreach_target). They
-// go by whole registers, beyond a tile's last column, too: rows are that much longer, and nobody reads what is there.
+// The loops over rows, compiled once per instruction set and chosen at run time (Highway's foreach_target). The loops
+// process whole registers, even beyond a tile's last column: rows are longer, and nothing reads the rest.
 #include "runtime/denoise/nl_means_tile.h"
 
 #include <cmath>
@@ -22,22 +22,22 @@ HWY_INLINE void store(V value, float* to) { hn::StoreU(value, Lanes(), to); }
 HWY_INLINE void add_to(float* sum, V value) { store(hn::Add(load(sum), value), sum); }
 HWY_INLINE V square(V v) { return hn::Mul(v, v); }
 
-// move(x) for the first lane of each register of `width` columns.
+// Calls move(x) for the first lane of each register of `width` columns.
 template <class Move>
 HWY_INLINE void for_columns(int width, const Move& move) {
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(Lanes()))) move(x);
 }
 
-// How much a difference of colour, in deviations of the noise, counts beside one of the features.
+// Weight of a colour difference, in standard deviations of the noise, relative to that of a feature.
 constexpr float kColor = 1 / (0.5f * 0.5f);
-constexpr float kDepthSlack = 0.01f;  // of the depth itself
+constexpr float kDepthSlack = 0.01f;  // relative to the depth
 constexpr float kEighth = 0.125f;
 
-// Stands for e^-8x: the same to a tenth where it matters, 0 beyond 1, and no more than multiplications.
+// Approximates e^-8x by multiplications: within a tenth where the value matters, 0 beyond 1.
 HWY_INLINE V falloff(V x) { return square(square(square(hn::Max(hn::Sub(k(1), x), hn::Zero(Lanes()))))); }
 
-// What a neighbour so far away counts at most: the window has no edge. (The kernel with the least error for its
-// width, Epanechnikov, "Non-Parametric Estimation of a Multivariate Probability Density", 1969.)
+// Maximum weight of a neighbour at this distance, so that the window has no hard edge. (The kernel with the least
+// error for its width, Epanechnikov, "Non-Parametric Estimation of a Multivariate Probability Density", 1969.)
 float fade(int dx, int dy) {
   const float apart = static_cast<float>(dx * dx + dy * dy);
   return std::max(0.0f, 1 - apart / ((kWindow + 1) * (kWindow + 1)));
@@ -71,7 +71,8 @@ class TileFilter {
     }
   }
 
-  // Squared differences at an offset less the noise's share, in variances (RKZ 2012, equation 2, channels together).
+  // Computes squared differences at an offset less the noise's share, in variances (RKZ 2012, equation 2, all
+  // channels).
   void compare_pixels(int dx, int dy) {
     for (int y = tile_.y0 - kPatch; y < tile_.y1 + kPatch; ++y) {
       const int p = tile_.x0 - kPatch, q = p + dx;
@@ -87,7 +88,7 @@ class TileFilter {
           for (const Framed& channel : in_.copies[half]) {
             sum = hn::Add(sum, square(hn::Sub(load(channel.row(y) + p + x), load(channel.row(y + dy) + q + x))));
           }
-          // A difference beyond float's range of squares is as good as the largest number.
+          // A square beyond float's range counts as the largest number.
           const V distance = hn::Mul(hn::Sub(hn::Min(sum, k(1e38f)), noise), scale);
           store(hn::Min(distance, k(1e30f)), buffers_.distances[half][row_of(y + kPatch)].data() + x);
         }
@@ -95,7 +96,7 @@ class TileFilter {
     }
   }
 
-  // Into the element of the patch's corner, times what they count.
+  // Averages each patch into the element of its corner, times the weight of colour.
   void average_patches(TileBuffers::Grown& distance) const {
     constexpr int kSide = 2 * kPatch + 1;
     const std::size_t height = row_of(tile_.y1);
@@ -117,7 +118,7 @@ class TileFilter {
     }
   }
 
-  // How unlike what is seen at both pixels is: features, and depth that leaves the pixel's slope.
+  // Computes how unlike the features of both pixels are, and how far the depth leaves the pixel's slope.
   void compare_features(int y, int dx, int dy) {
     const int p = tile_.x0, q = p + dx;
     const float *depth_p = in_.depth.row(y) + p, *depth_q = in_.depth.row(y + dy) + q;
@@ -141,7 +142,8 @@ class TileFilter {
     });
   }
 
-  // What each neighbour counts: for all weights alike, and by features alone, which is the same for both copies.
+  // Computes each neighbour's weights: the factor that all sets share, and the weight by features alone, which both
+  // copies share.
   void weigh(int y, int dx, int dy) {
     const float* valid = in_.valid.row(y + dy) + tile_.x0 + dx;
     const V faded = k(fade(dx, dy));
@@ -177,7 +179,7 @@ class TileFilter {
     });
   }
 
-  // Means and their errors.
+  // Computes the means and their errors.
   void finish(int y) {
     const std::size_t ty = row_of(y);
     for (int x = tile_.x0; x < tile_.x1; ++x) {
@@ -201,8 +203,8 @@ class TileFilter {
           bright += means[0] * means[0] + means[1] * means[1];
         }
         if (k == 0) light = bright + noise + 1e-20f;
-        // The mean of the two has the bias of each and half their variance, which is half the square of what is
-        // between.
+        // The mean of the two copies has the bias of each and half the variance. A copy's variance is half the square
+        // of the difference between the copies.
         out_.errors[k][at] = (error - apart / 4) / light;
       }
     }

@@ -1,5 +1,5 @@
-// Non-local means over one tile: the inner loops of nl_means.h, compiled for every instruction set, and what they
-// read and make.
+// Non-local means over one tile: the inner loops of nl_means.h, compiled for every instruction set, with their input
+// and output.
 //
 // Tested by: tests/runtime/denoise/denoise_test.cpp
 #pragma once
@@ -14,13 +14,13 @@
 
 namespace fathom::runtime {
 
-inline constexpr int kWindow = 8;  // pixels to each side that are averaged
-inline constexpr int kPatch = 2;   // pixels to each side that are compared
+inline constexpr int kWindow = 8;  // averaged pixels to each side
+inline constexpr int kPatch = 2;   // compared pixels to each side
 
-inline constexpr int kMostLanes = 16;  // floats in a register, at most
+inline constexpr int kMostLanes = 16;  // maximum number of floats in a register
 
-// A plane with a margin, so that the inner loops need not ask where the picture ends; 0 there. Registers may
-// be read from any place of it.
+// A plane with a margin of zeros, so that the inner loops need not test for the image's border. A register may be
+// loaded from any place in the plane.
 class Framed {
  public:
   Framed() = default;
@@ -40,18 +40,18 @@ class Framed {
   std::vector<float> values_;
 };
 
-// What filtering reads.
+// Input of the filter.
 struct NlMeansFrame {
   int width, height;
   std::array<std::array<Framed, 3>, 2> copies;
   std::array<Framed, 6> features;
-  std::array<Framed, 2> sharpness;  // what squared differences of the first and last three features count
+  std::array<Framed, 2> sharpness;  // weights of squared differences of the first and last three features
   Framed depth, slope_x, slope_y, valid;
-  Framed noise;     // variance of a copy as it looks, all channels together
-  Framed variance;  // the same, smoothed
+  Framed noise;     // variance of a copy as seen in each pixel, all channels together
+  Framed variance;  // `noise`, smoothed
 };
 
-// What filtering makes: for each set of weights the picture and its error.
+// Output of the filter: the image and its error for each set of weights.
 inline constexpr std::size_t kCandidates = 3;
 struct NlMeansFiltered {
   std::array<std::array<Plane, 3>, kCandidates> colors;
@@ -60,19 +60,19 @@ struct NlMeansFiltered {
 
 inline constexpr int kTile = 32;  // a multiple of kMostLanes
 
-// One thread's, kept from tile to tile.
+// Buffers of one thread, kept from tile to tile.
 struct TileBuffers {
   using Row = std::array<float, kTile>;
   using Grown = std::array<std::array<float, kTile + kMostLanes>, kTile + 2 * kPatch>;
   using Sums = std::array<std::array<Row, 4>, kTile>;  // [y][red, green, blue, weight][x]
 
-  std::array<Grown, 2> distances;  // by each copy's colours
-  Row unlikeness, share, alike;    // of the row and offset at hand
-  // For each set of weights and each copy: of the copy's values by the other's weights.
+  std::array<Grown, 2> distances;  // by the colours of each copy
+  Row unlikeness, share, alike;    // of the current row and offset
+  // For each set of weights and each copy: sums of the copy's values by the other copy's weights.
   std::array<std::array<Sums, 2>, kCandidates> sums;
 };
 
-// `tile` has kTile x kTile pixels at most.
+// `tile` has at most kTile x kTile pixels.
 void filter_tile(const NlMeansFrame& in, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& out);
 
 }  // namespace fathom::runtime

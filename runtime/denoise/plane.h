@@ -1,4 +1,4 @@
-// A plane of a picture: one number for each pixel.
+// A plane of an image: one number per pixel.
 #pragma once
 
 #include <vector>

@@ -1,9 +1,10 @@
-// The values that distances far from every surface take in a scene of many objects.
+// Rounding of the distances far from every surface, in scenes of many objects.
 //
-// Regions (regions.h) evaluate such a scene fast because they know what matters near a point only. Rays have to take
-// the same steps with them as without them, to the bit. So every evaluation of such a scene, of the whole program
-// too, rounds alike: a distance above `first` goes down to the next first * 4^k. A cell in which all distances round
-// to one value needs no program, and elsewhere what lies further than the cell's highest level does not matter.
+// Regions (regions.h) evaluate these scenes fast because a region knows only what matters near a point. Rays must
+// take the same steps with regions as without them, bit for bit. So all evaluations round alike, also those of the
+// whole program: a distance above `first` is rounded down to the next level, first * 4^k. A cell in which all
+// distances round to one value needs no program. In other cells, objects further away than the cell's highest level
+// do not matter.
 // Tested by: tests/runtime/field/regions_test.cpp
 #pragma once
 
@@ -21,15 +22,17 @@ namespace fathom::runtime {
 struct FarLevels {
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
-  float first = kNone;  // scene units; distances up to here are exact
-  // Outside the box of the bounded parts no distance is above half of the way there, along the axis on which that is
-  // longest, but at least `first` and at most `most`: so these parts do not matter where they are far.
+  float first = kNone;  // scene units; distances up to this one are exact
+  // Maximum of `cap`, scene units. Outside the box [lo, hi] of the bounded parts, a distance is capped at half of the
+  // way to the box, measured along the axis on which that way is longest. The cap is at least `first` and at most
+  // `most`. So the bounded parts do not matter where they are far.
   float most = kNone;
   std::array<float, 3> lo{}, hi{};
 
   bool used() const { return first < kNone; }
 
-  // The largest level that is not above a distance; a distance up to `first` is its own. Of NaN NaN.
+  // Returns the largest level that is not above `distance`. Distances up to `first`, infinity and NaN are returned
+  // unchanged.
   template <class S>
   S level(S distance) const {
     using Bits = std::conditional_t<sizeof(S) == sizeof(float), std::uint32_t, std::uint64_t>;
@@ -41,10 +44,11 @@ struct FarLevels {
     return distance > least && distance < std::numeric_limits<S>::infinity() ? rounded : distance;
   }
 
+  // Returns the cap at a point, infinity in the box [lo, hi].
   float cap(float x, float y, float z) const {
     return cap_at(std::max({lo[0] - x, x - hi[0], lo[1] - y, y - hi[1], lo[2] - z, z - hi[2]}));
   }
-  // The largest one in a box.
+  // Returns the largest cap in the box [from, to], infinity if that box meets [lo, hi].
   float cap(const std::array<float, 3>& from, const std::array<float, 3>& to) const {
     float away = -kNone, nearest = -kNone;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,7 +58,7 @@ struct FarLevels {
     return nearest > 0 ? cap_at(away) : kNone;
   }
 
-  // What a distance at a place counts as.
+  // Returns the rounded value of a distance at the point (x, y, z).
   template <class S>
   S operator()(S distance, float x, float y, float z) const {
     const S highest = static_cast<S>(cap(x, y, z));

@@ -17,8 +17,8 @@ struct Line {
   glm::dvec3 origin, direction;
 };
 
-// The i-th of some lines through the scene, followed to where it is near a surface; nothing when it comes to none.
-// Places and directions anywhere: multiples of irrational numbers, modulo 1.
+// Returns the i-th of some lines through the scene, followed to a point near a surface, or nothing if the line comes
+// to none. Origins and directions are multiples of irrational numbers, modulo 1, and so fall anywhere.
 std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i, double near,
                                     vm::Workspace& workspace) {
   constexpr int kSteps = 64;
@@ -34,10 +34,11 @@ std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i,
   return std::nullopt;
 }
 
-// Field::longest_told, of lengths eight times shorter one after another.
+// Computes Field::longest_told by trying lengths, each eight times shorter than the one before.
 double longest_told(const compiler::CompiledField& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
-  constexpr double kTold = 0.8, kNear = 1e-4;  // of what the field's constant alone says; of the extent
+  // kTold: share of the slope's range that the Lipschitz constant alone allows. kNear: share of the extent.
+  constexpr double kTold = 0.8, kNear = 1e-4;
   if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
   vm::Workspace workspace;
   std::vector<Line> lines;
@@ -56,13 +57,13 @@ double longest_told(const compiler::CompiledField& scene, double extent) {
   return 0;
 }
 
-// What regions are to cover.
+// Returns the box that regions have to cover.
 const compiler::Box& contents_of(const Field& field, const compiler::CompiledField& compiled) {
   return field.bound.finite() ? field.bound : compiled.contents;
 }
 
-// A ray may go far from the bounded parts of an unbounded scene, and should find cells there; finer ones than a float
-// tells apart would be of no use (kCellMargin in region_splitter.h).
+// Returns RegionOptions::room. A ray may go far from the bounded parts of an unbounded scene, and should find cells
+// there. Cells finer than a float resolves would be of no use (kCellMargin in region_splitter.h).
 int room_of(const Field& field, const compiler::CompiledField& compiled) {
   constexpr int kLeastRoom = 3, kMostRoom = 6;
   if (field.bound.finite() || compiled.contents.empty()) return 0;
@@ -73,8 +74,9 @@ int room_of(const Field& field, const compiler::CompiledField& compiled) {
   return room;
 }
 
-// A large scene takes the same steps with regions as without. They know neither how far the solid is convex, but
-// within a cell, nor what the field does along a line, which asked of the whole program costs more than it tells.
+// Turns off what regions cannot provide, because a large scene takes the same steps with regions as without. Regions
+// know the convexity radius only within a cell. They know nothing of the field along a line, and evaluating the whole
+// program there costs more than the result saves.
 void become_large(Field& field, const FarLevels& levels) {
   field.far_levels = levels;
   field.convex = false;
@@ -96,10 +98,11 @@ Field make_field(const compiler::CompiledScene& scene, std::optional<double> far
 
 Field make_field(const compiler::CompiledField& compiled, double extent, std::optional<double> far) {
   CHECK(compiled.lipschitz > 0, "a field that never changes has no surface to march to");
-  // A crossing is tried within this part of the extent. Smaller: more evaluations near the surface; larger: a chord
-  // shorter than it may be missed beside a surface that is met head-on.
+  // Distance below which a crossing is tried, as a share of the extent. Smaller: more evaluations near the surface.
+  // Larger: a chord shorter than this distance may be missed next to a surface that a ray meets head-on.
   constexpr double kBand = 1e-4;
-  // The bound's surface may be the solid's, and a ray must see both sides of it.
+  // Margin of the bound, as a share of the extent. The bound's surface may be the solid's, and a ray must see both
+  // sides of the solid's surface.
   constexpr double kBoundMargin = 1e-3;
 
   Field field{};
@@ -111,10 +114,12 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
   field.magnitude = static_cast<float>(compiled.magnitude);
   field.band = static_cast<float>(kBand * extent);
-  // What it costs to know how far the solid is convex pays where that is seldom no further than the distance.
+  // Minimum share of convex shapes in the program's cost. Computing the convexity radius pays off when the radius
+  // usually exceeds the distance.
   constexpr double kConvexShare = 0.25;
   field.convex = vm::convex_share(compiled.distance) >= kConvexShare;
-  // Where the bound does not end a ray, `far` has to: certify() needs an end. No number of a scene is larger.
+  // A ray that the bound does not end must end at `far`, because certify() needs an end. No number of a scene is
+  // larger.
   constexpr double kFarthest = 1e18;
   const bool bounded = compiled.bound.empty() || compiled.bound.finite();
   field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
@@ -163,7 +168,7 @@ void Field::evaluate(vm::RealPoints points, std::size_t count, double* out, std:
     for (std::size_t i = 0; i < count; ++i) out[i] = rounded(out[i], {points.x[i], points.y[i], points.z[i]});
     return;
   }
-  // Points of different rays share no part.
+  // Points of different rays share no part of the program, so each point is evaluated alone.
   for (std::size_t i = 0; i < count; ++i) {
     instructions[i] = 0;
     out[i] = regions->evaluate(glm::dvec3(points.x[i], points.y[i], points.z[i]), scratch, instructions[i]);

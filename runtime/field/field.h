@@ -1,4 +1,4 @@
-// What marching needs to know of a scene: its distance program and a few constants that hold for every ray.
+// The scene as marching needs it: the distance program and a few constants that hold for every ray.
 // Tested by: tests/runtime/march/march_test.cpp
 #pragma once
 
@@ -18,47 +18,49 @@ class RegionStore;
 
 struct Field {
   const vm::VerifiedProgram* distance;
-  const vm::VerifiedProgram* surface;  // the same field with `tag`s
-  compiler::Box bound;                 // the field is positive outside; a little larger than the scene's own
+  const vm::VerifiedProgram* surface;  // the same field with `tag` instructions
+  compiler::Box bound;                 // the scene's bound with a margin, outside which the field is positive
   double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|
-  double far;                          // rays end here, scene units; may be infinite when the bound is finite
-  float band;                          // near the surface: distances at which a crossing is tried, scene units
+  double far;  // maximum length of rays, scene units; may be infinite when the bound is finite
+  float band;  // distance below which a marcher tries to cross the surface, scene units
   float inv_lipschitz;
-  float magnitude;  // scene units (compiler/shapes/bounds.h)
-  // Of iterated maps interval arithmetic knows nothing until a stretch is tiny. The longest one, scene units, over
-  // which along() tells how steep the field is, on each of some lines near surfaces; infinite where all is proved.
+  float magnitude;  // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
+  // Maximum length of an interval, scene units, over which along() tells how steep the field is, tried on some lines
+  // near surfaces. Interval arithmetic knows nothing of an iterated map until the interval is tiny. Infinite if the
+  // compiler proved the field's Lipschitz constant, 0 for a large scene.
   double longest_told;
-  // How distances are rounded where nothing is near, of a scene so large that it could have regions: then what
-  // follows evaluates to the same bits with them and without.
+  // Rounding of distances where no surface is near, for scenes so large that they could have regions. The functions
+  // below evaluate to the same bits with regions and without.
   FarLevels far_levels;
-  std::shared_ptr<const Regions> regions;  // of a scene that gains by them
-  // Whether float distances come with how far around the point the solid is convex (vm::evaluate_convex), which saves
-  // evaluations where most of the scene is of convex shapes. Not of a large scene or an evaluator.
+  std::shared_ptr<const Regions> regions;  // null unless the scene gains by regions
+  // True if float distances come with a convexity radius (vm::evaluate_convex), which saves evaluations in a scene
+  // made mostly of convex shapes. False for large scenes.
   bool convex;
 
-  // Where it is set, float distances are taken from here: benches compare the machine with other evaluators of the
-  // same scene. May read and write past `count` up to a whole register.
+  // Alternative to the machine for float distances, or null: benches compare the machine with other evaluators of the
+  // same scene. The function may read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
 
-  // How far a distance near 0 that double computes at p may be from the true one, scene units. A place is solid where
-  // the field is below 0 by more than this: 0 over a volume is empty, whichever way its values are rounded.
+  // Returns the error of a distance near 0 that double computes at p, scene units. A point is solid if the field is
+  // below 0 by more than this error: a field that is 0 over a volume is empty, however its values are rounded.
   double rounding(glm::dvec3 p) const {
     const double place = std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     return vm::kFloatError * 0x1p-29 * (place + static_cast<double>(magnitude));
   }
 
+  // True if the convexity radius is available, which `evaluator` does not compute.
   bool knows_convex() const { return convex && evaluator == nullptr; }
 
-  // Distances of many points in float, or of one or many in double; in a large scene rounded where nothing is near.
-  // Regions leave in the scratch how many instructions each point took; in double they are added to `instructions`,
-  // or put there for each.
+  // Evaluate distances: of many points in float, or of one or many in double. In a large scene the distances are
+  // rounded where no surface is near. In float, regions leave the number of instructions per point in the scratch. In
+  // double, the number is added to `instructions`, or written there per point.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
   double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
   void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
                 RealScratch& scratch) const;
-  // What the field does along a stretch of a line, before it is rounded. The whole program tells, of a large scene at
-  // a price.
+  // Returns bounds on the unrounded field and on its derivative over an interval of a line. Evaluates the whole
+  // program, which is expensive in a large scene.
   std::optional<vm::AlongLine> along(glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                                      RealScratch& scratch, std::uint64_t& instructions) const;
 
@@ -66,26 +68,26 @@ struct Field {
   double rounded(double value, glm::dvec3 point) const;
 };
 
-// The scene's field. `far` empty: infinite in a bounded scene; else a thousand times the distance to the camera's
-// target, and at least kDefaultFar.
+// Makes the field of a scene. An empty `far` means infinite in a bounded scene, otherwise a thousand times the
+// distance to the camera's target, but at least kDefaultFar.
 Field make_field(const compiler::CompiledScene& scene, std::optional<double> far = std::nullopt);
 
-// Any field. `extent`: the size of what is looked at, scene units.
+// Makes any field. `extent` is the size of the subject, scene units.
 Field make_field(const compiler::CompiledField& compiled, double extent, std::optional<double> far);
 
-// The size of what is looked at, scene units: how far the camera's target is, but no more than half the bound's
-// diagonal. A wide floor must not coarsen the things that stand on it.
+// Returns the size of the subject, scene units: the distance to the camera's target, but no more than half the
+// bound's diagonal. A wide floor must not coarsen the things that stand on it.
 double extent_of(const compiler::CompiledScene& scene);
 
 inline constexpr double kDefaultFar = 1e4;  // scene units
 
-// Builds the regions of `compiled`, if it gains by them, for its `field` and what evaluates surfaces with it. They
-// are taken from `store` where it has them already.
+// Builds the regions of `compiled`, if the scene gains by them, and gives them to its `field` and so to the
+// evaluation of surfaces. `store`, if not null, provides regions that it already holds and keeps new ones.
 void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options,
                  RegionStore* store = nullptr);
 
-// d_f: how far a float32 distance d computed at p may be from the true one: 10 * 2^-24 * (max(1, |p|, |d|) +
-// magnitude). The largest error measured over all primitives is 9 of these units; most stay below 6
+// d_f, the error bound of a float32 distance d computed at p: 10 * 2^-24 * (max(1, |p|, |d|) + magnitude). The
+// largest error measured over all primitives has a factor of 9 in place of 10, and most errors stay below 6
 // (tests/compiler/shapes/shapes_test.cpp).
 inline constexpr float kDistanceError = static_cast<float>(vm::kFloatError);
 

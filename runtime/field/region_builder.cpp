@@ -13,22 +13,24 @@ namespace {
 using Node = Regions::Node;
 using Kind = Regions::Kind;
 
-// The top levels that are a grid, at most; it takes at most this share of the memory, and no more than all else.
+// A grid replaces at most this many of the top levels. The grid takes at most a kGridShare-th of the memory, and no
+// more bytes than everything else together.
 constexpr int kMostGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
-// What the whole program takes as a part and as rows of constants.
+// Bytes per word of the whole program, as a part and as rows of constants.
 constexpr std::size_t kBytesPerWord = 24;
-// What cutting a program takes for each choice and each instruction in it (vm/prune/specialise.h), measured.
+// Bytes needed for cutting a program (vm/prune/specialise.h), per choice and per instruction of the program,
+// measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
-// Instructions that may be enclosed at most, half a minute's, and how many times as long that takes as to evaluate
-// one.
+// kMostWork: maximum number of instructions evaluated by intervals, half a minute's.
+// kEvaluationsPerEnclosure: cost of evaluating an instruction by intervals, in evaluations of the instruction.
 constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
-// Choices of the whole program for each time that leaves are longer than they should be.
+// Leaves may be n times longer than normal if the whole program has at least n times this many choices.
 constexpr std::uint32_t kWorthShorter = 64;
-// How far outside the root rays are followed, in its edges.
+// Distance outside the root up to which rays are followed, in edges of the root.
 constexpr float kOutsideSize = 64;
 
-// What it takes to cut a program, and its parts for the eight children of a cell.
+// Returns the bytes needed for cutting a program, with the parts for the eight children of a cell.
 std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::size_t part) {
   return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
 }
@@ -68,12 +70,13 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   return regions_;
 }
 
-// What takes too much is cut into fewer, longer leaves, for half the work; leaves that are not much shorter than the
-// whole are not worth it, for an instruction of one costs as much as many of the whole.
+// Splits the root. When an attempt exceeds the budget, the next one makes fewer, longer leaves with half the work.
+// Leaves that are not much shorter than the whole program are not worth their cost: an instruction of a leaf costs as
+// much as many instructions of the whole program.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
   for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, budget_.most_work /= 2) {
-    if (plan_.instructions > budget_.most_work) return false;  // of the root alone
+    if (plan_.instructions > budget_.most_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->skeletons_ = {};
     regions_->facts_ = {};
@@ -86,7 +89,7 @@ bool RegionBuilder::split_root() {
   return false;
 }
 
-// As many threads as there is memory to cut the largest of the cells' parts in each.
+// Returns the number of threads: as many as the memory suffices for, when each cuts the largest of the cells' parts.
 std::size_t RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
   std::size_t largest = 0;
   for (const RegionCell& cell : cells) {
@@ -119,7 +122,7 @@ void RegionBuilder::split_all(std::vector<RegionCell> cells) {
   }
 }
 
-// In the order of the cells, which the cells that are still to be split take the place of.
+// Appends the pieces in the order of the cells. The cells still to be split then take the place of `cells`.
 void RegionBuilder::append_all(std::vector<RegionCell>& cells, std::vector<RegionPiece>& pieces) {
   std::size_t nodes = regions_->nodes_.size(), words = regions_->pool_.size();
   for (const RegionPiece& piece : pieces) nodes += piece.nodes.size(), words += piece.pool.size();
@@ -137,7 +140,7 @@ void RegionBuilder::append_all(std::vector<RegionCell>& cells, std::vector<Regio
   cells = std::move(pending);
 }
 
-// The number its first node gets.
+// Returns the index that the piece's first node gets.
 std::uint32_t RegionBuilder::append(RegionPiece& piece) {
   Regions& r = *regions_;
   const auto first = static_cast<std::uint32_t>(r.nodes_.size());
@@ -153,7 +156,7 @@ std::uint32_t RegionBuilder::append(RegionPiece& piece) {
   return first;
 }
 
-// What matters outside the root, beyond each of its faces, where the cap is at its highest.
+// Makes the leaves outside the root, one beyond each of its faces, where the cap is at its maximum.
 void RegionBuilder::close_outside() {
   Regions& r = *regions_;
   const float infinity = std::numeric_limits<float>::infinity();
@@ -187,7 +190,8 @@ void RegionBuilder::choose_grid() {
   regions_->tree_.grid_level = level;
 }
 
-// Puts the cells of the grid's level, or the leaves they are in, before the tree's nodes.
+// Puts the nodes of the grid's cells, which are nodes of the grid's level or the leaves above it, before the tree's
+// nodes.
 void RegionBuilder::make_grid() {
   Regions& r = *regions_;
   r.tree_.scale = static_cast<float>(1u << r.tree_.levels) / r.tree_.size;

@@ -1,5 +1,5 @@
-// Builds the octree of regions (runtime/field/regions.h): the same tree for any number of threads. Whether it fits
-// what the options allow is decided of sums over all cells, which no order of theirs changes.
+// Builds the octree of regions (runtime/field/regions.h): the same tree for any number of threads. Sums over all
+// cells decide if the tree fits the limits of the options, and no order of the cells changes the sums.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class RegionBuilder {
  public:
   RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options);
 
-  // Nothing when what the options allow does not suffice, or they interrupt.
+  // Returns null if the limits of the options do not suffice, or if `interrupted` returns true.
   std::shared_ptr<const Regions> build();
 
  private:
@@ -35,7 +35,7 @@ class RegionBuilder {
   RegionPlan plan_;
   vm::Code program_;
   RegionBudget budget_;
-  std::uint32_t longer_ = 1;  // how much longer than they should be leaves are, to fit the memory
+  std::uint32_t longer_ = 1;  // factor on the choices that a leaf may have, raised until the regions fit the budget
   std::shared_ptr<Regions> regions_;
 };
 

@@ -1,4 +1,4 @@
-// The descent, compiled once for each instruction set (Highway's foreach_target).
+// The descent through the octree, compiled once for each instruction set (Highway's foreach_target).
 #include "runtime/field/region_find.h"
 
 #include <array>
@@ -20,7 +20,7 @@ HWY_INLINE Word gather(const std::uint32_t* from, Word index) {
   return hn::GatherIndex(Words(), from, hn::BitCast(Ints(), index));
 }
 
-// All points go down together, a level at a time: what one of them waits for from memory is asked for early.
+// Moves all points down together, one level at a time, so that the nodes they need are requested from memory early.
 class Descent {
  public:
   explicit HWY_INLINE Descent(const RegionTree& tree) : tree_(tree) {}
@@ -43,7 +43,7 @@ class Descent {
   }
 
  private:
-  // The points' cells, and the node of the grid.
+  // Computes the points' cells and starts at their nodes of the grid.
   HWY_INLINE void begin(const vm::Points& points, std::size_t at) {
     const Words words;
     const Batch p[3] = {Batch::load(points.x + at), Batch::load(points.y + at), Batch::load(points.z + at)};
@@ -66,7 +66,7 @@ class Descent {
     look_at(hn::Add(index, index), at);
   }
 
-  // Whether any of the points has to go on.
+  // Moves the points of a register down by one level. True if any of them has to go on.
   HWY_INLINE bool go_down(std::size_t at) {
     const Words words;
     const Word one = hn::Set(words, 1u), index = hn::Load(words, &index_[at]), ref = gather(tree_.nodes + 1, index);
@@ -89,8 +89,8 @@ class Descent {
     for (std::size_t lane = 0; lane < kLanes; ++lane) __builtin_prefetch(tree_.nodes + index_[at + lane]);
   }
 
-  // Appends those of the points from `at` on that are in no far leaf to the `size` there are; how many there are
-  // then.
+  // Appends the points of the register at `at` that are in no far leaf to `near`, which holds `size` of them. Returns
+  // the new size.
   HWY_INLINE std::size_t finish(std::size_t at, std::size_t count, float* distance, const NearPoints& near,
                                 std::size_t size) {
     const Words words;
@@ -114,9 +114,10 @@ class Descent {
 
   const RegionTree& tree_;
   alignas(64) PerPoint<std::uint32_t> cell_[3];  // in finest cells
-  // The node it has come to, in words; its cell's size, as a shift of finest cells; its word; 0 if outside the root.
+  // Per point: its current node, as an index of words; the size of the node's cell, as a shift of finest cells; the
+  // node's word; 0 if the point is outside the root.
   alignas(64) PerPoint<std::uint32_t> index_, shift_, ref_, inside_;
-  PerPoint<std::uint16_t> going_;  // the first of each register of points of which some must go on
+  PerPoint<std::uint16_t> going_;  // first points of the registers in which a point must go on
   hn::Mask<Words> outside_ = hn::FirstN(Words(), 0);
 };
 

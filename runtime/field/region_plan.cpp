@@ -9,20 +9,22 @@
 namespace fathom::runtime {
 namespace {
 
-// Programs cheaper than this, in multiply-adds, are as fast whole (bench/culling.cpp).
+// Minimum cost, in multiply-adds, of a program that is faster with regions (bench/culling.cpp).
 constexpr std::uint64_t kLeastCost = 2500;
-// The smallest cells: so many levels below that with as many cells as there are choices.
+// kExtraLevels: levels below the one with as many cells as the program has choices. kMostLevels: maximum number of
+// levels, without RegionPlan::room.
 constexpr int kExtraLevels = 3, kMostLevels = 10;
-// The first level of distances, in edges of a cell: the largest power of two of which there are as many in the
-// contents as there are choices. By products alone, for it decides bits of pictures.
+// FarLevels::first, in edges of a cell: the edge is the largest power of two for which the volume of the contents
+// holds at least as many cells as there are choices. The edge is computed by products alone, because it decides bits
+// of images.
 constexpr double kFirstLevel = 0.5;
-// No contents are flatter than this, relative to their longest side, when their volume is shared out.
+// Minimum side of the contents, relative to their longest side, in the volume that is divided among the choices.
 constexpr double kFlattest = 1.0 / 1024;
-// The highest distance outside the contents, in edges of the root.
+// FarLevels::most, the maximum distance outside the contents, in edges of the root.
 constexpr float kHighest = 0.1f;
 
-// Whether the operands of some function are both constants; the compiler folds those, and vm/prune/skeleton.h takes it for
-// granted.
+// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/skeleton.h
+// relies on that.
 bool is_unfolded(const vm::Code& code) {
   for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
     if (vm::find_opcode(code.words[at] & 0xff)->form != vm::Form::Binary) continue;
@@ -59,7 +61,7 @@ FarLevels far_levels(const compiler::Box& contents, const RegionPlan& plan) {
 
 }  // namespace
 
-// The root is a cube round the contents, with room about them; cells are as small as the contents alone warrant.
+// Plans a cube around the contents as the root, with room around them. The contents alone decide how small cells are.
 std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::Box& contents, int room,
                                        bool always) {
   if (contents.empty() || !contents.finite()) return std::nullopt;

@@ -7,12 +7,13 @@
 namespace fathom::runtime {
 namespace {
 
-// Choices in a program short enough for a leaf.
+// Maximum number of choices in the program of a leaf of normal length.
 constexpr std::uint32_t kLeafChoices = 4;
-// Cells are split no further after so many levels at which their parts did not get this much shorter.
+// A cell becomes a leaf after more than kMostIdle levels in a row at which its part kept at least this share of its
+// length.
 constexpr double kShorterPart = 0.9;
 constexpr int kMostIdle = 2;
-// Cells down to this level are shared out among the threads.
+// Cells down to this level are divided among the threads.
 constexpr int kShared = 2;
 
 }  // namespace
@@ -154,7 +155,7 @@ std::span<const std::uint32_t> RegionSplitter::program(std::size_t number) const
   return std::span(piece.pool).subspan(begin, (last ? piece.pool.size() : piece.programs[number + 1]) - begin);
 }
 
-// The slot of an equal program, or the free one where it belongs.
+// Returns the slot of an equal program, or the free slot for the wanted program.
 std::size_t RegionSplitter::slot_of(std::span<const std::uint32_t> wanted) const {
   const std::vector<std::uint32_t>& slots = piece_->slots;
   for (std::size_t at = vm::hash_of(wanted);; ++at) {
@@ -163,7 +164,7 @@ std::size_t RegionSplitter::slot_of(std::span<const std::uint32_t> wanted) const
   }
 }
 
-// Of all programs but the last, which is not entered yet.
+// Enters all programs except the last, which has no slot yet, into a larger table.
 void RegionSplitter::grow_slots() {
   RegionPiece& piece = *piece_;
   piece.slots.assign(std::max<std::size_t>(64, 2 * piece.slots.size()), 0);

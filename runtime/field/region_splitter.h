@@ -1,4 +1,4 @@
-// Splitting the cells of the octree of regions (runtime/field/regions.h): which leaves they become.
+// Splits the cells of the octree of regions (runtime/field/regions.h) into leaves.
 // Tested by: tests/runtime/field/regions_test.cpp
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace fathom::runtime {
 
-// Of the root's edge: how much larger a cell is taken than it is, for the rounding that finds a point's cell.
+// Margin around a cell, in edges of the root, for the rounding in the search for a point's cell.
 inline constexpr double kCellMargin = 0x1p-20;
 
 inline Regions::Node make_node(Regions::Kind kind, std::uint32_t payload, float value) {
@@ -30,38 +30,38 @@ struct BoxArrays {
   vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-// What f32 may be off by, relative to the size of the numbers: six times what it is for a whole field
-// (kDistanceError), since operands within one are compared.
+// Error of f32, relative to the size of the numbers: six times that of a whole field (kDistanceError), because the
+// splitter compares operands within a field.
 inline constexpr float kCellError = 0x1p-18f;
 
-// A cell that is to be split, and what of the program matters in it where its value is at most `limit`.
+// A cell to be split, and the part of the program that matters in the cell for values up to `limit`.
 struct RegionCell {
-  std::array<std::uint32_t, 3> at;  // in cells of its level
+  std::array<std::uint32_t, 3> at;  // position, in cells of its level
   int level;
   float limit;
-  int idle;  // levels at which its part did not get shorter
+  int idle;  // number of levels in a row at which its part did not get shorter
   vm::Part part;
-  std::uint32_t node;  // that it is
+  std::uint32_t node;  // index of its node
 };
 
-// What one thread has made of a cell: nodes[0..8) are its children, and numbers are its own.
+// The result of one thread for a cell. nodes[0..8) are the cell's children, and indices are those of the piece.
 struct RegionPiece {
   std::vector<Regions::Node> nodes;
   vm::Skeletons skeletons;
   std::vector<std::uint32_t> pool;
-  std::vector<std::uint32_t> programs;  // where they begin in the pool, one behind the other
-  std::vector<std::uint32_t> slots;     // a hash table of them: number + 1, or 0
+  std::vector<std::uint32_t> programs;  // where the programs begin in the pool, in ascending order
+  std::vector<std::uint32_t> slots;     // hash table of the programs: index + 1, or 0
   std::vector<RegionCell> pending;      // left for other threads
   Regions::Facts facts;
 };
 
-// All cells are split by the same rules.
+// The rules for splitting, the same for all cells.
 struct SplitRules {
   const RegionOptions& options;
-  const RegionTree& tree;  // its root and the number of its levels
+  const RegionTree& tree;  // only its root and the number of its levels are used
   const FarLevels& far;
   const vm::Constants& constants;
-  std::uint32_t longer;  // how much longer than they should be leaves are
+  std::uint32_t longer;  // factor on the choices that a leaf may have
 };
 
 // Splits cells, on one thread.
@@ -69,34 +69,34 @@ class RegionSplitter {
  public:
   RegionSplitter(const SplitRules& rules, RegionBudget& budget);
 
-  // Makes the cell's descendants, into an empty piece.
+  // Makes the cell's descendants, in an empty piece.
   void run(const RegionCell& cell, RegionPiece& piece);
 
  private:
   using Node = Regions::Node;
   using Kind = Regions::Kind;
-  using Place = std::array<std::uint32_t, 3>;  // in cells of a level
-  using Children = std::array<bool, 8>;        // those that are leaves already
+  using Place = std::array<std::uint32_t, 3>;  // position of a cell, in cells of its level
+  using Children = std::array<bool, 8>;        // true for a child that is already a leaf
   using Parts = std::array<vm::Part, 8>;
   using Limits = std::array<float, 8>;
 
-  // Makes the eight children, at nodes[first] and on, of a cell; those that are no leaves are split in turn.
+  // Makes the eight children of a cell, at nodes[first] and on, and splits the children that are not leaves.
   void split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far, std::uint32_t first);
-  // Takes the child where it is left for other threads.
+  // Makes the child a leaf, leaves it for other threads, or splits it.
   void go_on(vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
              std::uint32_t node);
-  // Up to where each child's values matter.
+  // Returns the limit up to which each child's values matter.
   Limits limits_of(const BoxArrays& boxes, float limit) const;
-  // Leaves of those children in which all values round to one.
+  // Makes far leaves of the children in which all values round to one. Returns these children.
   Children make_far(const Limits& limits, std::uint32_t first);
-  // The parts of the others; leaves of those that are short enough.
+  // Makes the parts of the other children, and leaves of the children whose parts are short enough.
   void make_parts(const Limits& limits, int level, std::uint32_t first, Children& done, Parts& parts);
-  // Sets error_, too.
+  // Returns the boxes of a cell's children. Also sets error_.
   BoxArrays children_of(const Place& at, int level);
-  // What a piece's leaves take, but for the nodes.
+  // Returns the bytes of a piece's leaves, without the nodes.
   static std::size_t bytes_of(const RegionPiece& piece);
   void make_leaf(const vm::Part& part, float limit, std::uint32_t node);
-  // The program that was packed last, or an equal one before it.
+  // Returns the place of the program packed last, or of an equal program before it, which then replaces it.
   std::uint32_t intern(std::uint32_t start);
   std::span<const std::uint32_t> program(std::size_t number) const;
   std::size_t slot_of(std::span<const std::uint32_t> program) const;
@@ -109,7 +109,7 @@ class RegionSplitter {
   vm::Specialiser specialiser_;
   vm::Workspace workspace_;
   std::vector<Parts> parts_;  // [level]
-  float error_ = 0;           // of f32, in the cell that is split
+  float error_ = 0;           // of f32, in the cell that is being split
   RegionPiece* piece_ = nullptr;
 };
 

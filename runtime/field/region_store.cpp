@@ -11,7 +11,7 @@ bool same_program(const vm::Program& a, const vm::Program& b) {
 
 bool same_box(const compiler::Box& a, const compiler::Box& b) { return a.lo == b.lo && a.hi == b.hi; }
 
-// Of all that decides what is built; the number of threads does not.
+// True if all options that affect the regions are equal. The number of threads does not affect them.
 bool same_options(const RegionOptions& a, const RegionOptions& b) {
   return a.memory == b.memory && a.evaluations == b.evaluations && a.always == b.always && a.room == b.room &&
          a.magnitude == b.magnitude;
@@ -27,12 +27,12 @@ std::shared_ptr<const Regions> RegionStore::build(const vm::VerifiedProgram& pro
   });
   const bool kept = found != entries_.end();
   std::shared_ptr<Entry> entry = kept ? *found : std::make_shared<Entry>(Entry{program, contents, options, nullptr});
-  entry->options.interrupted = {};  // it may look at what is gone by then
+  entry->options.interrupted = {};  // may refer to objects that will no longer exist
   entry->used = true;
   entry->kept = kept;
   if (!kept) {
     entry->regions = Regions::build(entry->program, contents, options);
-    // Those that were interrupted are none for this render alone.
+    // An interrupted build means no regions for this render only, so the store keeps nothing.
     if (!entry->regions && options.interrupted && options.interrupted()) return nullptr;
     entries_.push_back(entry);
   }

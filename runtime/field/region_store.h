@@ -1,8 +1,8 @@
-// Regions that outlive a render, for whoever renders many pictures of scenes with the same programs: of a camera that
-// goes round, of a light that moves. Regions are a function of program, box and options, so those that are there
-// already are those that would be built.
+// Regions that outlive a render, for a caller that renders many images of scenes with the same programs, e.g. with a
+// camera that goes round or a light that moves. Regions are a function of program, box and options, so stored regions
+// equal the regions that would be built.
 //
-// From one thread. Tested by: tests/runtime/field/region_store_test.cpp
+// For use by one thread. Tested by: tests/runtime/field/region_store_test.cpp
 #pragma once
 
 #include <list>
@@ -15,22 +15,23 @@ namespace fathom::runtime {
 
 class RegionStore {
  public:
-  // As Regions::build(), which is asked where there are none of the same program, box and options.
+  // Like Regions::build(), but returns the regions stored for the same program, box and options if there are any.
   std::shared_ptr<const Regions> build(const vm::VerifiedProgram& program, const compiler::Box& contents,
                                        const RegionOptions& options);
 
-  // Whether they were there when they were asked for last.
+  // True if the store already held `regions` when build() last returned them.
   bool kept(const Regions& regions) const;
 
-  // Drops what was not asked for since the last call.
+  // Drops the regions that build() has not returned since the last call.
   void forget_unused();
 
  private:
   struct Entry {
-    vm::VerifiedProgram program;  // that the regions see
+    vm::VerifiedProgram program;  // the regions refer to this program
     compiler::Box contents;
     RegionOptions options;
-    std::shared_ptr<const Regions> regions;  // or none, which may have taken as long to find out
+    // Null if the scene has no regions, which may have taken as long to find out.
+    std::shared_ptr<const Regions> regions;
     bool used = true, kept = false;
   };
 

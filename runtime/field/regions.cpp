@@ -53,7 +53,7 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
   far_.apply(points, count, distance);
 }
 
-// Sorts the first `near` points by their programs' skeletons.
+// Sorts the first `near` points by the skeletons of their programs.
 void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const {
   s.jobs.resize(skeletons_.size());
   if (tree_.beyond_cache) {
@@ -68,8 +68,8 @@ void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const 
   }
 }
 
-// Points outside the root find their leaf; where nothing has been cut, outside a bounded scene's, they are done. How
-// many are left.
+// Finds the leaves of the points outside the root. Points whose leaf needs the whole program, as outside a bounded
+// scene's root, are evaluated at once. Returns the number of points left.
 std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
                                     vm::Workspace& workspace) const {
   std::size_t left = 0;
@@ -146,7 +146,7 @@ Regions::Region Regions::region(glm::dvec3 p) const {
 void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out,
                                vm::Workspace& workspace) const {
   CHECK(count <= kMostHits, "a batch of hits is too large");
-  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // leaf, point
+  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // {word of the leaf, point}
   for (std::uint32_t i = 0; i < count; ++i) {
     leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
@@ -159,8 +159,8 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
   }
 }
 
-// Of points in leaves of one program. What is not near the surface at all, as rounding may have it, asks the whole
-// program.
+// Evaluates points whose leaves have the same program. A point that rounding put into a far leaf, and so not near the
+// surface at all, is evaluated by the whole program.
 void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
   alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz, convex;
@@ -189,7 +189,7 @@ vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspac
   return vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), p, workspace);
 }
 
-// The program of the leaf that a point is in; the whole where the leaf has none.
+// Returns the program of the point's leaf, or the whole program if the leaf has none.
 vm::Code Regions::code_at(glm::dvec3 p, RealScratch& scratch) const {
   const glm::vec3 f(p);
   const vm::Part& part = part_of(find(f.x, f.y, f.z).node, scratch);

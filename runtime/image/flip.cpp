@@ -18,12 +18,12 @@ using Planes = std::array<Plane, 3>;
 constexpr float kColorExponent = 0.7f, kNear = 0.4f, kNearShare = 0.95f;  // q_c, p_c, p_t
 constexpr float kFeatureExponent = 0.5f, kFeatureWidth = 0.082f;          // q_f; w, degrees
 
-// x^y for x, y >= 0; 0^0 is 1.
+// Returns x^y for x, y >= 0; 0^0 is 1.
 float power_of(float x, float y) {
   return y == 0 ? 1 : static_cast<float>(power(static_cast<double>(x), static_cast<double>(y)));
 }
 
-// sRGB's primaries and D65 in whole numbers (IEC 61966-2-1:1999).
+// Matrices of sRGB's primaries and D65, as fractions of whole numbers (IEC 61966-2-1:1999).
 constexpr float kXyz[3][3] = {{0.412386563f, 0.357591491f, 0.180450491f},
                               {0.212636822f, 0.715182982f, 0.072180196f},
                               {0.019330620f, 0.119197164f, 0.950372587f}};
@@ -37,7 +37,7 @@ glm::vec3 times(const float (&m)[3][3], glm::vec3 v) {
   return product;
 }
 
-// XYZ over that of white.
+// Returns XYZ relative to that of white.
 glm::vec3 to_xyz(glm::vec3 rgb) {
   static const glm::vec3 white = times(kXyz, glm::vec3(1));
   return times(kXyz, rgb) / white;
@@ -47,7 +47,7 @@ glm::vec3 from_xyz(glm::vec3 xyz) {
   return times(kRgb, xyz * white);
 }
 
-// L*a*b* without its roots: lightness, red-green, blue-yellow.
+// Returns lightness, red-green, blue-yellow: L*a*b* without its roots.
 glm::vec3 to_opponent(glm::vec3 rgb) {
   const glm::vec3 v = to_xyz(rgb);
   return {116 * v.y - 16, 500 * (v.x - v.y), 200 * (v.y - v.z)};
@@ -63,7 +63,7 @@ float lab_root(float t) {
   return t > kDelta * kDelta * kDelta ? power_of(t, 1 / 3.0f) : t / (3 * kDelta * kDelta) + 4 / 29.0f;
 }
 
-// L*a*b* with colours as faint as dim light makes them: the Hunt effect.
+// Returns L*a*b* in which dim colours are less saturated, as the eye sees them: the Hunt effect.
 glm::vec3 to_hunt_lab(glm::vec3 rgb) {
   const glm::vec3 v = to_xyz(rgb);
   const float x = lab_root(v.x), y = lab_root(v.y), z = lab_root(v.z);
@@ -77,7 +77,7 @@ float distance(glm::vec3 a, glm::vec3 b) {
   return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
 }
 
-// The colour difference in [0,1]: most of the range for the differences that most pictures have.
+// Returns the colour difference in [0,1]. Most of the range is for the differences that most images have.
 float color_error(glm::vec3 a, glm::vec3 b) {
   static const float most = power_of(distance(to_hunt_lab({0, 1, 0}), to_hunt_lab({0, 0, 1})), kColorExponent);
   const float error = power_of(distance(to_hunt_lab(a), to_hunt_lab(b)), kColorExponent), near = kNear * most;
@@ -85,7 +85,7 @@ float color_error(glm::vec3 a, glm::vec3 b) {
   return kNearShare + (error - near) / (most - near) * (1 - kNearShare);
 }
 
-// A kernel of one dimension; its middle is the middle element.
+// A one-dimensional kernel. Its centre is the middle element.
 using Kernel = std::vector<float>;
 
 Kernel gaussian(float per_square, int radius) {  // e^(-x^2 per_square)
@@ -100,14 +100,14 @@ float sum(const Kernel& kernel) {
   return total;
 }
 
-// Positive elements sum to 1, negative ones to -1.
+// Scales positive elements to the sum 1, negative ones to -1.
 void normalise(Kernel& kernel) {
   float positive = 0, negative = 0;
   for (const float value : kernel) (value > 0 ? positive : negative) += std::abs(value);
   for (float& value : kernel) value /= value > 0 ? positive : negative > 0 ? negative : 1;
 }
 
-// Along rows and then columns; beyond its border a picture goes on as it ends.
+// Convolves along rows and then columns. Pixels beyond the border repeat the border's.
 Plane convolve(const Plane& plane, int width, int height, const Kernel& across, const Kernel& down) {
   const int radius = static_cast<int>(across.size()) / 2;
   const auto at = [width](int x, int y) {
@@ -133,7 +133,7 @@ Plane convolve(const Plane& plane, int width, int height, const Kernel& across, 
   return result;
 }
 
-// The eye's contrast sensitivity of a channel: a sum of Gaussians a sqrt(pi/b) e^(-pi^2 x^2 / b), x in degrees (table
+// The eye's contrast sensitivity in a channel: a sum of Gaussians a sqrt(pi/b) e^(-pi^2 x^2 / b), x in degrees (table
 // 1).
 struct Sensitivity {
   float a1, b1, a2, b2;
@@ -142,7 +142,7 @@ constexpr Sensitivity kSensitivities[3] = {
     {1, 0.0047f, 0, 1e-5f}, {1, 0.0053f, 0, 1e-5f}, {34.1f, 0.04f, 13.5f, 0.025f}};
 constexpr float kPiF = std::numbers::pi_v<float>;
 
-// In two dimensions the whole sum has to be 1.
+// Filters a channel by the eye's contrast sensitivity. The two-dimensional kernel sums to 1 as a whole.
 void blur_as_seen(Plane& plane, int width, int height, const Sensitivity& s, float pixels_per_degree) {
   constexpr float kWidest = 0.04f;  // b
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPiF * kPiF)) * pixels_per_degree));
@@ -158,9 +158,9 @@ void blur_as_seen(Plane& plane, int width, int height, const Sensitivity& s, flo
   for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = (first_scale * a[i] + second_scale * b[i]) / total;
 }
 
-// What there is to see of one of the two pictures.
+// Perceived content of one of the two images.
 struct Seen {
-  Planes opponent;      // as on the screen, then blurred
+  Planes opponent;      // as on the screen, then filtered
   Plane edges, points;  // strength of the features
 };
 
@@ -170,7 +170,7 @@ Plane magnitude(const Plane& x, const Plane& y) {
   return result;
 }
 
-// Edges are where the first derivative of the lightness is large, points where the second is (section 4.2).
+// Finds edges where the first derivative of the lightness is large, and points where the second is (section 4.2).
 void find_features(Seen& seen, int width, int height, float pixels_per_degree) {
   const float deviation = 0.5f * kFeatureWidth * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));

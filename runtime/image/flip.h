@@ -1,9 +1,9 @@
-// FLIP: how different two pictures look to who flips between them, from 0 (alike) to 1 (black against white is
+// FLIP: how different two images look when a viewer flips between them, from 0 (alike) to 1 (black against white is
 // 0.967).
 //
 // Source: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem, Fairchild, "FLIP: A Difference Evaluator for
-// Alternating Images", HPG 2020. Colours are filtered as the eye filters them at a viewing distance, compared in
-// L*a*b*, and the difference is raised where edges or points differ.
+// Alternating Images", HPG 2020. Colours are filtered as the eye filters them at a viewing distance and compared in
+// L*a*b*. The difference is raised where edges or points differ.
 //
 // Tested by: tests/runtime/image/flip_test.cpp
 #pragma once
@@ -22,8 +22,8 @@ struct Flip {
   double mean = 0;
 };
 
-// What a screen shows of the pictures is compared: values are clamped to [0,1], NaN counts as 0. They must be of one
-// size; neither is special.
+// Compares the images as a screen shows them: values are clamped to [0,1], NaN counts as 0. The images must be of one
+// size. Exchanging `a` and `b` changes nothing.
 Flip flip(RgbView a, RgbView b, float pixels_per_degree = kPixelsPerDegree);
 
 }  // namespace fathom::runtime

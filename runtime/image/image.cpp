@@ -9,15 +9,15 @@
 namespace fathom::runtime {
 namespace {
 
-// [0,1] to 0..Most, nearest; outside values to the ends, NaN to 0.
+// Maps [0,1] to 0..Most, nearest. Values outside go to the ends, NaN to 0.
 template <typename Word>
 Word to_whole(double value) {
   if (!(value > 0)) return 0;
   return static_cast<Word>(std::min(value, 1.0) * std::numeric_limits<Word>::max() + 0.5);
 }
 
-// Linear light to the nearest byte of its sRGB signal, by the least light that each byte stands for: comparing is
-// several times faster than the root that srgb_encode() takes.
+// Maps linear light to the nearest byte of its sRGB signal, by the least light that each byte stands for. Comparing
+// is several times faster than the root in srgb_encode().
 class SrgbBytes {
  public:
   SrgbBytes() {
@@ -41,7 +41,7 @@ class SrgbBytes {
   std::array<double, 255> least_;  // [byte - 1]
 };
 
-// Of the hits; 0 where nothing was hit. Infinite when nothing was anywhere.
+// Returns the smallest depth of all hits; infinite when there are no hits. The depth of a miss is 0.
 double nearest_of(const LayerValues& depth) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int y = depth.area.y0; y < depth.area.y1; ++y) {

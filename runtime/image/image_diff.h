@@ -1,6 +1,6 @@
-// How far a picture is from its reference, in the numbers people quote.
+// Error metrics between an image and its reference.
 //
-// FLIP, which follows what an eye sees, has a file of its own: runtime/image/flip.h.
+// FLIP, a perceptual metric, has a file of its own: runtime/image/flip.h.
 // Tested by: tests/runtime/image/image_diff_test.cpp
 #pragma once
 
@@ -15,20 +15,20 @@ struct RgbView {
   std::span<const float> rgb;
 };
 
-// Means over all channels of all pixels, but for those of pixels where one of the pictures is not finite.
+// Means over all channels of all pixels, except pixels where one of the images is not finite.
 struct Differences {
   double mse = 0;
   double relmse = 0;
   double max = 0;             // of the absolute differences
-  double mean = 0;            // picture minus reference: its brightness
-  std::uint64_t invalid = 0;  // pixels left out
+  double mean = 0;            // image minus reference: the difference of brightness
+  std::uint64_t invalid = 0;  // number of pixels left out
 };
 
-// relMSE is the mean of (a - b)^2 / (b^2 + 0.01), b the reference. Source: Rousselle, Knaus, Zwicker, "Adaptive
-// Sampling and Reconstruction using Greedy Error Minimization", SIGGRAPH Asia 2011, equation 5.
+// relMSE is the mean of (a - b)^2 / (b^2 + 0.01), where b is the reference. Source: Rousselle, Knaus, Zwicker,
+// "Adaptive Sampling and Reconstruction using Greedy Error Minimization", SIGGRAPH Asia 2011, equation 5.
 inline constexpr double kRelMseEpsilon = 0.01;
 
-// The pictures must be of one size.
+// The images must be of one size.
 Differences compare(RgbView picture, RgbView reference);
 
 }  // namespace fathom::runtime

@@ -21,9 +21,9 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr int kNoThreads = 0;  // beside the caller's
+constexpr int kNoThreads = 0;  // in addition to the caller's
 
-// OpenEXR's view of the file that is written. What goes wrong is kept there and said by commit().
+// OpenEXR's view of the file that is written. The file keeps the first failure, and commit() returns it.
 class FileSink : public Imf::OStream {
  public:
   explicit FileSink(AtomicFile& file) : OStream(file.name().c_str()), file_(file) {}
@@ -69,10 +69,10 @@ Imf::Header header_of(const ImageShape& image) {
   return header;
 }
 
-// A slice whose rows begin at `row`, one after another `stride` bytes apart; the same one again and again for 0.
+// Returns a slice whose rows begin at `row` and lie `stride` bytes apart. With a stride of 0 all rows are the same.
 Imf::Slice slice_of(Imf::PixelType type, void* row, const PixelRect& area, std::size_t stride) {
   constexpr std::size_t kSize = 4;
-  // OpenEXR wants the address that the picture's pixel (0, 0) would have.
+  // OpenEXR wants the address that the image's pixel (0, 0) would have.
   const auto base =
       reinterpret_cast<std::uintptr_t>(row) -
       static_cast<std::uintptr_t>(static_cast<std::int64_t>(area.x0) * static_cast<std::int64_t>(kSize) +
@@ -80,7 +80,7 @@ Imf::Slice slice_of(Imf::PixelType type, void* row, const PixelRect& area, std::
   return Imf::Slice(type, reinterpret_cast<char*>(base), kSize, stride);
 }
 
-// Values from outside UINT's range to its ends, NaN to 0.
+// Clamps values to UINT's range; NaN becomes 0.
 std::uint32_t to_whole_number(float value) {
   if (!(value > 0)) return 0;
   return value < 0x1p32f ? static_cast<std::uint32_t>(value) : ~0u;

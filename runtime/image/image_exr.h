@@ -1,8 +1,8 @@
-// OpenEXR files: all channels of a picture in one part, scan lines, ZIP compression. The data window is the image's
-// area, the display window the whole picture.
+// OpenEXR files: all channels of an image in one part, scan lines, ZIP compression. The data window is the image's
+// area, the display window the whole image.
 //
-// Written row by row, so that none is held whole. Without OpenEXR's own threads: the same image gives the same bytes.
-// Source: F. Kainz, R. Bogart, "Technical Introduction to OpenEXR", 2009. Tested by:
+// An image is written row by row, so it is never held whole, and without OpenEXR's own threads, so equal images give
+// equal bytes. Source: F. Kainz, R. Bogart, "Technical Introduction to OpenEXR", 2009. Tested by:
 // tests/runtime/image/image_exr_test.cpp, image_exr_read_test.cpp
 #pragma once
 
@@ -17,12 +17,13 @@
 
 namespace fathom::runtime {
 
-// Floats as floats, whole numbers as UINT. The reason when it cannot be done, and then the target is as it was.
+// Writes floats as FLOAT, whole numbers as UINT. Returns the reason if that fails; the target is then as it was.
 [[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, const std::string& path);
 [[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, AtomicFile& file);  // commits it
 
-// The image in the bytes of a file, halves and UINTs as floats, or what is wrong with them. Attributes of kinds that
-// Attribute does not have are left out.
+// Decodes the bytes of a file, with HALF and UINT as floats. Returns the image, or the problem with the bytes.
+// `memory`: maximum number of bytes, including `bytes`. Attributes of kinds that Attribute does not have are left
+// out.
 std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory = 0x1p36);
 
 }  // namespace fathom::runtime

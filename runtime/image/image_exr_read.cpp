@@ -1,6 +1,6 @@
-// OpenEXR files read by the library's own core, chunk by chunk. Its C++ classes, which image_exr.cpp writes by, would
-// set aside what a header says before they look at the file, gigabytes for one of some hundred bytes, and where a
-// chunk's data ends early they would take what lay in memory for numbers. Tested by:
+// Reads OpenEXR files by the library's C core, chunk by chunk. The library's C++ classes, which image_exr.cpp uses
+// for writing, allocate the sizes given in a header before they look at the file, gigabytes for a file of some
+// hundred bytes. If a chunk's data end early, these classes return uninitialised memory. Tested by:
 // tests/runtime/image/image_exr_read_test.cpp, image_exr_test.cpp, image_read_test.cpp
 #include <openexr.h>
 
@@ -15,8 +15,8 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr int kPart = 0;  // the one that is read
-// What decoding takes beside the numbers, in chunks: copies of one, packed and unpacked.
+constexpr int kPart = 0;  // the part that is read
+// Memory for decoding, in addition to the image, in chunks: packed and unpacked copies of one chunk.
 constexpr double kChunks = 8;
 constexpr const char* kBadExr = "its header makes no sense";
 
@@ -28,18 +28,18 @@ double pixels_of(const exr_attr_box2i_t& window) {
   return static_cast<double>(width_of(window)) * static_cast<double>(height_of(window));
 }
 
-// How many bytes the best of each compression makes of one; a limit, not what is usual.
+// Returns how many bytes each compression makes of one at best. This is a limit, not the usual ratio.
 double most_unpacked(exr_compression_t compression) {
   switch (compression) {
     case EXR_COMPRESSION_NONE:
       return 1;
     case EXR_COMPRESSION_RLE:
-      return 64;  // a run of 128 in two
+      return 64;  // a run of 128 in two bytes
     case EXR_COMPRESSION_B44:
     case EXR_COMPRESSION_B44A:
-      return 11;  // 16 halves in 14, flat ones in three
+      return 11;  // 16 halves in 14 bytes, flat blocks in three
     case EXR_COMPRESSION_PXR24:
-      return kMostDeflated * 4 / 3;  // floats have lost a fourth byte before
+      return kMostDeflated * 4 / 3;  // the fourth byte of floats was dropped before
     default:
       return kMostDeflated;  // ZIP; PIZ has at most 410, runs of 256 halves in ten bits
   }
@@ -47,7 +47,7 @@ double most_unpacked(exr_compression_t compression) {
 
 std::string text_of(const exr_attr_string_t& text) { return {text.str, static_cast<std::size_t>(text.length)}; }
 
-// Nothing for kinds that Attribute does not have.
+// Returns nothing for kinds that Attribute does not have.
 std::optional<Attribute> value_of(const exr_attribute_t& attribute) {
   switch (attribute.type) {
     case EXR_ATTR_INT:
@@ -96,7 +96,7 @@ class ExrReader {
     return false;
   }
 
-  // The library has told what is wrong when it says that something is.
+  // When a call fails, the library has usually reported the reason to keep_message() before.
   bool good(exr_result_t result) { return result == EXR_ERR_SUCCESS || fail(exr_get_default_error_message(result)); }
 
   bool open() {
@@ -146,7 +146,7 @@ class ExrReader {
            fail(too_few_bytes(static_cast<int>(width_of(data_)), static_cast<int>(height_of(data_)), least, has));
   }
 
-  // As the file has them, unpacked.
+  // Size of an unpacked pixel, in the file's own types.
   double bytes_per_pixel() const {
     double bytes = 0;
     for (const exr_attr_chlist_entry_t& channel :
@@ -156,7 +156,7 @@ class ExrReader {
     return bytes;
   }
 
-  // As far as their table tells, which must fit the file, before memory is set aside for what they hold.
+  // Checks that the chunk table fits the file, before memory is allocated for the chunks' contents.
   bool has_chunks() {
     chunk_width_ = static_cast<std::int32_t>(width_of(data_));
     exr_chunk_info_t first{};
@@ -186,8 +186,7 @@ class ExrReader {
     return true;
   }
 
-  // The chunk whose first number is that at (x, y) of the data window; of a pyramid of levels those of the whole
-  // picture.
+  // Finds the chunk whose first value is at (x, y) of the data window. Mipmapped files: in the full-size level.
   bool find_chunk(std::int64_t x, std::int64_t y, exr_chunk_info_t& chunk) {
     return good(tiled_ ? exr_read_tile_chunk_info(context_, kPart, static_cast<int>(x / chunk_width_),
                                                   static_cast<int>(y / chunk_height_), 0, 0, &chunk)
@@ -204,7 +203,7 @@ class ExrReader {
     return true;
   }
 
-  // A chunk's numbers to where they belong, its first at (x, y) of the data window.
+  // Decodes a chunk into the image. The chunk's first value is at (x, y) of the data window.
   bool decode(const exr_chunk_info_t& chunk, std::int64_t x, std::int64_t y) {
     if (x + chunk.width > width_of(data_) || y + chunk.height > height_of(data_)) return fail(kBadExr);
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
@@ -224,7 +223,7 @@ class ExrReader {
     return decoded;
   }
 
-  // Whole numbers came as they are, in the place of floats.
+  // Converts whole numbers, which the library has stored bit by bit in place of floats.
   void whole_to_float() {
     for (std::size_t c = 0; c < image_.channels.size(); ++c) {
       if (!image_.channels[c].whole) continue;
@@ -252,7 +251,7 @@ class ExrReader {
   exr_context_t context_ = nullptr;
   bool tiled_ = false;
   double most_unpacked_ = 1;
-  std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; those at the edges may be smaller
+  std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; chunks at the edges may be smaller
   exr_attr_box2i_t data_{}, display_{};
   const exr_attr_chlist_t* channels_ = nullptr;
   FloatImage image_;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kJpegQuality = 95;  // of 100
 
-// What follows the name's last dot, in small letters; empty when there is no dot.
+// Returns the part after the name's last dot, in lower case; empty when there is no dot.
 std::string ending_of(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return "";
@@ -47,12 +47,12 @@ std::vector<std::uint8_t> encode_shown(const Shown& shown, int bits, bool srgb) 
   });
 }
 
-// Puts `components` numbers a pixel of row `y`, from the top.
+// Writes `components` floats per pixel for row `y`, counted from the top.
 using FloatRow = std::function<void(int y, std::span<float> values)>;
 
 std::optional<std::string> write_pfm(int width, int height, int components, const FloatRow& fill, AtomicFile& file) {
   const std::string header =
-      fmt::format("{}\n{} {}\n-1.0\n", components == 1 ? "Pf" : "PF", width, height);  // below zero: little endian
+      fmt::format("{}\n{} {}\n-1.0\n", components == 1 ? "Pf" : "PF", width, height);  // negative: little endian
   file.write({reinterpret_cast<const std::uint8_t*>(header.data()), header.size()});
   std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(components));
   std::vector<std::uint8_t> bytes(values.size() * 4);
@@ -78,7 +78,7 @@ std::optional<std::string> write_float_map(const LayerValues& layer, AtomicFile&
   return write_pfm(area.width(), area.height(), static_cast<int>(components), fill, file);
 }
 
-// Source: Ward, "Real Pixels", Graphics Gems II, 1991: 8 bits a colour and a common exponent.
+// Source: Ward, "Real Pixels", Graphics Gems II, 1991: 8 bits per colour and a common exponent.
 std::vector<std::uint8_t> encode_hdr(const LayerValues& layer) {
   std::vector<float> values;
   values.reserve(layer.area.pixels() * 3);
@@ -178,7 +178,7 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
       done = stbi_write_jpg_to_func(append_bytes, &bytes, w, h, 3, data, kJpegQuality);
       break;
     case ImageFormat::Bmp:
-      // The header's numbers are of 32 bits, and rows are padded.
+      // The header's numbers have 32 bits, and rows are padded.
       done = picture.rgb.size() < (std::size_t{1} << 31) - (std::size_t{1} << 20) &&
              stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
       break;

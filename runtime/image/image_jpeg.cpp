@@ -6,7 +6,7 @@
 
 #include "runtime/image/float_image.h"
 
-// These two need <cstdio> before them.
+// jerror.h and jpeglib.h need <cstdio> before them.
 #include <jerror.h>
 #include <jpeglib.h>
 
@@ -14,14 +14,14 @@ namespace fathom::runtime {
 namespace {
 
 constexpr const char* kTooEarly = "it ends too early";
-// A block of 8 by 8 samples takes a bit for each code: of its mean and of its end, or in a progressive file, where
-// one code ends many blocks, of its mean alone.
+// A block of 8 by 8 samples takes at least one bit per code: a code for its mean and one for its end. In a
+// progressive file one code ends many blocks, so a block needs only the code for its mean.
 constexpr double kSamplesInBlock = 64, kBitsOfBlock = 2, kBitsOfProgressiveBlock = 1;
 constexpr double kBytesOfCoefficients = kSamplesInBlock * sizeof(JCOEF);
-// Each scan visits all blocks for as little as a few bytes; encoders write about ten.
+// Each scan visits all blocks, and may consist of only a few bytes. Encoders write about ten scans.
 constexpr int kMostScans = 100;
 
-// Whether libjpeg goes on without a part of the picture after this warning.
+// True if libjpeg, after this warning, goes on without a part of the image.
 bool loses_samples(int warning) {
   return warning == JWRN_HIT_MARKER || warning == JWRN_JPEG_EOF || warning == JWRN_HUFF_BAD_CODE ||
          warning == JWRN_MUST_RESYNC;
@@ -56,7 +56,7 @@ class Reader {
     return false;
   }
 
-  // libjpeg's way out of an error: a jump over frames of C, and of ours none that have anything to destroy.
+  // libjpeg's way out of an error: a jump over C frames, and over none of our frames that has anything to destroy.
   [[noreturn]] void leave() {
     if (errors_.msg_code == JWRN_HIT_MARKER || errors_.msg_code == JWRN_JPEG_EOF) {
       problem_ = kTooEarly;
@@ -83,7 +83,7 @@ class Reader {
     return count;
   }
 
-  // What the header says, before memory is set aside for it.
+  // Checks the header's values, before memory is allocated for them.
   bool is_allowed() {
     const bool grey = jpeg_.jpeg_color_space == JCS_GRAYSCALE;
     if (jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK) {
@@ -127,8 +127,8 @@ class Reader {
     return jpeg_finish_decompress(&jpeg_) != FALSE || fail("its content makes no sense");
   }
 
-  // All scans of a file that has its components or their bits one after the other. A component without a scan that
-  // begins with its mean would be grey.
+  // Reads all scans of a file that stores its components, or their bits, one after the other. A component would be
+  // grey without a scan that begins with its mean.
   bool read_scans() {
     std::array<bool, MAX_COMPONENTS> has_mean{};
     int scans = 0;

@@ -16,8 +16,8 @@ struct JpegPicture {
   std::vector<std::uint8_t> samples;
 };
 
-// The file's picture, or why it cannot be read: it needs more than `memory` bytes, it has fewer bytes than its size
-// takes, or its data end or make no sense before its last pixel. A profile of colours is not looked at.
+// Returns the file's image, or why it cannot be read: the image needs more than `memory` bytes, the file is too short
+// for its size in pixels, or the data end or make no sense before the last pixel. Ignores colour profiles.
 std::variant<JpegPicture, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory);
 
 }  // namespace fathom::runtime

@@ -19,7 +19,7 @@ void append(png_structp png, png_bytep data, std::size_t size) {
 void ignore(png_structp) {}
 void be_quiet(png_structp, png_const_charp) {}
 
-// libpng's way out of an error: a jump over frames of C, and of ours none that have anything to destroy.
+// libpng's way out of an error: a jump over C frames, and over none of our frames that has anything to destroy.
 bool write_header(png_structp png, png_infop about, int width, int height, int bits, bool srgb) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_IHDR(png, about, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits,
@@ -41,7 +41,7 @@ bool write_end(png_structp png) {
   return true;
 }
 
-// Frees libpng's things whatever happens.
+// Owns libpng's structures.
 class Writer {
  public:
   explicit Writer(std::vector<std::uint8_t>& bytes)
@@ -64,8 +64,8 @@ class Writer {
   png_infop about_;
 };
 
-// Reads a file as its bytes come, and no further than its picture goes: libpng's other way to read unpacks what
-// follows, too, a thousand bytes for each of the file's.
+// Reads a file progressively, up to the end of its image. libpng's other interface also unpacks the data that follow,
+// a thousand bytes for each byte of the file.
 class PngReader {
  public:
   PngReader(double file_size, double memory)
@@ -75,7 +75,7 @@ class PngReader {
         about_(png_ == nullptr ? nullptr : png_create_info_struct(png_)) {
     if (about_ == nullptr) return;
     png_set_progressive_read_fn(png_, this, begin, put_row, end);
-    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // but for those that change samples
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // except those that change samples
   }
   ~PngReader() {
     if (png_ != nullptr) png_destroy_read_struct(&png_, &about_, nullptr);
@@ -85,7 +85,7 @@ class PngReader {
 
   std::variant<PngPicture, std::string> read(std::span<const std::uint8_t> bytes) {
     if (about_ == nullptr) return "libpng cannot begin";
-    // Not const for libpng, which only reads them.
+    // libpng only reads the bytes, but wants them not const.
     if (!process(const_cast<std::uint8_t*>(bytes.data()), bytes.size())) return std::move(problem_);
     if (!ended_) return "it ends too early";
     return std::move(picture_);
@@ -105,7 +105,7 @@ class PngReader {
     return true;
   }
 
-  // The header has been read.
+  // Called after the header has been read.
   static void begin(png_structp png, png_infop about) {
     self(png).row_bytes_ = static_cast<double>(png_get_rowbytes(png, about));  // of the file's own samples
     png_set_expand_16(png);
@@ -119,7 +119,7 @@ class PngReader {
     if (!self(png).reserve()) png_error(png, self(png).problem_.c_str());
   }
 
-  // Nothing is thrown here: above are frames of C.
+  // Must not throw, because the callers are C frames.
   bool reserve() noexcept try {
     const double pixels = static_cast<double>(picture_.width) * picture_.height,
                  samples = pixels * picture_.components;
@@ -127,7 +127,7 @@ class PngReader {
       problem_ = "it is too large";
       return false;
     }
-    // Beside the file: its samples, and the floats of R, G, B and perhaps A that will be made of them.
+    // In addition to the file: its samples, and the floats of R, G, B and perhaps A that will be made of the samples.
     const double floats = pixels * (picture_.components % 2 == 0 ? 4 : 3);
     const double needed = file_size_ + samples * sizeof(std::uint16_t) + floats * sizeof(float);
     if (needed > memory_) {
@@ -152,8 +152,8 @@ class PngReader {
     png_progressive_combine_row(png, reinterpret_cast<png_bytep>(&picture.samples[y * row]), bytes);
   }
 
-  // The last chunk has been read. The data of the picture may have ended, or made no sense, before its last row: of
-  // that libpng only warns.
+  // Called after the last chunk has been read. libpng only warns if the image's data end, or make no sense, before
+  // the last row.
   static void end(png_structp png, png_infop about) {
     self(png).ended_ = png_get_interlace_type(png, about) == PNG_INTERLACE_NONE
                            ? png_get_current_row_number(png) >= png_get_image_height(png, about)

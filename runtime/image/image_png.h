@@ -11,20 +11,21 @@
 
 namespace fathom::runtime {
 
-// Puts row `y`, from the top, as the file has it: three samples a pixel of 8 bits, or of 16, the high byte first.
+// Writes row `y`, counted from the top, in the file's format: three samples per pixel of 8 bits, or of 16 bits with
+// the high byte first.
 using PngRow = std::function<void(int y, std::span<std::uint8_t> bytes)>;
 
-// The file's bytes, with a chunk that says sRGB when `srgb`; empty when libpng fails. `bits` is 8 or 16.
+// Returns the file's bytes, with an sRGB chunk if `srgb`; empty when libpng fails. `bits` is 8 or 16.
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row);
 
-// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components, all of 16 bits, whatever the file has.
+// Samples [y][x][component] of 1 (grey), 2 (grey and alpha), 3 or 4 components, all of 16 bits for any file.
 struct PngPicture {
   int width = 0, height = 0, components = 0;
   std::vector<std::uint16_t> samples;
 };
 
-// What the file shows, or why it cannot be read; a picture that needs more than `memory` bytes is refused before they
-// are taken. A profile of colours is not looked at.
+// Returns the file's image, or why it cannot be read. An image that needs more than `memory` bytes is refused before
+// memory is allocated. Ignores colour profiles.
 std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
 
 }  // namespace fathom::runtime

@@ -26,7 +26,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using Decoded = std::variant<FloatImage, std::string>;
 
-// An image of that size with the channels R, G, B and perhaps A.
+// Returns an image of that size with the channels R, G, B and perhaps A.
 FloatImage empty_image(int width, int height, bool alpha) {
   FloatImage image;
   image.width = width;
@@ -40,7 +40,8 @@ FloatImage empty_image(int width, int height, bool alpha) {
   return image;
 }
 
-// Samples [y][x][component] of 1 (grey), 2 (and alpha), 3 or 4 components; `light` and `share` make numbers of them.
+// Makes an image of samples [y][x][component] with 1 (grey), 2 (grey and alpha), 3 or 4 components. `light` converts
+// colours, `share` converts alpha.
 template <typename Sample, typename Light, typename Share>
 FloatImage widened(const Sample* samples, int width, int height, int components, const Light& light,
                    const Share& share) {
@@ -61,8 +62,8 @@ struct FreeStb {
 template <typename Sample>
 using StbPixels = std::unique_ptr<Sample, FreeStb>;
 
-// A file's bytes as stb takes them: at their end zeros, with which the run lengths of an hdr picture never end and
-// rows of others are invented. So `filler` follows instead, and it is told.
+// Feeds a file's bytes to stb. At the end of its input stb reads zeros, with which the run lengths of an HDR image
+// never end, and rows of other formats are invented. This source supplies `filler` instead, and sets ran_out.
 struct StbSource {
   const Bytes& bytes;
   char filler = 0;
@@ -88,7 +89,7 @@ struct StbSource {
   }
   static int has_ended(void* user) { return static_cast<StbSource*>(user)->ran_out; }
 
-  // nullptr where the picture could be decoded.
+  // Returns nullptr if the image could be decoded.
   const char* problem(const void* pixels) const {
     if (ran_out) return "it ends too early";
     if (pixels != nullptr) return nullptr;
@@ -98,28 +99,28 @@ struct StbSource {
 };
 constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
 
-// The least bytes of a file with so many pixels.
+// Minimum number of bytes of a file with so many pixels.
 using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
 
-// BMP, uncompressed: the bits of a pixel stand in the header, whose length is its first number.
+// BMP, uncompressed: the header, whose length is its first number, holds the bits per pixel.
 double least_of_bmp(const Bytes& bytes, double width, double height) {
   const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
   const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
   return width * height * std::max(1.0, bits) / 8;
 }
 
-// Radiance: a row begins with four bytes, and each of its four components has a run of up to 127 in two; rows that
-// are very short or very long have no runs, nor has an older file.
+// Radiance: a row begins with four bytes, and each of its four components stores a run of up to 127 in two bytes.
+// Very short and very long rows have no runs, nor have older files.
 double least_of_hdr(const Bytes&, double width, double height) {
   const bool runs = width >= 8 && width < 32768;
   return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
 }
 
-// The reason why stb may not be asked for a picture, which is its header's size: of `sample` bytes for each number in
-// what it decodes, a float for each in what is made of that.
+// Returns the reason why stb may not decode an image, judging by its header. stb's output takes `sample` bytes per
+// number, and the image made of it a float per number.
 std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes least_of) {
   int width = 0, height = 0, components = 0;
-  // From memory, whose end stb sees.
+  // Reading from memory, stb sees the end.
   if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
     const char* reason = stbi_failure_reason();
     return reason != nullptr ? reason : "its content makes no sense";
@@ -134,7 +135,7 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
   return std::nullopt;
 }
 
-// Whether a file's first bytes are those of a format.
+// True if a file's first bytes are the signature of a format.
 bool begins_as(ImageFormat format, const Bytes& bytes) {
   constexpr struct {
     ImageFormat format;
@@ -153,7 +154,7 @@ bool begins_as(ImageFormat format, const Bytes& bytes) {
                      [&](const auto& row) { return row.format == format && text.starts_with(row.bytes); });
 }
 
-// The same, or for a format that is shown of any of these.
+// True if the first bytes are the format's signature. For a format that is shown, any such signature will do.
 bool has_signature(ImageFormat format, const Bytes& bytes) {
   constexpr std::array kShown = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
   const auto begins = [&](ImageFormat other) { return begins_as(other, bytes); };
@@ -161,7 +162,7 @@ bool has_signature(ImageFormat format, const Bytes& bytes) {
   return shown ? std::any_of(kShown.begin(), kShown.end(), begins) : begins(format);
 }
 
-// Whole samples [y][x][component] as sRGB signals.
+// Makes an image of integer samples [y][x][component], taken for sRGB signals.
 template <typename Sample>
 FloatImage from_signals(const Sample* samples, int width, int height, int components) {
   constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
@@ -189,8 +190,8 @@ Decoded decode_lossy(const Bytes& bytes, double memory) {
 }
 
 Decoded decode_shown(const Bytes& bytes, double memory) {
-  // Whatever its name says. stb sets aside what a chunk of a PNG says that it has before it reads any of it, and
-  // makes up what a JPEG ends without.
+  // Decodes PNG and JPEG by their signature, whatever the name says. stb allocates the size that a PNG's chunk states
+  // before it reads the chunk, and invents the missing end of a JPEG.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
   if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
   if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, least_of_bmp)) return std::move(*problem);
@@ -201,8 +202,8 @@ Decoded decode_shown(const Bytes& bytes, double memory) {
   return from_signals(pixels.get(), width, height, components);
 }
 
-// Where stb reads the lines of a header it takes the filler for more of them, without end: an empty line must end the
-// header, and a line break the size after it.
+// stb would read the filler as more header lines without end. The header must therefore end with an empty line, and
+// the line of the size after it with a line break.
 bool ends_hdr_header(const Bytes& bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t end = text.find("\n\n");
@@ -210,19 +211,19 @@ bool ends_hdr_header(const Bytes& bytes) {
 }
 
 Decoded decode_hdr(const Bytes& bytes, double memory) {
-  // Otherwise stb would make light of any other picture.
+  // stb would otherwise decode any other image to linear light.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   if (!ends_hdr_header(bytes)) return "its header does not end";
   if (auto problem = stb_problem(bytes, sizeof(float), memory, least_of_hdr)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
-  StbSource source{bytes, '\xff'};  // no run is so long
+  StbSource source{bytes, '\xff'};  // longer than any run
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
   if (const char* problem = source.problem(pixels.get())) return problem;
   const auto same = [](float value) { return value; };
   return widened(pixels.get(), width, height, 3, same, same);
 }
 
-// The next word of a header, which ends with one white character; empty at the end.
+// Returns the next word of a header, which ends with one white character; empty at the end.
 std::string_view next_word(std::string_view text, std::size_t& at) {
   const auto white = [&](std::size_t i) {
     return text[i] == ' ' || text[i] == '\n' || text[i] == '\t' || text[i] == '\r';
@@ -243,7 +244,7 @@ std::optional<T> to(std::string_view word) {
   return value;
 }
 
-// Source: as write_float_map().
+// Source: see write_float_map().
 Decoded decode_pfm(const Bytes& bytes, double memory) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t at = 0;
@@ -259,7 +260,7 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   const std::size_t count =
       static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
   if (text.size() - at < count * 4) return "it ends too early";
-  // Beside the file its numbers, and R, G and B of every pixel.
+  // In addition to the file: its numbers, and R, G and B of every pixel.
   const double pixels = static_cast<double>(*width) * *height;
   const double needed = static_cast<double>(bytes.size()) + sizeof(float) * (static_cast<double>(count) + 3 * pixels);
   if (needed > memory) return too_much_memory(needed, memory);
@@ -277,8 +278,8 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
   return widened(values.data(), *width, *height, components, same, same);
 }
 
-// False, and errno tells why. What does not begin as its format does is read no further than its first piece, and
-// what is longer than `most` bytes is cut off there: a device may have no end.
+// Returns false on failure, with errno set. A file without the signature of its format is read no further than its
+// first piece. A file longer than `most` bytes is cut off there, because a device may have no end.
 bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes& bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) return false;

@@ -1,7 +1,8 @@
-// Pictures from files, by the file name's ending in any case, as numbers: everything runtime/image/image_io.h writes.
+// Reads images from files as floats. The file name's ending, in any case, selects the format. All formats that
+// runtime/image/image_io.h writes can be read.
 //
-// Of OpenEXR all channels as they are; of the others R, G, B and, where there is transparency, A, y downwards. The
-// samples of PNG, JPEG and BMP are taken for sRGB signals and decoded to linear light; PFM and HDR hold linear light.
+// OpenEXR files give all their channels as they are. Other files give R, G, B and, with transparency, A, y downwards.
+// The samples of PNG, JPEG and BMP are taken for sRGB signals and decoded to linear light, which PFM and HDR hold.
 // Tested by: tests/runtime/image/image_read_test.cpp
 #pragma once
 
@@ -12,18 +13,18 @@
 
 namespace fathom::runtime {
 
-// Why a picture could not be read, for people.
+// The reason why an image could not be read, as a message.
 struct UnreadImage {
   std::string problem;
-  bool missing = false;  // the file could not be opened or read; otherwise it does not hold what its name says
+  bool missing = false;  // the file could not be opened or read; otherwise its content is not what its name says
 };
 
-// What reading a picture may take.
+// Limits on reading an image.
 struct ReadLimits {
-  double memory = 0x1p36;  // bytes: of the file, what it is decoded from and the numbers, together
+  double memory = 0x1p36;  // bytes of the file, its decoded samples and the floats, together
 };
 
-// Refuses a picture that would take more before it takes it.
+// Reads an image. Refuses an image above the limits before allocating its memory.
 std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

@@ -14,10 +14,10 @@ glm::dvec3 each(glm::dvec3 v, const Each& f) {
   return {f(v.x), f(v.y), f(v.z)};
 }
 
-// NaN to 0.
+// Clamps to [0,1]; NaN becomes 0.
 double clamp01(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
 
-// ((x (A x + C B) + D E) / (x (A x + B) + D F)) - E/F in one fraction, so that nothing cancels and 0 gives 0.
+// Returns ((x (A x + C B) + D E) / (x (A x + B) + D F)) - E/F in one fraction, so that nothing cancels and 0 gives 0.
 double hable(double x) {
   constexpr double A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30;
   return x * (A * (F - E) * x + B * (C * F - E)) / (F * (x * (A * x + B) + D * F));
@@ -29,8 +29,8 @@ glm::dvec3 filmic(glm::dvec3 light) {
 }
 
 glm::dvec3 aces(glm::dvec3 light) {
-  // Rows of the paper are columns of GLM. sRGB to AP1 and the RRT's saturation; the ODT's saturation and back to
-  // sRGB.
+  // Rows of the paper are columns of GLM. kIn: sRGB to AP1, and the RRT's saturation. kOut: the ODT's saturation, and
+  // back to sRGB.
   constexpr glm::dmat3 kIn(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
   constexpr glm::dmat3 kOut(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
   const auto fit = [](double v) {
@@ -52,7 +52,7 @@ glm::dvec3 agx(glm::dvec3 light) {
     const double x = clamp01((log2(v) - kLeastStop) / (kMostStop - kLeastStop));
     return (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
   };
-  // What comes out is a signal for a display of gamma 2.2.
+  // The curve yields a signal for a display of gamma 2.2.
   return each(kOutset * each(kInset * light, contrast), [](double signal) { return power(clamp01(signal), 2.2); });
 }
 
@@ -71,7 +71,7 @@ glm::dvec3 neutral(glm::dvec3 light) {
 }  // namespace
 
 glm::dvec3 apply_curve(ToneCurve curve, glm::dvec3 light) {
-  // More than any curve tells from white, and few enough for squares: an infinity would become a NaN.
+  // Clamps to more than any curve tells from white. The squares stay finite, and an infinity cannot become a NaN.
   light = each(light, [](double x) { return x > 0 ? std::min(x, 0x1p100) : 0; });
   switch (curve) {
     case ToneCurve::None:

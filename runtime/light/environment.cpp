@@ -16,19 +16,20 @@ namespace fathom::runtime {
 namespace {
 
 constexpr float kPiFloat = std::numbers::pi_v<float>;
-// How far rounding to floats moves a unit vector, at most: half of 2^-24 along each axis.
+// Maximum change of a unit vector by rounding to floats: half of 2^-24 along each axis.
 constexpr double kRounding = 0x1p-24;
-// Degrees. Directions in float would make the disc larger than it is by kRounding all round: here by 0.03 % of its
-// area.
+// Minimum angle of a disc, degrees. Directions in float would make the disc larger by kRounding all round: at this
+// angle by 0.03 % of its area.
 constexpr double kLeastDisc = 0.02;
 
-// Counter-clockwise about y, seen from above.
+// Turns a direction about y, counter-clockwise as seen from above.
 glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
   const glm::dvec3 d(w);
   return {cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x};
 }
 
-// The mean over each pixel of the picture as bilinear filtering shows it: weights 1, 6, 1 of 8 along each axis.
+// Returns the mean luminance over each pixel of the image after bilinear filtering: weights 1, 6, 1 of 8 along each
+// axis.
 std::vector<float> filtered_luminance(const EnvironmentImage& image) {
   const int width = image.width, height = image.height;
   std::vector<float> across(image.pixels.size()), out(image.pixels.size());
@@ -50,7 +51,7 @@ std::vector<float> filtered_luminance(const EnvironmentImage& image) {
   return out;
 }
 
-// Means over cells, by the middles of a quarter of each.
+// Returns mean luminances of cells, from the middles of the quarters of each cell.
 template <class Radiance>
 std::vector<float> cell_luminance(int width, int height, const Radiance& radiance) {
   std::vector<float> out;
@@ -94,7 +95,7 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
   }
 }
 
-// A disc of radiance L gives L pi sin^2 of its angle to what faces it.
+// A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
 void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
   const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * kDegree), sin2 = sine * sine;
   if (!(luminance(irradiance) > 0)) return;
@@ -103,7 +104,7 @@ void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irrad
                     irradiance / static_cast<float>(std::numbers::pi * sin2), luminance(irradiance)});
 }
 
-// By the chord: the cosine of a small angle has few digits.
+// Compares chords, because the cosine of a small angle has few digits.
 bool Environment::Disc::holds(glm::vec3 w) const {
   const glm::dvec3 chord = glm::normalize(glm::dvec3(w)) - direction;
   return glm::dot(chord, chord) <= rim * rim;
@@ -139,14 +140,14 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
   return sum;
 }
 
-// A gradient is so even that directions chosen by the BSDF find its light with less noise (docs/LIGHT.md).
+// Returns 0 for a gradient, which is so even that BSDF sampling finds its light with less noise (docs/LIGHT.md).
 float Environment::mean() const {
   return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
 }
 
 float Environment::estimate(const Disc& disc, const LightQuery& query) const {
   const float cosine = glm::dot(query.normal, glm::vec3(disc.direction));
-  // A disc that the horizon cuts counts as far as it may rise above.
+  // A disc that the horizon cuts counts as far as it may rise above the horizon.
   const auto rise = static_cast<float>(std::sqrt(disc.height * (2 - disc.height)));
   return disc.irradiance * std::max(0.0f, (query.both_sides ? std::abs(cosine) : cosine) + rise);
 }

@@ -1,10 +1,10 @@
-// What lies beyond the scene: a background all around and discs before it, the sun's and those of directional lights
-// with an angle. Its radiance for rays that leave, and directions chosen by it.
+// The environment beyond the scene: a background all around, with discs before it, those of the sun and of
+// directional lights with an angle. Gives the radiance of rays that leave the scene, and samples directions by it.
 //
-// The background is sampled by its luminance: a sky as a table of its cells' means; a picture by its pixels, with
-// what filtering spreads of each; a gradient not at all. A disc is sampled uniformly. Of these one is chosen by an
-// estimate of its irradiance, and densities are those of all together. Tested by:
-// tests/runtime/light/environment_test.cpp
+// The background is sampled by its luminance: a sky by a table of the means of its cells, an image by its pixels as
+// filtering spreads them, a gradient not at all. A disc is sampled uniformly. sample() chooses the background or a
+// disc by estimates of their irradiance, and pdf() covers all of them together.
+// Tested by: tests/runtime/light/environment_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -23,24 +23,26 @@ namespace fathom::runtime {
 
 class Environment {
  public:
-  // `image` is the picture that the scene's background names, when it names one.
+  // `image` is the image that the scene's background names, if it names one.
   Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image);
 
   glm::vec3 radiance(glm::vec3 direction) const;                // of rays that leave the scene
-  bool emits() const { return mean() > 0 || !discs_.empty(); }  // light to look for
-  // About the irradiance at the place of what is sampled, as luminance; 0 only where none of it arrives.
+  bool emits() const { return mean() > 0 || !discs_.empty(); }  // true if there is light to sample
+  // Returns an estimate of the irradiance by the sampled light, as luminance. 0 only if none of that light arrives.
   float estimate(const LightQuery& query) const;
-  // A direction, by three numbers in [0,1); only where estimate() > 0. pdf() is its density, per solid angle.
+  // Samples a direction by three numbers in [0,1). Requires estimate() > 0. pdf() returns its density per solid
+  // angle.
   glm::vec3 sample(const LightQuery& query, float choice, glm::vec2 u) const;
   float pdf(const LightQuery& query, glm::vec3 direction) const;
 
  private:
   struct Disc {
-    glm::dvec3 direction;  // towards its middle
+    glm::dvec3 direction;  // towards its centre
     double height;         // 1 - cos of its angle
-    double rim;            // chord from its middle to its rim, and as much more as rounding may move what was drawn
+    // Chord from its centre to its rim, plus the change of sampled directions by rounding.
+    double rim;
     glm::vec3 radiance;
-    float irradiance;  // luminance, of what faces it
+    float irradiance;  // luminance, on a surface that faces the disc
 
     bool holds(glm::vec3 w) const;
   };
@@ -49,16 +51,16 @@ class Environment {
   void add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance);
   glm::vec3 backdrop(glm::vec3 direction) const;  // without discs
   glm::vec3 pixel(glm::vec3 direction) const;
-  float mean() const;  // luminance of the backdrop, if it is sampled; otherwise 0
+  float mean() const;  // luminance of the backdrop if it is sampled, otherwise 0
   float estimate(const Disc& disc, const LightQuery& query) const;
 
   Type type_;
   glm::dvec3 bottom_, top_;  // gradient
   std::optional<Sky> sky_;   // sky
   std::shared_ptr<const EnvironmentImage> image_;
-  double turn_sine_ = 0, turn_cosine_ = 1;  // of the picture's rotation
-  float strength_ = 1;                      // of the picture
-  SphereTable table_;                       // sky, image; in the picture's own directions
+  double turn_sine_ = 0, turn_cosine_ = 1;  // of the image's rotation
+  float strength_ = 1;                      // of the image
+  SphereTable table_;                       // of a sky or an image, in the image's own directions
   std::vector<Disc> discs_;
 };
 

@@ -10,7 +10,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Infinity, as half floats hold at the sun, becomes the largest half; no sum of pixels overflows.
+// Infinity, as half floats hold at the sun, becomes the largest half. A limit keeps sums of pixels from overflowing.
 float usable(float value) {
   constexpr float kLargestHalf = 65504, kLargest = 1e20f;
   if (!(value > 0)) return 0;
@@ -23,7 +23,7 @@ std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& 
   const auto read = read_image(path, limits);
   if (const auto* unread = std::get_if<UnreadImage>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);
-  // A picture of luminance alone is grey.
+  // An image of luminance alone is grey.
   const std::vector<float>* grey = image.channel("Y");
   const std::vector<float>* channels[] = {image.channel("R"), image.channel("G"), image.channel("B")};
   for (const std::vector<float>*& channel : channels) {

@@ -1,4 +1,4 @@
-// Pictures of what surrounds a scene: Radiance .hdr and OpenEXR .exr, in linear sRGB.
+// Images of a scene's environment: Radiance .hdr and OpenEXR .exr, in linear sRGB.
 // Tested by: tests/runtime/light/environment_file_test.cpp
 #pragma once
 
@@ -16,8 +16,8 @@ struct EnvironmentImage {
   std::vector<glm::vec3> pixels;  // from the top row; finite and not negative
 };
 
-// The picture, or why it cannot be read. What is not a number or negative in it becomes 0, and infinity
-// the largest number of 16 bits.
+// Returns the image, or the reason why it cannot be read. NaN and negative values become 0, and infinity becomes the
+// largest number of 16 bits.
 std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

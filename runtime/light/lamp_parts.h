@@ -1,5 +1,5 @@
-// What the shapes of lamps share: the choice of a part of the surface, and densities over area as densities over
-// directions. Tested by: tests/runtime/light/light_shapes_test.cpp
+// Helpers for the shapes of area lights: choosing a part of the surface, and converting densities over area to
+// densities over directions. Tested by: tests/runtime/light/light_shapes_test.cpp
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace fathom::runtime {
 
 inline double sqr(double x) { return x * x; }
 
-// The parts of a shape with weights, of which one is chosen by a number that is then as good as new.
+// The parts of a shape, with weights. choose() picks a part by a number, and makes the number uniform again.
 template <std::size_t N>
 struct Parts {
   std::array<double, N> weights{};
@@ -26,7 +26,7 @@ struct Parts {
     return total;
   }
   double share(std::size_t part) const { return weights[part] / sum(); }
-  // sum() > 0.
+  // Requires sum() > 0.
   std::size_t choose(double& u) const {
     double rest = u * sum();
     std::size_t part = 0, last = 0;
@@ -39,7 +39,7 @@ struct Parts {
   }
 };
 
-// Per solid angle, of a point chosen uniformly over an area.
+// Returns the density per solid angle of a point sampled uniformly over an area.
 inline double area_to_solid_angle(const ShapeSample& at, glm::dvec3 from, double area) {
   const glm::dvec3 way = from - at.position;
   const double d2 = glm::dot(way, way), facing = glm::dot(at.normal, way);

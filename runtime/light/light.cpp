@@ -14,12 +14,12 @@
 namespace fathom::runtime {
 namespace {
 
-// Of near lights and those beyond, each side at least so often when there are both: estimates may be far off.
+// Minimum probability of near lights, and of those beyond the scene, when there are both: estimates may be far off.
 constexpr float kLeastShare = 0.25f;
 
 float cosine_of_degrees(double degrees) { return static_cast<float>(vm::real::cos(degrees * kDegree)); }
 
-// From 0 at the cone's edge to 1, smoothly.
+// Rises from 0 at the cone's edge to 1, smoothly.
 float spot_falloff(float cosine, float outer, float inner) {
   if (cosine <= outer) return 0;
   if (cosine >= inner) return 1;
@@ -27,7 +27,8 @@ float spot_falloff(float cosine, float outer, float inner) {
   return t * t * (3 - 2 * t);
 }
 
-// A convex body's projected area is a quarter of its surface's on average (Cauchy); a quad's is known.
+// The projected area of a convex body is on average a quarter of its surface area (Cauchy). The projected area of a
+// quad is known.
 LightBounds bounds_of(const LampShape& shape, glm::vec3 radiance) {
   LightBounds bounds{shape.centre(), shape.radius()};
   const bool quad = shape.lamp().shape == compiler::Lamp::Shape::Quad;
@@ -66,7 +67,7 @@ void Lights::add_lamps(const compiler::CompiledScene& scene, std::vector<LightBo
 void Lights::add_delta(const compiler::Light& light, std::vector<LightBounds>& bounds) {
   const float strength = luminance(glm::vec3(light.intensity));
   const bool directional = light.type == compiler::Light::Type::Directional;
-  if (!(strength > 0) || (directional && light.angle > 0)) return;  // a disc of the environment
+  if (!(strength > 0) || (directional && light.angle > 0)) return;  // with an angle it is a disc of the environment
   Delta delta{light};
   if (directional) {
     directional_.push_back(delta);

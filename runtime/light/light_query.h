@@ -1,4 +1,4 @@
-// A place that is to be lit.
+// A shading point, for which light is sampled.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -6,7 +6,7 @@
 namespace fathom::runtime {
 
 struct LightQuery {
-  glm::dvec3 position;      // programs' coordinates
+  glm::dvec3 position;      // in the programs' coordinates
   glm::vec3 normal;         // of the surface there, unit
   bool both_sides = false;  // light from behind the surface counts, too
 };

@@ -20,8 +20,8 @@ using glm::dvec3;
 
 // --- boxes
 
-// The faces across each axis, on the side where `from` is; weight 0 where it is within the box's slab. The weights
-// are near the solid angles, up to the half sphere's: exactly known but the chosen face's need not be.
+// The face across each axis on the side of `from`, with weight 0 if `from` is within the box's slab. The weights are
+// near the solid angles, up to the half sphere's. Only the density on the chosen face has to be exact.
 struct BoxFaces {
   BoxFaces(dvec3 from, dvec3 half) {
     for (int i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ ShapeSample sample_box(dvec3 from, dvec3 half, dvec2 u) {
 }
 
 double box_pdf(dvec3 from, dvec3 half, dvec3 hit) {
-  int axis = 0;  // of the face that is nearest
+  int axis = 0;  // of the nearest face
   for (int i = 1; i < 3; ++i) {
     if (std::abs(hit[i]) - half[i] > std::abs(hit[axis]) - half[axis]) axis = i;
   }
@@ -90,7 +90,7 @@ bool inside_quad(const Lamp& quad, dvec2 p) {
   return true;
 }
 
-// The lamp's x axis lies along the first side.
+// Returns the face towards `from`. The lamp's x axis lies along the first side.
 SeenRectangle face_of(const Lamp& quad, dvec3 from) {
   const dvec2 lo = quad.corners[0], hi = quad.corners[2];
   return {lo.x - from.x, hi.x - from.x, lo.y - from.y, hi.y - from.y, std::abs(from.z) - quad.radius};
@@ -110,7 +110,7 @@ ShapeSample sample_quad(const Lamp& quad, bool rectangle, dvec3 from, dvec2 u) {
   const std::array<dvec2, 4>& c = quad.corners;
   const Parts<2> halves{{cross2(c[1] - c[0], c[2] - c[0]), cross2(c[2] - c[0], c[3] - c[0])}};
   const std::size_t half = halves.choose(u.x);
-  // Uniform over a triangle: Turk, "Generating Random Points in Triangles", Graphics Gems, 1990.
+  // Samples a triangle uniformly: Turk, "Generating Random Points in Triangles", Graphics Gems, 1990.
   const double root = std::sqrt(u.x);
   const dvec2 place = (1 - root) * c[0] + root * (1 - u.y) * c[1 + half] + root * u.y * c[2 + half];
   out.position.x = place.x;

@@ -12,19 +12,20 @@
 namespace fathom::runtime {
 namespace {
 
-// The cosine of max(0, a - b) for angles in [0, pi] given by their cosines.
+// Returns the cosine of max(0, a - b) for angles in [0, pi] given by their cosines.
 float cosine_of_difference(float cos_a, float cos_b) {
   if (cos_a >= cos_b) return 1;
   const auto sine = [](float c) { return std::sqrt(std::max(0.0f, 1 - c * c)); };
   return cos_a * cos_b + sine(cos_a) * sine(cos_b);
 }
 
-// Lights that shine past the edge of their cone by rounding shall be found, and those at its edge not too rarely.
+// kSlack: for lights that shine past the edge of their cone by rounding. kLeastFacing: keeps lights at the edge of
+// their cone from being sampled too rarely.
 constexpr float kSlack = 1e-4f, kLeastFacing = 0.05f;
 
 bool everywhere(const LightBounds& light) { return light.cos_spread <= -1; }
 
-// One light for all of them.
+// Returns the bounds of all members together.
 LightBounds merge(std::span<const std::uint32_t> members, const std::vector<LightBounds>& lights) {
   LightBounds out;
   compiler::Box box;
@@ -53,7 +54,7 @@ LightBounds merge(std::span<const std::uint32_t> members, const std::vector<Ligh
   for (const std::uint32_t member : members) {
     const LightBounds& light = lights[member];
     const float apart = std::clamp(glm::dot(glm::vec3(aligned(light)), out.axis), -1.0f, 1.0f);
-    // cos(a + b); beyond half a turn they face everywhere.
+    // cos(a + b). Beyond half a turn the lights face everywhere.
     const float sines = std::sqrt((1 - apart * apart) * (1 - light.cos_spread * light.cos_spread));
     const float sum = apart + light.cos_spread > 0 ? apart * light.cos_spread - sines : -1;
     out.cos_spread = std::min(out.cos_spread, sum - kSlack);
@@ -94,7 +95,7 @@ LightTree::LightTree(std::vector<LightBounds> lights) : lights_(std::move(lights
   for (std::uint32_t i = 0; i < count; ++i) slot_[order_[i]] = i;
 }
 
-// Recursion as deep as the logarithm of the number of lights.
+// The recursion's depth is the logarithm of the number of lights.
 void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf) {
   const std::span<std::uint32_t> members = std::span(order_).subspan(first, count);
   const std::size_t self = nodes_.size();

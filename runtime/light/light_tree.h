@@ -1,11 +1,11 @@
-// Which of many lights to sample at a place: by an estimate of the irradiance each would give there, from a ball
-// around the light and a cone around the directions it faces.
+// Chooses one of many lights for a shading point, by an estimate of the irradiance that each light gives there, from
+// a ball around the light and a cone around the directions that it faces.
 //
-// Up to kFewLights all estimates are made; more go into a binary tree whose nodes are estimated as lights themselves
-// and which is descended by chance.
+// Up to kFewLights lights are all estimated. More lights go into a binary tree, whose nodes are estimated like lights
+// and which choose() descends at random.
 //
 // Source: Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; without
-// the splitting, and split at the middle light along the longest axis instead of by their cost.
+// the adaptive splitting, and with nodes divided at the middle light along the longest axis instead of by cost.
 // Tested by: tests/runtime/light/light_tree_test.cpp
 #pragma once
 
@@ -21,19 +21,19 @@
 
 namespace fathom::runtime {
 
-// A light, or several, seen roughly.
+// Bounds on the place and the emission of a light, or of several together.
 struct LightBounds {
   glm::dvec3 centre{0};
-  double radius = 0;  // of a ball that holds it
-  // Directions it faces lie within the angle of cosine cos_spread around the axis, and light goes to where the angle
-  // from one of them has at least the cosine cos_emission. cos_spread -1: everywhere.
+  double radius = 0;  // of a ball that contains the light
+  // The directions that the light faces lie within the angle of cosine cos_spread around the axis. The light goes to
+  // directions whose angle from one of these has at least the cosine cos_emission. cos_spread -1: all directions.
   glm::vec3 axis{0, 1, 0};
   float cos_spread = -1, cos_emission = 0;
-  bool two_sided = false;  // faces along -axis, too
-  float intensity = 0;     // luminance: irradiance of a surface that faces it, times the distance squared
+  bool two_sided = false;  // the light faces along -axis, too
+  float intensity = 0;     // luminance: irradiance of a surface that faces the light, times the distance squared
 };
 
-// About the irradiance at the query; 0 only where no light can arrive.
+// Returns an estimate of the irradiance at the query. 0 only if no light can arrive.
 float estimate(const LightBounds& light, const LightQuery& query);
 
 class LightTree {
@@ -46,21 +46,21 @@ class LightTree {
     std::uint32_t light;
     float probability;
   };
-  // By a number in [0,1); nothing when no light can arrive.
+  // Chooses a light by a number in [0,1). Returns nothing if no light can arrive.
   std::optional<Choice> choose(const LightQuery& query, float u) const;
-  // The probability with which choose() gives the light.
+  // Returns the probability with which choose() returns `light`.
   float probability(const LightQuery& query, std::uint32_t light) const;
-  // About the irradiance of all lights together.
+  // Returns an estimate of the irradiance by all lights together.
   float total(const LightQuery& query) const;
   bool empty() const { return lights_.empty(); }
   std::size_t size() const { return lights_.size(); }
 
-  // Calls `use` with every light whose ball is within `reach` of the place.
+  // Calls `use` with every light whose ball is within `reach` of `place`.
   template <class Use>
   void near(glm::dvec3 place, double reach, const Use& use) const;
 
  private:
-  // Its lights are order_[first, first + count); an inner node's children are the next node and `second`.
+  // A node's lights are order_[first, first + count). The children of an inner node are the next node and `second`.
   struct Node {
     LightBounds bounds;
     std::uint32_t first, count;
@@ -79,7 +79,7 @@ void LightTree::near(glm::dvec3 place, double reach, const Use& use) const {
   const auto touches = [&](const LightBounds& bounds) {
     return glm::length(bounds.centre - place) <= bounds.radius + reach;
   };
-  std::array<std::uint32_t, 64> pending;  // the tree is as deep as the logarithm of the number of lights
+  std::array<std::uint32_t, 64> pending;  // the tree's depth is the logarithm of the number of lights
   std::size_t count = 0;
   if (!empty()) pending[count++] = 0;
   while (count > 0) {

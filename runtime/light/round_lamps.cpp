@@ -18,7 +18,7 @@ using glm::dvec3;
 
 // --- spheres, about a centre
 
-// 1 - cos of half the angle that a ball subtends, without cancellation; from within or on it none, 0.
+// Returns 1 - cos of half the angle that a ball subtends, without cancellation. 0 if `from` is within or on the ball.
 double ball_height(dvec3 from, dvec3 centre, double radius) {
   const double sin2 = sqr(radius) / glm::dot(centre - from, centre - from);
   return sin2 < 1 ? sin2 / (1 + std::sqrt(1 - sin2)) : 0;
@@ -32,7 +32,7 @@ double ball_pdf(dvec3 from, dvec3 centre, double radius) {
 
 namespace {
 
-// A unit vector across the unit vector `axis`.
+// Returns a unit vector perpendicular to the unit vector `axis`.
 dvec3 across(dvec3 axis) {
   dvec3 other(0);
   other[std::abs(axis.x) < 0.6 ? 0 : 1] = 1;
@@ -59,7 +59,7 @@ namespace {
 
 // --- about the y axis
 
-// The part of the side of a cylinder that `from` sees: `half_turn` to either side of where it is.
+// The part of a cylinder's side that `from` sees, up to half_turn_ in either direction from where `from` is.
 struct Side {
   Side(dvec3 from, double radius, double half_height)
       : radius_(radius), half_height_(half_height), axis_distance_(std::sqrt(sqr(from.x) + sqr(from.z))) {
@@ -68,7 +68,7 @@ struct Side {
   bool seen() const { return half_turn_ > 0; }
   double area() const { return 4 * half_turn_ * radius_ * half_height_; }
 
-  // About its solid angle: the silhouette's area as the nearest point of the axis' height sees it.
+  // Returns about the solid angle: the area of the silhouette as seen by the nearest point at the axis' heights.
   double weight(dvec3 from) const {
     if (!seen()) return 0;
     const double beyond = std::max(0.0, std::abs(from.y) - half_height_), near = axis_distance_ - radius_;
@@ -96,7 +96,7 @@ struct Side {
   double radius_, half_height_, axis_distance_, half_turn_ = 0;
 };
 
-// Cap and side. A cap is seen from beyond its plane.
+// Weights of the cap and the side. A cap is seen only from beyond its plane.
 Parts<2> cylinder_parts(const Lamp& lamp, dvec3 from, const Side& side) {
   Parts<2> parts;
   const double above = std::abs(from.y) - lamp.half_height, r2 = sqr(lamp.radius);
@@ -155,7 +155,8 @@ double capsule_distance(const Lamp& lamp, dvec3 p) {
 
 namespace {
 
-// The lower ball, the upper one, the side. Of a ball that is not the nearer end only half is outside the solid.
+// Weights of the lower ball, the upper ball and the side. A ball that is not the nearer end counts half, because only
+// half of the ball is outside the solid.
 Parts<3> capsule_parts(const Lamp& lamp, dvec3 from, const Side& side) {
   Parts<3> parts;
   if (!(capsule_distance(lamp, from) > 0)) return parts;

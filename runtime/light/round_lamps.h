@@ -1,5 +1,5 @@
-// Balls, cylinders and capsules about the y axis as lamps, in their own space: light_shapes.h says how each is
-// sampled. Tested by: tests/runtime/light/light_shapes_test.cpp
+// Area lights that are balls, or cylinders and capsules about the y axis, in their own space. light_shapes.h
+// describes their sampling. Tested by: tests/runtime/light/light_shapes_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>

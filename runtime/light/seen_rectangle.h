@@ -1,11 +1,12 @@
-// A rectangle as the origin sees it: points on it nearly uniform in solid angle, without trigonometry.
+// A rectangle as seen from the origin, sampled nearly uniformly in solid angle, without trigonometry.
 //
-// Solid angle per area is z (x^2 + y^2 + z^2)^(-3/2). y given x is drawn exactly so, which has a closed form; x with
-// a density proportional to (x^2 + z^2 + m^2)^(-3/2), m the least |y|, which has the same form: right where the
-// rectangle is narrow as seen from here, and near where it is not. The weights 1 / pdf have a relative variance below
-// .02 where the rectangle is no nearer than half its shorter side and below 1 at a hundredth of it; uniform over
-// the area they had .4 and 300. Exact uniformity (Urena, Fajardo, King, "An Area-Preserving Parametrization for
-// Spherical Rectangles", 2013) costs an arc tangent and sines, and loses its digits where the angle is small.
+// The solid angle per area is z (x^2 + y^2 + z^2)^(-3/2). y given x is sampled exactly, by a closed form. x is
+// sampled with a density proportional to (x^2 + z^2 + m^2)^(-3/2), where m is the minimum of |y|, which has the same
+// form. That density is exact for a rectangle that looks narrow from the origin, and nearly exact otherwise. The
+// weights 1 / pdf have a relative variance below .02 if the rectangle is no nearer than half its shorter side, and
+// below 1 at a hundredth of that side. Sampling uniformly over the area had .4 and 300. Exact uniformity (Urena,
+// Fajardo, King, "An Area-Preserving Parametrization for Spherical Rectangles", 2013) costs an arc tangent and sines,
+// and loses digits at small angles.
 // Tested by: tests/runtime/light/light_shapes_test.cpp
 #pragma once
 
@@ -19,10 +20,10 @@ class SeenRectangle {
  public:
   struct Place {
     glm::dvec2 at;  // x and y
-    double pdf;     // per solid angle; 0: none, the rectangle is too small or seen from its edge
+    double pdf;     // per solid angle; 0: no sample, the rectangle is too small or seen from its edge
   };
 
-  // [x0,x1] x [y0,y1] in the plane at the distance z > 0.
+  // The rectangle [x0,x1] x [y0,y1] in the plane at distance z > 0.
   SeenRectangle(double x0, double x1, double y0, double y1, double z) : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z_(z) {
     const double least = std::max({y0, -y1, 0.0});
     z2_ = z * z;
@@ -40,7 +41,7 @@ class SeenRectangle {
     return {{x, y}, pdf(x, d2, h1 - h0)};
   }
 
-  // Of a point with this x.
+  // Returns the density at any point with this x.
   double pdf(double x) const {
     const double d2 = x * x + z2_;
     return pdf(x, d2, sine(y1_, d2) - sine(y0_, d2));
@@ -49,10 +50,11 @@ class SeenRectangle {
  private:
   static constexpr double kLeast = 1e-12;
 
-  // a / sqrt(a^2 + b2): the integral of b2 (t^2 + b2)^(-3/2) up to a.
+  // Returns a / sqrt(a^2 + b2): the integral of b2 (t^2 + b2)^(-3/2) up to a.
   static double sine(double a, double b2) { return a / std::sqrt(a * a + b2); }
 
-  // (c2 r^-3 / (g1 - g0)) (d2 s^-3 / (h1 - h0)) per area, with r^2 = x^2 + c2 and s^2 = x^2 + y^2 + z^2.
+  // Converts (c2 r^-3 / (g1 - g0)) (d2 s^-3 / (h1 - h0)) per area, with r^2 = x^2 + c2 and s^2 = x^2 + y^2 + z^2, to
+  // solid angle.
   double pdf(double x, double d2, double heights) const {
     const double widths = g1_ - g0_;
     if (!(widths > kLeast && heights > kLeast)) return 0;

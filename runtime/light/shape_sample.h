@@ -1,4 +1,4 @@
-// A point that was chosen on the surface of a lamp, for a place that the lamp lights, and its density.
+// A point sampled on the surface of an area light for a shading point, and its density.
 // Tested by: tests/runtime/light/light_shapes_test.cpp
 #pragma once
 
@@ -9,7 +9,7 @@ namespace fathom::runtime {
 struct ShapeSample {
   glm::dvec3 position{0};
   glm::dvec3 normal{0};  // outward
-  double pdf = 0;        // per solid angle at the place it was chosen for; 0: no sample
+  double pdf = 0;        // per solid angle at the shading point; 0: no sample
 };
 
 }  // namespace fathom::runtime

@@ -13,9 +13,9 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kSkyUnit = 10;              // kcd/m^2 of radiance 1
+constexpr double kSkyUnit = 10;              // kcd/m^2 per unit of radiance
 constexpr double kSunOutside = 133.1;        // klx
-constexpr float kLeastZenithCosine = 1e-4f;  // of the angle from the zenith: Perez' formula divides by it
+constexpr float kLeastZenithCosine = 1e-4f;  // of the angle from the zenith, by which Perez' formula divides
 
 // Source: IEC 61966-2-1:1999.
 glm::vec3 xyY_to_srgb(float x, float y, float Y) {
@@ -25,7 +25,7 @@ glm::vec3 xyY_to_srgb(float x, float y, float Y) {
   return glm::max(rgb, glm::vec3(0));
 }
 
-// A cubic in the sun's angle from the zenith for each power of the turbidity.
+// Evaluates a polynomial in the turbidity whose coefficients are cubics in the sun's angle from the zenith.
 double zenith_chromaticity(const double (&m)[3][4], double turbidity, double theta) {
   double result = 0;
   for (const auto& row : m)
@@ -38,7 +38,7 @@ constexpr double kZenithX[3][4] = {
 constexpr double kZenithY[3][4] = {
     {0.00275, -0.00610, 0.00317, 0}, {-0.04214, 0.08970, -0.04153, 0.00516}, {0.15346, -0.26756, 0.06670, 0.26688}};
 
-// Appendix A.1: what remains of sunlight of a wavelength, in micrometres, along a way of `mass` air masses.
+// Returns the part of sunlight of a wavelength, in micrometres, that `mass` air masses let pass, by appendix A.1.
 double transmittance(double wavelength, double turbidity, double mass) {
   const double rayleigh = 0.008735 * vm::real::pow(wavelength, -4.08);
   const double aerosol = (0.04608 * turbidity - 0.04586) * vm::real::pow(wavelength, -1.3);
@@ -53,7 +53,7 @@ glm::dvec3 sun_through_air(double turbidity, double theta) {
                     transmittance(0.465, turbidity, mass));
 }
 
-// Irradiance of the level ground, by the middles of cells of equal height and turn.
+// Returns the irradiance of level ground, from the middles of cells of equal height and turn.
 template <class Radiance>
 glm::dvec3 irradiance_from_above(const Radiance& radiance) {
   constexpr int kRows = 64, kColumns = 128;

@@ -21,12 +21,12 @@ template <class E>
 HWY_INLINE V code(E value) {
   return k(static_cast<double>(value));
 }
-// As std::min and std::max: of a number that is none and one that is, the first.
+// Like std::min and std::max: if one operand is NaN, they return the first.
 HWY_INLINE V first_min(V a, V b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 HWY_INLINE V first_max(V a, V b) { return hn::IfThenElse(hn::Lt(a, b), b, a); }
 HWY_INLINE Mask finite(V a) { return hn::Lt(hn::Abs(a), k(std::numeric_limits<double>::infinity())); }
 
-// The rays from `i` on that a register holds.
+// Clips the rays from `i` on that a register holds.
 HWY_INLINE void clip_register(RayBlock& rays, std::size_t i, const compiler::Box& box, double far) {
   const Doubles d;
   V origin[3], direction[3];
@@ -50,7 +50,7 @@ HWY_INLINE void clip_register(RayBlock& rays, std::size_t i, const compiler::Box
   for (int axis = 0; axis < 3; ++axis) {
     const V inverse = hn::Div(k(1), direction[axis]), lo = k(box.lo[axis]), hi = k(box.hi[axis]);
     const V a = hn::Mul(hn::Sub(lo, origin[axis]), inverse), b = hn::Mul(hn::Sub(hi, origin[axis]), inverse);
-    const Mask along = hn::Eq(direction[axis], hn::Zero(d));  // the slab's planes are never met
+    const Mask along = hn::Eq(direction[axis], hn::Zero(d));  // the ray never meets the slab's planes
     begin = hn::IfThenElse(along, begin, first_max(begin, first_min(a, b)));
     end = hn::IfThenElse(along, end, first_min(end, first_max(a, b)));
     past = hn::Or(past, hn::AndNot(hn::And(hn::Ge(origin[axis], lo), hn::Le(origin[axis], hi)), along));

@@ -1,5 +1,4 @@
-// Rays on their way into a marcher: each is cut to the stretch of it within a box, as many at once as a register of
-// doubles holds.
+// Clips rays to a box on their way into a marcher, as many at once as a register of doubles holds.
 //
 // By slabs: Kay and Kajiya, "Ray Tracing Complex Scenes", 1986. Not a public header: march.h is. Tested by:
 // tests/runtime/march/clip_test.cpp
@@ -13,11 +12,11 @@
 
 namespace fathom::runtime {
 
-// What became of a ray that was clipped: it has a stretch within, or never comes there, or is no ray at all (no
-// direction, or numbers that are not).
+// Result of clipping a ray: some of the ray is within the box, or the ray passes the box, or the ray is invalid (a
+// direction without length, NaN, or an infinite origin or direction).
 enum class Clip : std::uint8_t { Within, Past, Invalid };
 
-// Rays side by side, at most kCapacity.
+// Rays as a structure of arrays, at most kCapacity of them.
 struct RayBlock {
   static constexpr std::size_t kCapacity = 1024;
   static constexpr std::size_t kPadded = kCapacity + 8;  // a register may begin at the last ray
@@ -25,9 +24,10 @@ struct RayBlock {
   std::size_t count = 0;
   double origin[3][kPadded] = {};  // [axis][ray]; scene units
   double direction[3][kPadded] = {};
-  double length[kPadded] = {};  // of the ray, from its origin
-  double entry[kPadded] = {};   // what is clear; once clipped: from the ray's origin to where the stretch begins
-  double fate[kPadded] = {};    // once clipped: a Clip
+  double length[kPadded] = {};  // from the origin; after clipping, of the part within the box
+  // Before clipping: Ray::clear. After: distance from the ray's origin to the start of the part within the box.
+  double entry[kPadded] = {};
+  double fate[kPadded] = {};  // after clipping: a Clip
   float slope[kCapacity];
   std::int8_t side[kCapacity];
   std::uint32_t id[kCapacity];
@@ -44,13 +44,13 @@ struct RayBlock {
     side[i] = static_cast<std::int8_t>(ray.side);
     id[i] = ray_id;
   }
-  // Once clipped.
+  // Only after clipping.
   Clip what_became_of(std::size_t i) const { return static_cast<Clip>(fate[i]); }
 };
 
-// Directions become unit vectors; one that is to float precision stays as it is. Origins move to where the ray enters
-// the box, or past what is clear, and are then outside (side 1) when that is further on; lengths end where it leaves
-// it or at `far`. The rays from `first` on.
+// Clips the rays from `first` on. Directions become unit vectors, except that a unit vector to float precision stays
+// as it is. Origins move to where the ray enters the box, or to the end of its clear length if that is further on. A
+// ray whose origin moved starts outside (side 1). Lengths end where the ray leaves the box, or at `far`.
 void clip(RayBlock& rays, std::size_t first, const compiler::Box& box, double far);
 
 }  // namespace fathom::runtime

@@ -1,4 +1,4 @@
-// A register of lanes: a view of what lane_rows.h keeps in arrays. N: vm's Batch (f32 lanes) or Real (one double).
+// A register of lanes: a view of the arrays of lane_rows.h. N is vm's Batch (f32 lanes) or Real (one double).
 #if defined(FATHOM_RUNTIME_LANE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_LANE_INL
 #undef FATHOM_RUNTIME_LANE_INL
@@ -29,7 +29,7 @@ HWY_INLINE Real load(const double* from, Real*) { return {*from}; }
 HWY_INLINE void store(Batch a, float* to) { a.store(to); }
 HWY_INLINE void store(Real a, double* to) { *to = a.v; }
 
-// Bit i: lane i of the mask.
+// Returns the mask as bits: bit i is lane i.
 HWY_INLINE std::uint32_t lanes_of(vm::HWY_NAMESPACE::BatchMask mask) {
   std::conditional_t<(sizeof(Batch) > 32), std::uint16_t, std::uint8_t> bits = 0;
   hwy::HWY_NAMESPACE::StoreMaskBits(vm::HWY_NAMESPACE::FloatLanes(), mask.m, reinterpret_cast<std::uint8_t*>(&bits));
@@ -46,9 +46,9 @@ HWY_INLINE N code(Enum value) {
   return number<N>(static_cast<double>(value));
 }
 
-// 1 / a, or less by up to 7 parts in a million, where a division would cost three times as much. The bits of a float
-// are nearly its logarithm (Blinn, "Floating-Point Tricks", IEEE CG&A 1997), so a difference of bits is nearly a
-// quotient; then two of Newton's steps. Of plain arithmetic, so that it is the same everywhere.
+// Returns 1 / a, or less by up to 7 parts per million, where a division would cost three times as much. The bits of a
+// float are nearly its logarithm (Blinn, "Floating-Point Tricks", IEEE CG&A 1997), so a difference of bits is nearly
+// a quotient. Two Newton steps follow. Plain arithmetic alone gives the same bits on every machine.
 HWY_INLINE Batch rough_reciprocal(Batch a) {
   const vm::HWY_NAMESPACE::FloatLanes floats;
   const hwy::HWY_NAMESPACE::RebindToSigned<vm::HWY_NAMESPACE::FloatLanes> ints;
@@ -60,7 +60,7 @@ HWY_INLINE Batch rough_reciprocal(Batch a) {
 }
 HWY_INLINE Real rough_reciprocal(Real a) { return number<Real>(1) / a; }
 
-// The lanes of one register, and the rules for all of them. What is put only where a mask holds stays elsewhere.
+// The lanes of one register, with the rules common to all methods. A put() with a mask leaves other lanes unchanged.
 template <class N, class L>
 class LaneView {
  public:
@@ -72,7 +72,7 @@ class LaneView {
   HWY_INLINE void put(LaneRow row, N value) { store(value, &lanes_.row[row][first_]); }
   HWY_INLINE void put(LaneRow row, Mask where, N value) { put(row, select(where, value, get(row))); }
 
-  // The field is wanted at t, of those lanes that go on.
+  // Sets the next t and the verdict, and requests the field at that t. Returns the lanes that have ended.
   HWY_INLINE Mask finish(N t, N verdict) {
     put(kTNext, t);
     put(kX, get(kOx) + t * get(kDx));
@@ -87,7 +87,7 @@ class LaneView {
   std::size_t first_;
 };
 
-// d_f (field.h) of f at the lanes' points.
+// Returns d_f (field.h), the error bound of f at the lanes' points.
 template <class N, class L, class S>
 HWY_INLINE N distance_error(const LaneView<N, L>& lanes, N f, const LaneRules<S>& rules) {
   const N place = max(abs(lanes.get(kX)), max(abs(lanes.get(kY)), abs(lanes.get(kZ))));

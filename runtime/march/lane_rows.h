@@ -1,12 +1,12 @@
-// Many rays on their way, one array for each quantity. A ray that is under way has a lane, the same place in every
-// array; lanes.h moves them on.
+// The state of many rays under way, one array per quantity. Each such ray has a lane, which is the same index in
+// every array. lanes.h advances the lanes.
 //
-// A lane that walks was at t with g(t) = side * f > 0 and waits for the field at t_next:
+// A walking lane was at t with g(t) = side * f > 0 and waits for the field at t_next:
 //
-//   Start --> Walk <--> Retreat        Retreat: the last step was too long; the plain safe one is under way
-//     |        |  |                    Cross: as Walk, by a step that is meant to cross the surface
+//   Start --> Walk <--> Retreat        Retreat: the last step was too long, and the plain safe step is under way
+//     |        |  |                    Cross: like Walk, by a step meant to cross the surface
 //   Emerge     |  Refine --> Hit       Refine: a crossing lies in [t, t_hi]
-//              Miss, Certify           Emerge: began on the wrong side of the surface, by rounding
+//              Miss, Certify           Emerge: the ray began on the wrong side of the surface, by rounding
 //
 // Not a public header: march.h is. Tested by: tests/runtime/march/march_test.cpp
 #pragma once
@@ -21,13 +21,13 @@ namespace fathom::runtime {
 enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
 enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Cross, Retreat, Refine };
 
-// What is kept of a lane. A step reads and writes most of it: every row costs.
+// The rows of a lane's state. Every row costs time, because a step reads and writes most rows.
 enum LaneRow : std::uint8_t {
-  // Where the field is evaluated next.
+  // Point at which the field is evaluated next.
   kX,
   kY,
   kZ,
-  // The ray: where t = 0, its direction of unit length, and where it ends.
+  // The ray: its origin, where t = 0, its unit direction, and its end.
   kOx,
   kOy,
   kOz,
@@ -35,52 +35,54 @@ enum LaneRow : std::uint8_t {
   kDy,
   kDz,
   kTMax,
-  kSide,   // 0 until the first evaluation when it has to be found out
+  // 0 until the first evaluation if the ray's side is unknown.
+  kSide,
   kPhase,  // a LanePhase
-  kTNext,  // of kX, kY, kZ
+  kTNext,  // t of the point kX, kY, kZ
   kEvaluations,
   kVerdict,  // a LaneVerdict
-  // The last accepted sample: place, value, and safe radius: nothing lies within [t, t + r). Not set before the first
-  // is.
+  // The last accepted sample: t, g, and the safe radius r. No surface lies within [t, t + r). Unset before the first
+  // accepted sample.
   kT,
   kG,
   kR,
   kM,         // relaxation: expected slope of the safe radius along the ray
   kPatience,  // samples to accept before the next attempt to cross
-  kPenalty,   // patience after the next attempt that meets no surface; of FixedStep: above 1 once a step was too long
+  // Patience after the next attempt that meets no surface. FixedStep: above 1 once a step was too long.
+  kPenalty,
   kLaneRows,
-  // While refining these rows hold the bracket: its ends, the values the secant takes for both, how long the first
-  // bracket was and what g falls by over it.
+  // Meanings while refining, for the bracket: its ends, the values that the secant uses for both ends, the length of
+  // the first bracket, and the fall of g over the first bracket.
   kTLo = kT,
   kGLo = kG,
   kSpan = kR,
   kFall = kM,
   kTHi = kPatience,
   kGHi = kPenalty,
-  // Once hit: the root, and how wide its bracket is.
+  // Meanings after a hit: the root, and the width of its bracket.
   kRoot = kT,
   kWidth = kR
 };
 
-// S: float or double. Counts and flags are numbers of that type, too: a register holds as many of each.
+// S is float or double. Counts and flags have that type, too, so that a register holds the same number of each.
 template <class S>
 struct Lanes {
   static constexpr std::size_t kCapacity = 768;
-  // A line of the cache longer than need be: rows a power of two apart would all compete for the same few lines.
+  // A cache line longer than needed: rows a power of two apart would all compete for the same few cache lines.
   static constexpr std::size_t kStride = kCapacity + 64 / sizeof(S);
   alignas(64) S row[kLaneRows][kStride];
 };
 
-// What the lanes must know of the field and the method, in the lanes' precision.
+// Constants of the field and the method, in the lanes' precision.
 template <class S>
 struct LaneRules {
   S lipschitz, inv_lipschitz;
-  S band;        // near the surface: distances at which a crossing is tried, scene units
-  S magnitude;   // scene units (compiler/shapes/bounds.h)
+  S band;        // distance below which a lane tries to cross the surface, scene units
+  S magnitude;   // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
   S unit;        // d_f at unit scale
-  S resolution;  // relative width of a bracket that is done
+  S resolution;  // relative width at which a bracket is done
   Method method;
-  S epsilon, steps, relaxation;  // of the methods that have them
+  S epsilon, steps, relaxation;  // of the methods that use them
 };
 
 }  // namespace fathom::runtime

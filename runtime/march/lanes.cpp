@@ -1,4 +1,5 @@
-// The lanes' two ways on, compiled once for each instruction set and chosen at run time (Highway's foreach_target).
+// The advance of lanes by either kind of method, compiled once for each instruction set and chosen at run time
+// (Highway's foreach_target).
 #include "runtime/march/lanes.h"
 
 #include <bit>
@@ -12,11 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// Moves one register of lanes after another on; move(i), i being its first lane, returns those that have ended.
+// Advances one register of lanes after another. move(i) advances the register whose first lane is i, and returns the
+// lanes that have ended.
 template <class N, class S, class Move>
 HWY_INLINE std::size_t for_each_register(std::size_t count, LaneNumbers& ended, const Move& move) {
   constexpr std::size_t kStep = sizeof(N) / sizeof(S);
-  // One bit a lane, and one loop over them at the end, whose length the processor mispredicts once.
+  // One bit per lane, and one loop over the bits at the end, whose length the processor mispredicts once.
   std::uint64_t bits[Lanes<S>::kCapacity / 64] = {};
   for (std::size_t i = 0; i < count; i += kStep) bits[i / 64] |= std::uint64_t{lanes_of(move(i))} << i % 64;
   std::size_t total = 0;

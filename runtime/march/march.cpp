@@ -5,7 +5,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Every ray searched in double from its start.
+// A marcher that searches every ray in double from its start.
 class Certifier final : public Marcher {
  public:
   using Marcher::Marcher;

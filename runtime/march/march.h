@@ -1,23 +1,23 @@
-// Marching: rays -> the first surface they meet.
+// Marching: finds the first surface that each ray meets.
 //
-// A ray is followed along g(t) = side * f(origin + t direction), which is positive in the space it travels through
-// (side is -1 inside a solid). A hit is a change of sign bracketed to float resolution, never "f is small". Three
-// tiers:
+// A ray is followed along g(t) = side * f(origin + t direction), which is positive in the space that the ray travels
+// through (side is -1 inside a solid). A hit is a change of sign bracketed to float resolution, never "f is small".
+// There are three tiers:
 //
 //   clip    in double: the ray restarts where it enters the scene's bound, so that float t stays small (clip.h)
 //   stream  in float, many rays at once: certified steps, then brackets that shrink (tiered-inl.h)
-//   certify in double: the few that float cannot decide, which wait until there are enough to be searched side by
+//   certify in double: the few rays that float cannot decide, collected until there are enough to be searched side by
 //           side (certify.h)
 //
-// Every ray ends as Hit, Miss, Contact or Invalid; none runs out of steps.
+// Every ray ends as Hit, Miss, Contact or Invalid. No ray runs out of steps.
 //
 //     const auto marcher = make_marcher(field);
 //     marcher->add(id, ray);            // as long as there is room()
 //     marcher->advance();               // one evaluation of the field for every ray within the bound
-//     marcher->take_arrivals(arrivals);  // those that ended since the last time
+//     marcher->take_arrivals(arrivals);  // the rays that ended since the last call
 //
-// What becomes of a ray depends on nothing but the ray, the field and the method. Tested by:
-// tests/runtime/march/march_test.cpp
+// The result of a ray depends on nothing but the ray, the field and the method.
+// Tested by: tests/runtime/march/march_test.cpp
 #pragma once
 
 #include <functional>
@@ -35,11 +35,11 @@ namespace fathom::runtime {
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching = {});
 
-// Follows all of `rays`, whose ids are their places; `settle` is given each arrival.
+// Follows all `rays`, whose ids are their indices, and calls `settle` with each arrival.
 MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
                      const std::function<void(const Arrival&)>& settle);
 
-// All of `rays`, in order: arrivals[i].id == i.
+// The results of all rays, in order: arrivals[i].id == i.
 struct MarchResult {
   std::vector<Arrival> arrivals;
   MarchCounters counters;

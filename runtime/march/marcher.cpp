@@ -7,14 +7,15 @@
 namespace fathom::runtime {
 namespace {
 
-// Rays searched side by side, at least: two registers of doubles, and few enough not to be missed in the stream.
+// Minimum number of rays searched side by side: two registers of doubles, and few enough not to be missed in the
+// stream.
 constexpr std::size_t kSideBySide = 16;
 
 }  // namespace
 
 int Marcher::capacity_for(const Field& field) { return field.regions ? kMostRays : kMostRays / 2; }
 
-// With regions every point has its own program, and nothing is gained by asking for many.
+// With regions every point has its own program, so that evaluating many points at once gains nothing.
 Marcher::Marcher(const Field& field)
     : field_(field), capacity_(capacity_for(field)), side_by_side_(field.regions ? 1 : kSideBySide) {}
 
@@ -38,7 +39,7 @@ void Marcher::certify_from(const Course& course, int side, const Stretch& stretc
                        evaluations, instructions});
 }
 
-// Searches while so many are left that they fill the machine's registers, or nothing else is under way.
+// Searches as long as enough rays are left to fill the machine's registers, or no other rays are under way.
 void Marcher::search() {
   if (searched_.size() < side_by_side_ && (live_ > 0 || searched_.empty())) return;
   const Stage before = clock_.enter(Stage::Resolve);
@@ -48,7 +49,7 @@ void Marcher::search() {
   clock_.enter(before);
 }
 
-// Answers one question of every ray.
+// Evaluates the field once for every searched ray.
 void Marcher::search_once() {
   const std::size_t count = searched_.size();
   for (std::vector<double>& coordinates : question_) coordinates.resize(count);
@@ -66,7 +67,7 @@ void Marcher::search_once() {
   }
 }
 
-// The last one takes its place.
+// Records the arrival of searched ray i. The last searched ray takes its place.
 void Marcher::end_search(std::size_t i) {
   const Searched& ray = searched_[i];
   const Certified& found = ray.search.result();

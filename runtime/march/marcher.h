@@ -1,7 +1,7 @@
-// The base of every marcher: rays come in, are clipped to the scene's bound (clip.h), move on, are searched in double
-// where that is needed (search.h), and have arrived. Classes derived from it move them on: stream.h.
+// The base of every marcher. A marcher takes rays, clips them to the scene's bound (clip.h), advances them, searches
+// some in double (search.h), and returns their arrivals. A derived class advances the rays: stream.h.
 //
-// march.h makes the marcher of a method and says how one is used. Not a public header: march.h is.
+// march.h makes the marcher of a method and shows its use. Not a public header: march.h is.
 // Tested by: tests/runtime/march/march_test.cpp
 #pragma once
 
@@ -28,13 +28,13 @@ class Marcher {
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  // Rays under way at once, kMostRays at most: with regions many, so that many are in programs of one skeleton.
+  // Maximum number of rays under way, up to kMostRays: high with regions, so that many points need one skeleton.
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
   int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }
   bool empty() const { return live_ == 0 && waiting_.count == 0 && searched_.empty(); }
 
-  // Needs room.
+  // Requires room() > 0.
   void add(std::uint32_t id, const Ray& ray) {
     if (room() <= 0) [[unlikely]]
       refuse();
@@ -44,32 +44,32 @@ class Marcher {
   void advance();
 
   const std::vector<Arrival>& arrivals() const { return arrivals_; }
-  // Moves them into `out`, in place of what it held.
+  // Moves the arrivals into `out` and drops the previous content of `out`.
   void take_arrivals(std::vector<Arrival>& out) {
     out.swap(arrivals_);
     arrivals_.clear();
   }
   const MarchCounters& counters() const { return counters_; }
   vm::Workspace& workspace() { return workspace_; }
-  StageClock& clock() { return clock_; }  // tells Resolve from what its owner does
+  StageClock& clock() { return clock_; }  // its owner sets the stages, the marcher enters Resolve
 
  protected:
-  // A ray within the scene's bound.
+  // A ray clipped to the scene's bound.
   struct Course {
     glm::dvec3 origin;     // where the ray enters the bound
     glm::dvec3 direction;  // unit length
-    double entry;          // distance from the ray's origin to there
+    double entry;          // distance from the ray's origin to `origin`
     double length;         // within the bound
     std::uint32_t id;
   };
 
-  // Takes up `rays`, which are clipped, from the last on as long as there is room, and takes them from the block.
-  // live_ counts those that are under way.
+  // Starts clipped rays of `rays`, from the last on, as long as there is room, and removes them from the block. live_
+  // counts the rays under way.
   virtual void begin(RayBlock& rays) = 0;
-  // Moves the rays under way on by one evaluation.
+  // Advances the rays under way by one evaluation.
   virtual void step() = 0;
 
-  // Each number on its own: of a whole that has just been put together in memory a copy has to wait.
+  // Copies each number on its own: a copy of the whole struct would wait for the stores that have just filled it.
   static void set_course(Course& course, const RayBlock& rays, std::size_t i) {
     for (int axis = 0; axis < 3; ++axis) {
       course.origin[axis] = rays.origin[axis][i];
@@ -79,7 +79,7 @@ class Marcher {
     course.length = rays.length[i];
     course.id = rays.id[i];
   }
-  // Whether the i-th of `rays` comes within the bound; one that does not has arrived.
+  // True if the i-th of `rays` comes within the bound. Otherwise records the ray's arrival.
   bool enters(const RayBlock& rays, std::size_t i) {
     const Clip fate = rays.what_became_of(i);
     if (fate == Clip::Within) return true;
@@ -87,20 +87,20 @@ class Marcher {
     arrive(rays.id[i], fate == Clip::Past ? Arrival::Status::Miss : Arrival::Status::Invalid);
     return false;
   }
-  // The fields of an Arrival, in order; it is made in its place.
+  // Records an arrival, constructed in place from the fields of Arrival, in order.
   template <class... Fields>
   void arrive(std::uint32_t id, Arrival::Status status, Fields... fields) {
     count(status);
     arrivals_.emplace_back(id, status, fields...);
     counters_.instructions += arrivals_.back().instructions;
   }
-  // The ray, no longer live, is to be ended by the search in double, after `evaluations` in float.
+  // Hands a ray that is no longer live to the search in double, after `evaluations` in float.
   void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
                     std::uint64_t instructions);
 
   const Field& field_;
   const int capacity_;
-  int live_ = 0;  // rays under way; those that were added since the last advance() wait
+  int live_ = 0;  // rays under way, without the rays added since the last advance()
   MarchCounters counters_;
   vm::Workspace workspace_;
   RealScratch real_scratch_;
@@ -129,21 +129,22 @@ class Marcher {
   void search_once();
   void end_search(std::size_t i);
 
-  // A ray that is searched in double.
+  // A ray that is being searched in double.
   struct Searched {
     Search search;
-    double entry;  // of its Course
+    double entry;  // Course::entry
     std::uint32_t id;
     std::uint32_t evaluations;  // in float
     std::uint64_t instructions;
   };
 
-  RayBlock waiting_;                // the last one is the next to begin
-  std::size_t clipped_ = 0;         // of those waiting, the first
-  const std::size_t side_by_side_;  // rays that are worth searching
+  RayBlock waiting_;                // the last ray begins next
+  std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
+  const std::size_t side_by_side_;  // minimum number of rays worth a search
   std::vector<Searched> searched_;
-  std::vector<double> question_[3], answer_;  // [axis][of searched_]
-  std::vector<std::uint64_t> price_;          // instructions an answer took
+  // The points of the rays in searched_, [axis][ray], and the field there, [ray].
+  std::vector<double> question_[3], answer_;
+  std::vector<std::uint64_t> price_;  // [ray] instructions of the evaluation
   std::vector<Arrival> arrivals_;
 };
 

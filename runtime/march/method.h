@@ -1,7 +1,8 @@
-// How rays meet the field: the renderer's own way, and the ways of others, to compare it with.
+// Methods of following rays through the field: the renderer's own, and baseline methods to compare it with.
 //
-// `tiered` is what every picture is made with (march.h). The others say "hit" where the field falls below `epsilon`
-// and give a ray up, as a miss, after `steps` evaluations; they exist to be charted and tested.
+// `tiered` is the renderer's own method (march.h). The methods with `uses_epsilon` report a hit where the field falls
+// below `epsilon`, and give up a ray, as a miss, after `steps` evaluations. The methods except `tiered` exist for
+// charts and tests.
 // Tested by: tests/runtime/march/method_test.cpp
 #pragma once
 
@@ -16,7 +17,7 @@ struct MethodInfo {
   Method method;
   std::string_view name;  // on the command line and in charts
   std::string_view summary;
-  bool uses_epsilon;  // and `steps`
+  bool uses_epsilon;  // the method uses Marching's `epsilon` and `steps`
 };
 
 inline constexpr MethodInfo kMethods[] = {
@@ -33,10 +34,10 @@ constexpr const MethodInfo& info(Method method) { return kMethods[static_cast<in
 
 struct Marching {
   Method method = Method::Tiered;
-  Precision precision = Precision::Single;  // Certified is always in double
-  double epsilon = 1e-4;                    // scene units; what counts as a hit
-  int steps = 512;                          // evaluations before a ray is given up
-  double relaxation = 1.6;                  // of Relaxed: steps are this many safe radii, in [1, 2)
+  Precision precision = Precision::Single;  // Certified always runs in double
+  double epsilon = 1e-4;                    // scene units; smaller values of the field are hits
+  int steps = 512;                          // maximum number of evaluations per ray
+  double relaxation = 1.6;                  // Relaxed: length of a step in safe radii, in [1, 2)
 };
 
 }  // namespace fathom::runtime

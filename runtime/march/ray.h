@@ -1,4 +1,4 @@
-// A ray and what became of it.
+// A ray and the result of following it.
 // Tested by: tests/runtime/march/march_test.cpp
 #pragma once
 
@@ -10,11 +10,11 @@ namespace fathom::runtime {
 
 struct Ray {
   glm::dvec3 origin;     // scene units
-  glm::dvec3 direction;  // any finite length but zero; normalised unless it has unit length already
-  double t_max = std::numeric_limits<double>::infinity();  // scene units, beside the field's `far`
-  int side = 0;                                            // +1 starts outside, -1 inside a solid; 0: find out
+  glm::dvec3 direction;  // any finite length except zero; the marcher normalises it unless it has unit length
+  double t_max = std::numeric_limits<double>::infinity();  // scene units; Field::far is a limit, too
+  int side = 0;                                            // +1: starts outside, -1: inside a solid, 0: not known
   float slope = -1;  // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
-  float clear = 0;   // nothing lies nearer than this along it, scene units; above 0 only outside solids
+  float clear = 0;   // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
 };
 
 struct Arrival {
@@ -22,12 +22,12 @@ struct Arrival {
   enum class Status : std::uint8_t { Hit, Miss, Contact, Invalid };
   std::uint32_t id;
   Status status;
-  std::int8_t side = 1;            // of the space the ray travelled through, +1 or -1
+  std::int8_t side = 1;            // +1: the ray travelled outside, -1: inside a solid
   std::uint32_t evaluations = 0;   // of the field, for this ray
-  std::uint32_t certified = 0;     // those in double; 0: float decided
-  float width = 0;                 // of the bracket round the hit, scene units
-  double t = 0;                    // of the hit, scene units from the origin
-  std::uint64_t instructions = 0;  // of the field's program, over the evaluations
+  std::uint32_t certified = 0;     // number of evaluations in double; 0: float decided
+  float width = 0;                 // width of the bracket around the hit, scene units
+  double t = 0;                    // distance from the origin to the hit, scene units
+  std::uint64_t instructions = 0;  // number of instructions of the field's program, over all evaluations
 };
 
 }  // namespace fathom::runtime

@@ -10,34 +10,38 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget that double the resolution
-// ... up to this times max(1, |p|) or the stretch: what follows a place that is hard to search is not passed over.
+constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget per doubling of the resolution
+// Maximum of the coarsened resolution, relative to max(1, |p|) or to the stretch, so that the search does not pass
+// over surfaces that follow a point that is hard to search.
 constexpr double kCoarsest = 0x1p-10;
-// Segments shorter than this times max(1, |p|) are not cut further: a thousand times the rounding of double.
+// Segments shorter than this, relative to max(1, |p|), are not cut further: a thousand times the rounding of double.
 constexpr double kResolution = 0x1p-40;
-// ... and where a segment ends behind the surface, so much before that may stay open: the root that is reported may
-// be another one than the first, and no further from it. A 256th of the least that float tells apart at 1.
+// Length, relative to max(1, |p|), that may stay open before the end of a segment that ends behind the surface: the
+// reported root may not be the first, but is no further from the first than this. A 256th of the relative width of
+// brackets in float (stream.cpp).
 constexpr double kRootResolution = 0x1p-30;
-// Intervals cost many evaluations: worth it where a segment is so much longer than what its near end excludes of it.
-// Those of iterated maps, where the field says that they tell little, cost a hundred.
+// Minimum length of a segment worth intervals, relative to the part that its near end excludes, because intervals
+// cost many evaluations. kCostlyRangeRatio applies where Field::longest_told is finite: intervals of iterated maps
+// cost a hundred evaluations.
 constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
-// They told something when the bounds on the slope are so much tighter.
+// An interval is informative if it narrows the bounds on the slope to this share.
 constexpr double kProgress = 0.8;
-// Where they told nothing a segment this many times shorter is asked of next, longer ones only after so many
-// evaluations, and then twice as many.
+// After an uninformative interval, the search next tries a segment kShorter times shorter. The search tries longer
+// segments only after kSeldom evaluations, and then after twice as many.
 constexpr double kShorter = 8;
 constexpr std::uint32_t kSeldom = 1u << 10;
-// In a large scene an interval takes the whole program and an evaluation little of it. They are asked after this many
-// evaluations, or this share of the program's instructions, and after as many again.
+// In a large scene intervals need the whole program, but an evaluation only a small part of it. Intervals are tried
+// after this many evaluations, or after a kAskedShare-th of the program's instructions if that is more, and after the
+// same number again.
 constexpr std::uint32_t kLeastAsked = 16, kAskedShare = 4;
-// A step's length in what it should be for the balls of both ends just to touch, and the slope that is expected at
-// most, relative to the bound on it (compare tiered-inl.h).
+// kReach: length of a step, relative to the length at which the balls of both ends just touch. kLargestSlope: maximum
+// slope expected, relative to its bound (compare tiered-inl.h).
 constexpr double kReach = 0.995, kLargestSlope = 0.9;
-// Near a root a step is aimed beyond it by this share of the way.
+// Near a root, a step has this length relative to the way to the root.
 constexpr double kOvershoot = 1.1;
-constexpr int kMostRounds = 200;  // of a bracket
-// Within a solid a field of 0, give or take so many roundings, is a surface where it goes on for longer than this
-// times max(1, |p|). Where it does not, two parts of the solid touch there.
+constexpr int kMostRounds = 200;  // per bracket
+// In a solid, g within kLevelRoundings rounding errors of 0 is a surface if it stays there for longer than
+// kLeastLevel max(1, |p|). Otherwise two parts of the solid touch there.
 constexpr double kLevelRoundings = 4, kLeastLevel = 0x1p-20;
 
 }  // namespace
@@ -69,7 +73,7 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
   rounding_ = field_->rounding(point());
   if (side_ == 0) side_ = f < -rounding_ ? -1 : 1;
   if (!std::isfinite(f)) return end(Arrival::Status::Invalid);
-  // Raised by what may be rounding, so that g is nowhere below 0 where the field is 0.
+  // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0.
   const double g = (side_ < 0 ? -f : f) + rounding_;
   switch (purpose_) {
     case Purpose::Begin:
@@ -86,7 +90,7 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
   }
 }
 
-// Where g > 0 the search begins.
+// Begins the search where g >= 0. Otherwise moves `begin` back if there is a hint, or reports a hit there.
 void Search::begin(double g) {
   double& from = stretch_.begin;
   if (g < 0 && back_ > 0 && from > 0) {
@@ -98,14 +102,14 @@ void Search::begin(double g) {
   now_ = {from, g, stretch_.end, 0, speed_, speed_};
   if (stretch_.hint > from && stretch_.hint < stretch_.end) {
     now_.b = stretch_.hint;
-    // Its value at the hint is that at the near part's end.
+    // The far part's value at the hint is set with the near part's end, in give().
     pending_.push_back({now_.b, g, stretch_.end, std::nan(""), speed_, speed_});
   }
   ask(now_.b, Purpose::End);
 }
 
-// Goes on with the near part, or with the far one where nothing is to be done but that: then no segment is kept.
-// False when the search is done, or the near part the root's.
+// Continues with the near part of the segment that was cut. A near part that is free is left behind, and the search
+// continues with the far part, which then is not stored. False if the search is done or looks for a root.
 bool Search::cut(double g) {
   const Segment nearer{now_.a, now_.ga, wanted_, g, now_.fall, now_.rise};
   if (is_free(nearer, gap_of(nearer)) && !hides_end(nearer)) {
@@ -117,7 +121,7 @@ bool Search::cut(double g) {
   return true;
 }
 
-// Settles the nearest segment, again and again, until a value is wanted.
+// Settles the nearest segment, again and again, until a value is needed.
 void Search::go_on(RealScratch& scratch) {
   while (settle(scratch)) {
     if (pending_.empty()) return end(contact_ ? Arrival::Status::Contact : Arrival::Status::Miss);
@@ -127,8 +131,8 @@ void Search::go_on(RealScratch& scratch) {
   }
 }
 
-// Whether the segment is done with: free, or too short to tell. Else it is the root's or to be cut in two, and a
-// value is wanted.
+// True if the segment is finished: free, or too short to decide. Otherwise the segment holds a root or is cut in two,
+// and the search needs a value.
 bool Search::settle(RealScratch& scratch) {
   Segment& s = now_;
   Gap gap = gap_of(s);
@@ -155,7 +159,8 @@ bool Search::settle(RealScratch& scratch) {
       return false;
     }
     contact_ = true;
-    // Beyond what nothing is told of, as where a field comes down to a plateau, longer segments are asked of again.
+    // Beyond a segment without informative intervals, e.g. where a field comes down to a plateau, intervals may be
+    // tried on longer segments again.
     hopeless_ = std::max(hopeless_, kShorter * (s.b - s.a));
     return side_ > 0 || !ends_solid(s, true);
   }
@@ -163,25 +168,25 @@ bool Search::settle(RealScratch& scratch) {
   return false;
 }
 
-// Goes on beyond a segment that is free. False when it turns out that the solid ended before.
+// Goes on beyond a segment that is free. False if the solid turns out to have ended before.
 bool Search::leave_behind(const Segment& s) {
   slope_ = (s.gb - s.ga) / (s.b - s.a);
   return side_ > 0 || !ends_solid(s, is_still(s));
 }
 
-// Of a segment whose ends are level with 0: whether all of it is.
+// True if all of a segment is at the rounding level of 0, given that its ends are.
 bool Search::is_still(const Segment& s) const {
   return std::min(s.fall, s.rise) * (s.b - s.a) <= kLevelRoundings * rounding_;
 }
 
-// Whether a segment of a solid that is free may be level with 0 for long, beside an end that is.
+// True if a free segment of a solid may be at the rounding level of 0 for long, next to an end at that level.
 bool Search::hides_end(const Segment& s) const {
   const double level = kLevelRoundings * rounding_;
   if (side_ > 0 || (s.ga > level && s.gb > level) || s.b - s.a <= kLeastLevel * scale(s.a)) return false;
   return s.ga > level || s.gb > level || !is_still(s);
 }
 
-// Whether a solid has ended by the end of a segment of it. `still`: nothing rises far within it.
+// True if a solid has ended by the end of the segment. `still`: g rises nowhere far within the segment.
 bool Search::ends_solid(const Segment& s, bool still) {
   const double level = kLevelRoundings * rounding_;
   if (s.gb > level) {
@@ -198,15 +203,16 @@ bool Search::ends_solid(const Segment& s, bool still) {
   return false;
 }
 
-// The solid ended where g came down to the level it has had since.
+// Ends a solid where g came down to the rounding level at which it has stayed since.
 void Search::leave_solid(double level) {
   if (g_above_ == 0) return hit(level_from_, level_from_);
   root_level_ = 2 * level;
   find_root({above_, g_above_ - root_level_, level_from_, g_level_ - root_level_, 0, 0}, 0);
 }
 
-// Where intervals may tell something of the near part; else where the balls of the near end and of the sample should
-// just touch, if g goes on as it did; near a root, just beyond it.
+// Returns the t at which to cut: so near that intervals may be informative for the near part, otherwise where the
+// balls of the near end and of the new sample should just touch if g keeps its slope, or just beyond a root that is
+// near.
 double Search::place_to_cut(const Segment& s, const Gap& gap) const {
   const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
   const double least = gap.lo + coarsened(kResolution, gap.lo);
@@ -221,7 +227,7 @@ double Search::place_to_cut(const Segment& s, const Gap& gap) const {
 
 bool Search::is_free(const Segment& s, const Gap& gap) { return s.gb >= 0 && gap.lo > gap.hi; }
 
-// g can be below zero only where neither end's value and slope keep it from it; empty (lo > hi) when that is nowhere.
+// Returns the part in which neither end's value and slope exclude g < 0. The gap is empty (lo > hi) if there is none.
 Search::Gap Search::gap_of(const Segment& s) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double lo = s.fall > 0 ? s.a + s.ga / s.fall : infinity;
@@ -239,7 +245,7 @@ bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
   return true;
 }
 
-// Takes what interval arithmetic knows of the segment.
+// Narrows the segment's bounds by interval arithmetic.
 Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
   ++result_.evaluations;
   const double length = s.b - s.a, known = s.fall + s.rise;
@@ -249,8 +255,9 @@ Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
     const auto [lo, hi] = line->derivative;
     s.fall = std::min(s.fall, std::max(0.0, side_ < 0 ? hi : -lo));
     s.rise = std::min(s.rise, std::max(0.0, side_ < 0 ? -lo : hi));
-    // The value tells of a plateau where the derivative is that of what lies about it. Outside a solid it is free; a
-    // solid ends there. No place is rounded less than the origin.
+    // The value's bounds reveal a plateau at 0 even where the derivative's bounds are those of its surroundings.
+    // Outside a solid the plateau is free. Inside a solid, the solid ends there. No point has a smaller rounding
+    // error than the origin.
     const double flat = field_->rounding({});
     const bool empty = line->value.lo >= -flat;
     if (side_ > 0) {
@@ -267,8 +274,8 @@ Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
   return free ? Told::Free : told ? Told::Slope : Told::Nothing;
 }
 
-// g falls from above zero at a to zero or below at b, and the first root is in a stretch of that width: the Illinois
-// method (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
+// Narrows the root of a segment over which g falls from above zero to zero or below. The first root is in an interval
+// of that width. By the Illinois method (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
 void Search::find_root(const Segment& s, double width) {
   bracket_ = {s.a, s.b, s.ga, s.gb, 0, 0};
   width_ = width;

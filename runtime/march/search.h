@@ -1,12 +1,12 @@
-// The search for a ray's first root as a machine that asks for one value of the field at a time and is given it, so
-// that many rays can be searched side by side and all their questions answered in one evaluation (certify.h, which
-// says what is searched, and how a segment is proved free).
+// The search for a ray's first root as a state machine. The search asks for the field at one point at a time and is
+// given the value, so that many rays can be searched side by side and one evaluation answers all of them. certify.h
+// defines the root and describes how a segment is proved free.
 //
 //     Search search(field, origin, direction, side, stretch);
 //     while (!search.done()) search.give(field.evaluate(search.point(), ...), scratch);
 //
-// What it does depends on nothing but the field, the ray and the stretch. Tested by:
-// tests/runtime/march/certify_test.cpp
+// The search depends on nothing but the field, the ray and the stretch.
+// Tested by: tests/runtime/march/certify_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -22,50 +22,52 @@ namespace fathom::runtime {
 
 struct Certified {
   Arrival::Status status;
-  int side;          // of the space searched, +1 or -1
-  double t = 0;      // of the hit, in units of |direction|
-  double width = 0;  // of what holds the first root; t is one of those in it, bracketed far more narrowly
+  int side;      // +1: searched outside, -1: inside a solid
+  double t = 0;  // of the hit, in units of |direction|
+  // Width of the interval that holds the first root. t is a root in this interval, bracketed far more narrowly.
+  double width = 0;
   std::uint32_t evaluations = 0;
-  std::uint64_t instructions = 0;  // of the field's program, over them
+  std::uint64_t instructions = 0;  // of the field's program, over all evaluations
 };
 
-// Where to search: [begin, end] of a ray, `end` finite.
+// The interval [begin, end] of a ray to be searched, with `end` finite.
 struct Stretch {
   double begin, end;
-  double hint;  // of a root that is guessed to lie in [begin, hint], which may have to grow towards 0; else 0
+  // End of an interval [begin, hint] that is guessed to hold a root and may have to grow towards 0. 0: no guess.
+  double hint;
 };
 
 inline constexpr std::uint32_t kSearchBudget = 1u << 14;  // evaluations at full resolution
 
 class Search {
  public:
-  Search() = default;  // done
+  Search() = default;  // done() is true
   Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch);
 
   bool done() const { return done_; }
-  // Where f is wanted next, unless it is done.
+  // Returns the point at which f is needed next. Only while done() is false.
   glm::dvec3 point() const { return origin_ + wanted_ * direction_; }
-  // Goes on with f there, which took so many instructions.
+  // Continues with f at point(), which took so many instructions.
   void give(double f, std::uint64_t instructions, RealScratch& scratch);
 
-  const Certified& result() const { return result_; }  // once it is done
+  const Certified& result() const { return result_; }  // only when done()
 
  private:
   struct Segment {
-    double a, ga, b, gb;  // gb: NaN when it is not known yet
+    double a, ga, b, gb;  // gb: NaN if not yet known
     double fall, rise;    // the slope of g is within [-fall, rise]
   };
-  // The part of a segment that g > 0 at its ends does not exclude.
+  // The part of a segment in which its end values do not exclude g < 0.
   struct Gap {
     double lo, hi;
   };
-  // Of a root, as it is narrowed.
+  // The bracket of a root, while it is being narrowed.
   struct Bracket {
     double lo, hi, g_lo, g_hi;
     int kept;  // +1: the last sample replaced lo; -1: hi
     int rounds;
   };
-  // What the value is wanted for.
+  // The purpose of the next value.
   enum class Purpose : std::uint8_t { Begin, End, Cut, Root };
 
   void ask(double t, Purpose purpose);
@@ -97,24 +99,26 @@ class Search {
   int side_ = 0;
   double speed_ = 0;  // largest |dg/dt|
   Stretch stretch_{};
-  double back_ = 0;               // how far before a hint to look next
+  double back_ = 0;               // distance by which `begin` moves back next, if the hint was wrong
   std::vector<Segment> pending_;  // in order along the ray, the nearest last
-  Segment now_{};                 // the nearest of all
+  Segment now_{};                 // the nearest segment of all
   Bracket bracket_{};
-  double slope_ = 0;                // of g, over the segment that was left behind last
-  double rounding_ = 0;             // of the field, at the last place that was asked for
-  double above_ = 0, g_above_ = 0;  // the last end of a segment left behind where g was not level with 0, and g there
-  // Where a solid's g became level with 0, and g there.
+  double slope_ = 0;     // slope of g over the last segment left behind
+  double rounding_ = 0;  // rounding error of the field at the last point
+  // Last end of a segment left behind at which g was above the rounding level of 0, and g there.
+  double above_ = 0, g_above_ = 0;
+  // Point at which a solid's g came down to the rounding level of 0, and g there.
   double level_from_ = std::numeric_limits<double>::quiet_NaN(), g_level_ = 0;
-  double root_level_ = 0;  // the value that is looked for within the bracket
-  double width_ = 0;       // of what may hold the first root, where that is more than its bracket
+  double root_level_ = 0;  // value that the search in the bracket looks for
+  double width_ = 0;       // width of the interval that may hold the first root, if wider than its bracket
   double wanted_ = 0;
   Purpose purpose_ = Purpose::Begin;
   bool contact_ = false, done_ = true;
-  double range_ratio_ = 0;    // how long a segment is worth an interval
-  double hopeless_ = 0;       // intervals are expected to tell nothing of longer segments
-  std::uint32_t dear_ = 0;    // evaluations, between two intervals of a large scene; else 0
-  std::uint32_t ask_at_ = 0;  // evaluations, at which they are asked all the same
+  // Minimum length of a segment worth interval arithmetic, relative to the part that its near end excludes.
+  double range_ratio_ = 0;
+  double hopeless_ = 0;       // intervals are not expected to be informative for longer segments
+  std::uint32_t dear_ = 0;    // number of evaluations between two intervals in a large scene; else 0
+  std::uint32_t ask_at_ = 0;  // number of evaluations after which intervals are tried regardless
   Certified result_{};
 };
 

@@ -13,7 +13,7 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
   rules.band = static_cast<S>(field.band);
   rules.magnitude = static_cast<S>(field.magnitude);
-  // A double keeps 29 more bits, and constants rounded to float are not its concern.
+  // A double keeps 29 more bits, and the rounding of constants to float does not affect it.
   rules.unit =
       kSingle ? static_cast<S>(kDistanceError) : static_cast<S>(static_cast<double>(kDistanceError) * 0x1p-29);
   rules.resolution = kSingle ? static_cast<S>(0x1p-22) : static_cast<S>(0x1p-48);
@@ -24,7 +24,7 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   return rules;
 }
 
-// An S that is not above `value`, by at most a unit in its last place.
+// Returns an S that is not above `value`, and below by at most a unit in its last place.
 template <class S>
 S round_down(double value) {
   return static_cast<S>(sizeof(S) == sizeof(float) ? value * (1 - 0x1p-24) : value);
@@ -32,10 +32,11 @@ S round_down(double value) {
 
 // Samples to accept after the first attempt to cross that met no surface.
 constexpr double kFirstPenalty = 2;
-// Relative to t: how far beside the bracket the root of a vague one is looked for first (kTolerance in tiered-inl.h).
+// Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
+// in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
 
-// Lanes of a field without regions: a block of the machine.
+// Number of lanes for a field without regions: a block of the machine.
 constexpr int kBlock = 256;
 static_assert(Lanes<float>::kCapacity <= kMostPoints);
 
@@ -164,8 +165,8 @@ void Stream<S>::finish(std::size_t i) {
   }
 }
 
-// What float has not decided of a lane. Of a root that float knows too loosely, the bracket comes first, grown by
-// what made it vague.
+// Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins
+// with the bracket, widened by the uncertainty.
 template <class S>
 Stretch Stream<S>::what_is_left(std::size_t i) const {
   const auto number = [&](LaneRow row) { return static_cast<double>(lanes_->row[row][i]); };

@@ -1,4 +1,4 @@
-// A marcher that moves all its rays on together, in float or double, by the method of its rules.
+// A marcher that advances all its rays together, in float or double, by the method of its rules.
 // Tested by: tests/runtime/march/march_test.cpp
 #pragma once
 
@@ -31,15 +31,16 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
-  const bool seeded_;     // rays begin with the slope they are given; not what others do
-  const int most_lanes_;  // in use
+  const bool seeded_;     // rays begin with Ray::slope, unlike those of the baseline methods
+  const int most_lanes_;  // maximum number in use
   const bool knows_convex_;
-  const std::size_t register_lanes_;            // points the field is evaluated for at once, at least
+  const std::size_t register_lanes_;            // points per register; each evaluation fills whole registers
   std::array<Course, kLanes> courses_;          // [lane]
   alignas(64) std::array<S, kLanes> distance_;  // [lane]
-  alignas(64) std::array<S, kLanes> convex_;    // [lane]; of a field that knows
-  std::vector<std::size_t> holes_;  // lanes whose ray has ended, downwards; a new ray or the last lane fills them
-  std::size_t lanes_used_ = 0;      // with the holes
+  alignas(64) std::array<S, kLanes> convex_;    // [lane]; only if knows_convex_
+  // Lanes whose ray has ended, in descending order. A new ray or the last lane fills them.
+  std::vector<std::size_t> holes_;
+  std::size_t lanes_used_ = 0;  // including the holes
   RegionScratch scratch_;
   std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
 };

@@ -1,16 +1,18 @@
-// The renderer's own way to follow rays, for a register of lanes at once: steps certified by the Lipschitz constant
-// and stretched by automatic relaxation; near the surface a step that should cross it; then the bracket shrinks.
+// The renderer's own method of following rays, for a register of lanes at once. Steps are certified by the Lipschitz
+// constant and lengthened by automatic relaxation. Near the surface a step tries to cross it, and then the bracket
+// shrinks.
 //
-// A step of length z from a sample with safe radius r is accepted when z <= r + r' with r' the safe radius found
-// there: the two balls then leave no gap (Keinert et al., "Enhanced Sphere Tracing", 2014). Its length is z = 2 r /
-// (1 - m), where the field is modelled as a plane of slope m along the ray, and m is an average of the slopes seen
-// (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023). The bracket shrinks by the Illinois
-// method: an end that stays twice running has its value halved, which pulls the secant towards it (Dowell and
-// Jarratt, "A Modified Regula Falsi Method", 1971).
+// A step of length z from a sample with safe radius r is accepted if z <= r + r', where r' is the safe radius at the
+// new sample: the two balls then leave no gap (Keinert et al., "Enhanced Sphere Tracing", 2014). The length is
+// z = 2 r / (1 - m), where the field is modelled as a plane of slope m along the ray, and m is an average of the
+// slopes seen (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023). The bracket shrinks by the
+// Illinois method: an end that stays twice running has its value halved, which pulls the secant towards that end
+// (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
 //
-// Where the field is known to be convex around a sample (vm/number/convex-inl.h), the line through it and the one
-// before is a lower bound of what follows: a step to where that line is 0 is safe, however long, and one that crosses
-// there passes over nothing. A line that rises is safe to where something else may come near.
+// If the field is known to be convex around a sample (vm/number/convex-inl.h), the line through this sample and the
+// one before is a lower bound of the field further on. A step to the zero of the line is safe, however long, and a
+// step that crosses the surface there passes over nothing. A rising line is safe up to where another object may come
+// near.
 #if defined(FATHOM_RUNTIME_TIERED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_TIERED_INL
 #undef FATHOM_RUNTIME_TIERED_INL
@@ -25,33 +27,35 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// Weight of the newest slope in m, and a step's length in 1/(1 - m) safe radii. Ban and Valasek have 0.3 and 2, with
-// which the two balls of a plane just touch and rounding decides: a hair less saves a tenth of the evaluations.
+// kBeta: weight of the newest slope in m. kReach: length of a step in units of r / (1 - m). Ban and Valasek have 0.3
+// and 2. With 2, the two balls of a plane just touch and rounding decides: a hair less saves a tenth of the
+// evaluations.
 inline constexpr double kBeta = 0.5, kReach = 1.99;
-// m stays below this, so that a step is at most 2 / (1 - 0.9) = 20 safe radii.
+// Maximum of m, so that a step is at most 2 / (1 - 0.9) = 20 safe radii.
 inline constexpr double kLargestM = 0.9;
-// Within this many d_f of the surface, or the field's band when that is more, a crossing is tried.
+// A crossing is tried within this many d_f of the surface, or within the field's band if that is more.
 inline constexpr double kBandErrors = 16;
-// It is aimed beyond the predicted root by this share of the way, and a few d_f, to come out on the far side; from
-// afar, along a line that holds, by less, for there the share is long.
+// A crossing has this length relative to the way to the predicted root, plus kOvershootErrors d_f, to come out on the
+// far side. From afar, along a line that holds, the factor is kFarOvershoot, because the way is long there.
 inline constexpr double kOvershoot = 1.1, kFarOvershoot = 1.01, kOvershootErrors = 4;
-// ... and is at most this many bands long: what lies in the way of a longer one could be stepped over unseen. A band
-// widened by d_f may take it to twice that, no further.
+// Maximum length of a crossing, in bands: a longer step could pass over an object unseen. A band widened by d_f may
+// double that length, but no more.
 inline constexpr double kLongestCrossing = 16;
-// So that kOvershootErrors d_f are no longer than the longest crossing, d_f may be no more than so many bands.
+// Maximum of d_f, in bands, so that kOvershootErrors d_f are no longer than the longest crossing.
 inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
-// After an attempt that met no surface so many samples are accepted before the next, then twice as many. A lane that
-// would have to wait for more than the most grazes the surface, and is finished by certify(), as is one that takes
-// more evaluations than its budget.
+// kMostPenalty: after an attempt to cross that met no surface, a lane accepts a number of samples before the next
+// attempt, and twice as many after each further one. A lane that would have to wait for more samples than this grazes
+// the surface, and is finished by certify(). kBudget: certify() also finishes a lane that takes more evaluations.
 inline constexpr double kMostPenalty = 16, kBudget = 704;
-// After one from afar a single one: it says where the line bends, and nothing of what is near.
+// Samples to accept after a failed attempt from afar, which shows where the line bends and nothing of what is near.
 inline constexpr double kFarPenalty = 1;
-// What is convex without end is so this far, a number that can be reckoned with.
+// A finite number in place of an infinite convexity radius, for use in arithmetic.
 inline constexpr double kEndless = 0x1p100;
-// A value this small a part of d_f holds no more digits of the root: a fiftieth of a unit in the last place at 1.
+// Share of d_f below which a value holds no more digits of the root: a fiftieth of a unit in the last place at 1.
 inline constexpr double kRootError = 0x1p-8;
-// Of d_f, what float is usually off by; and how uncertain a root may be, relative to t or to the field's band, before
-// double looks at it. What is small beside 1 and seen from nearby needs it, where d_f is large for what is seen.
+// kTypicalError: usual error of float, as a share of d_f. kTolerance and kBandShare: maximum uncertainty of a root,
+// relative to t or to the field's band, above which double decides. An object that is small compared to 1 and seen
+// from nearby needs double, because d_f is large relative to what is seen.
 inline constexpr double kTypicalError = 0.25, kTolerance = 0x1p-16, kBandShare = 0.125;
 
 template <class N, class S, bool kConvex>
@@ -65,19 +69,20 @@ class Tiered {
         field_band_(N::broadcast(rules.band)),
         resolution_(N::broadcast(rules.resolution)) {}
 
-  // f: the field at the lanes' points; convex: how far around them it is so. What is computed for lanes that it does
-  // not concern is nowhere put. Returns those that have ended.
+  // f: the field at the lanes' points. convex: the convexity radii there. Values are computed for all lanes, and
+  // stored only for the lanes that they concern. Returns the lanes that have ended.
   HWY_INLINE Mask run(N f, N convex, const LaneRules<S>& rules) {
     look(f, distance_error(a_, f, rules));
     const N phase = a_.get(kPhase);
     const Mask beginning = phase < code(LanePhase::Walk), refining = phase == code(LanePhase::Refine);
     const Mask retreating = phase == code(LanePhase::Retreat), walking = !(beginning | refining);
-    // An exact 0 is a touch, as where a solid is cut from its like.
+    // An exact 0 is a touch, e.g. where a solid is cut from an equal one.
     const Mask inside = g_ < k(0), outside = g_ >= k(0);
-    // What may be 0 and is rounded below it is no crossing, for where the field is 0 over a volume nothing is solid.
+    // A value that may be 0 but is rounded below 0 is no crossing, because a volume in which the field is 0 is not
+    // solid.
     const Mask deep = g_ < -error_;
     const Mask crossing = phase == code(LanePhase::Cross);
-    const N gap = t_ - last_t_ - last_r_ - r_;  // what neither ball covers
+    const N gap = t_ - last_t_ - last_r_ - r_;  // length that neither ball covers
 
     const Mask accepted = outside & (beginning | (walking & (retreating | (gap <= k(0)))));
     const Mask crossed = deep & walking & (crossing | retreating | (gap <= unseen_));
@@ -122,14 +127,15 @@ class Tiered {
     unseen_ = min(band_, k(2) * field_band_);
   }
 
-  // Steps that t can hardly hold lead nowhere.
+  // True if t can hardly hold a step of length z, so that the lane would not get ahead.
   HWY_INLINE Mask is_stuck(N t, N z) const { return z <= resolution_ * max(t, error_); }
 
-  // How far ahead is free by the line through the last two samples, where both are of one convex function: where the
-  // last one's value was less than what else there is could have come down to there.
+  // Computes how far the line through the last two samples proves the ray free. The line holds if both samples are of
+  // one convex function: if the last sample's value was less than the values of all other objects could have been
+  // there.
   HWY_INLINE void look_ahead(N convex, Mask stepped, const LaneRules<S>& rules) {
     const N unit = N::broadcast(rules.unit), known = min(convex, k(kEndless));
-    const N run = t_ - last_t_, errors = k(2) * error_ + unit * (run + last_g_);  // of both values
+    const N run = t_ - last_t_, errors = k(2) * error_ + unit * (run + last_g_);  // errors: of both values
     const N reach = known - unit * known - error_;
     on_line_ = stepped & (a_.get(kSide) > k(0)) & (last_g_ + errors < reach - N::broadcast(rules.lipschitz) * run);
     reach_ = reach * inv_lipschitz_;
@@ -138,13 +144,13 @@ class Tiered {
     ahead_ = select(on_line_, max(r_, min(meets, reach_)), r_);
   }
 
-  // From the step that led here; one that was too long says nothing but that.
+  // Updates m by the step that led here. A step that was too long says nothing else, and resets m.
   HWY_INLINE void learn(Mask stepped, Mask failed) {
     const N m = a_.get(kM), seen = (g_ - last_g_) * inv_lipschitz_ * rough_reciprocal(t_ - last_t_);
     m_ = select(stepped, min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM)), select(failed, k(-1), m));
   }
 
-  // The next place after an accepted sample.
+  // Returns the next t after an accepted sample.
   HWY_INLINE N go_on(Mask accepted, Mask stepped) {
     const N t_max = a_.get(kTMax), patience = a_.get(kPatience);
     misses_ = accepted & (max(t_, t_ + ahead_) >= t_max);
@@ -153,7 +159,7 @@ class Tiered {
     const Mask waits = nearing & (patience > k(0)) & (r_ > error_), tries = nearing & (!waits);
     patience_ = select(waits, patience - k(1), patience);
     const N relaxed = max(ahead_, k(kReach) * r_ * rough_reciprocal(k(1) - m_));
-    // Where the line through the last two samples would be well beyond the surface.
+    // The step to where the line through the last two samples is well beyond the surface.
     const N overshoot = kConvex ? select(near, k(kOvershoot), k(kFarOvershoot)) : k(kOvershoot);
     const N beyond =
         (overshoot * g_ + k(kOvershootErrors) * error_) * (t_ - last_t_) * rough_reciprocal(last_g_ - g_);
@@ -162,14 +168,14 @@ class Tiered {
     const N z = select(tries, max(relaxed, crossing), relaxed);
     phase_ =
         select(accepted, select(tries & (beyond > relaxed), code(LanePhase::Cross), code(LanePhase::Walk)), phase_);
-    // Far from the origin, or where large numbers cancel, d_f is larger than any step that may be taken unseen: what
-    // happens near the surface is for double to decide.
+    // Far from the origin, or where large numbers cancel, d_f exceeds any step that may be taken unseen. Double then
+    // decides what happens near the surface.
     const Mask coarse = near & (error_ > k(kCoarse) * field_band_);
     undecided_ = accepted & ((evaluations_ >= k(kBudget)) | is_stuck(t_, z) | coarse);
     return min(t_ + z, t_max);
   }
 
-  // The plain step from the last accepted sample.
+  // Returns the t of the plain step from the last accepted sample.
   HWY_INLINE N retreat(Mask failed, Mask from_crossing, Mask again) {
     const N penalty = a_.get(kPenalty);
     const Mask near = from_crossing & (last_g_ < band_), grazes = near & (penalty > k(kMostPenalty));
@@ -179,7 +185,8 @@ class Tiered {
     return last_t_ + last_r_;
   }
 
-  // Beyond the surface it should have left. One look ahead tells whether it comes out or goes in.
+  // Handles a lane that starts beyond the surface it should have left. A look ahead tells if the lane comes out or
+  // goes in.
   HWY_INLINE void begin_inside(Mask inside, N phase) {
     const Mask starting = inside & (phase == code(LanePhase::Start)), emerging = inside & (!starting);
     const Mask coarse = error_ > k(kCoarse) * field_band_;
@@ -187,28 +194,30 @@ class Tiered {
     undecided_ = undecided_ | (shallow & (emerging | (starting & coarse)));
     phase_ = select(starting, code(LanePhase::Emerge), phase_);
     hits_ = hits_ | (emerging & (!shallow));
-    new_t_ = select(emerging, k(0), new_t_);  // kRoot
-    new_r_ = select(emerging, t_, new_r_);    // kWidth
+    new_t_ = select(emerging, k(0), new_t_);  // row kRoot
+    new_r_ = select(emerging, t_, new_r_);    // row kWidth
     next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
   }
 
-  // The bracket [t, t_hi] shrinks to the sample, and the secant says where to look next.
+  // Shrinks the bracket [t, t_hi] to the sample, and chooses the next sample by the secant.
   HWY_INLINE void refine(Mask bracketed, Mask lower, Mask crossed) {
     const N half = k(0.5);
     const N lo = select(lower, t_, last_t_), hi = select(lower, a_.get(kTHi), t_);
     const N g_lo = select(lower, g_, select(crossed, last_g_, half * last_g_));
     const N g_hi = select(lower, half * a_.get(kGHi), g_);
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
-    // The secant stays beside an end that is 0, where the root may be. Where it is 0 there, too, as where t is so
-    // small that many t are one place, it would stay for as many samples.
+    // The secant stays next to an end that is 0, where the root may be. If the sample next to that end is 0, too,
+    // e.g. because t is so small that many t give one point, the secant would creep along all these t: bisect
+    // instead.
     const Mask creeps = (!lower) & (!crossed) & (g_ == k(0)) & (a_.get(kGHi) == k(0));
     const N share = select(creeps, half, g_lo / (g_lo - g_hi));
     const N next = min(max(lo + share * width, lo + aside), hi - aside);
 
-    // A small value behind the surface, or 0, may be where two solids meet; before it, it is no more than a touch.
+    // A small value before the surface counts as the root, and is at worst a touch. A small value behind the surface,
+    // or 0, does not, because two solids may meet there.
     const Mask root = lower & (g_ <= k(kRootError) * error_);
     const Mask found = bracketed & (root | (width <= done) | (next <= lo) | (next >= hi));
-    // A root of what is nearly level is as uncertain as d_f divided by the slope.
+    // The root of a function that is nearly level has an uncertainty of d_f divided by the slope.
     const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), span = select(crossed, width, last_r_);
     const N slack = k(kTypicalError) * error_ * span;
     const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
@@ -216,13 +225,13 @@ class Tiered {
     undecided_ = undecided_ | vague;
     hits_ = hits_ | known;
 
-    patience_ = select(bracketed, hi, patience_);  // kTHi
-    penalty_ = select(bracketed, g_hi, penalty_);  // kGHi
-    m_ = select(bracketed, fall, m_);              // kFall
-    new_g_ = select(bracketed, g_lo, new_g_);      // kGLo
+    patience_ = select(bracketed, hi, patience_);  // row kTHi
+    penalty_ = select(bracketed, g_hi, penalty_);  // row kGHi
+    m_ = select(bracketed, fall, m_);              // row kFall
+    new_g_ = select(bracketed, g_lo, new_g_);      // row kGLo
     const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
-    new_t_ = select(known, best, select(bracketed, lo, new_t_));                         // kRoot or kTLo
-    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));  // kWidth or kSpan
+    new_t_ = select(known, best, select(bracketed, lo, new_t_));                         // row kRoot or kTLo
+    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));  // row kWidth or kSpan
     next_ = select(bracketed, next, next_);
   }
 
@@ -238,18 +247,18 @@ class Tiered {
     const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
     N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
     verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
-    // A lane that is invalid stays where it is.
+    // An invalid lane stays at its sample.
     return a_.finish(select(finite, next_, t_), select(finite, verdict, code(LaneVerdict::Invalid)));
   }
 
   LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
-  N error_, g_, r_, t_;         // of the sample: d_f, value, safe radius, place
-  N last_t_, last_g_, last_r_;  // of the last accepted one; of a bracket as in lane_rows.h
+  N error_, g_, r_, t_;         // the sample's d_f, g, safe radius and t
+  N last_t_, last_g_, last_r_;  // the last accepted sample's; while refining the bracket's, as in lane_rows.h
   N band_, unseen_, evaluations_;
-  Mask on_line_;     // of kConvex alone: whether the line through both holds
-  N reach_, ahead_;  // how far it does; how far is free
-  N phase_, new_t_, new_g_, new_r_, m_, patience_, penalty_, next_;  // what is put at the end
+  Mask on_line_;     // kConvex only: the line through both samples holds
+  N reach_, ahead_;  // length over which the line holds; length that is free
+  N phase_, new_t_, new_g_, new_r_, m_, patience_, penalty_, next_;  // values that finish() stores
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
 

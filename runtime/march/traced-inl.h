@@ -1,4 +1,4 @@
-// The ways of others to follow rays, to compare them with (method.h): a hit is where the field falls below epsilon,
+// The baseline methods of following rays, for comparison (method.h). A hit is where the field falls below epsilon,
 // and a ray that takes too many evaluations is given up. For a register of lanes at once.
 #if defined(FATHOM_RUNTIME_TRACED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_TRACED_INL
@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
-// How far the next step goes, given the safe radius there.
+// A rule for steps: next() returns the length of the next step, given the safe radius r. PlainStep is sphere tracing.
 struct PlainStep {
   static constexpr bool kRelaxed = false;
   template <class View, class N, class Mask>
@@ -23,7 +23,8 @@ struct PlainStep {
   static HWY_INLINE void retreat(View&, Mask) {}
 };
 
-// Keinert et al., "Enhanced Sphere Tracing", 2014: after a step that was too long the ray goes on with plain ones.
+// Keinert et al., "Enhanced Sphere Tracing", 2014: after a step that was too long, the ray continues with plain
+// steps.
 struct FixedStep {
   static constexpr bool kRelaxed = true;
   template <class View, class N, class Mask>
@@ -65,8 +66,8 @@ HWY_INLINE MaskOf<N> trace(Lanes<S>& lanes, std::size_t first, const LaneRules<S
 
   Mask accepted = zero == zero;
   if constexpr (Step::kRelaxed) {
-    // Where the balls of this sample and the last leave a gap, or this one is behind the surface, back to where the
-    // last ball ends; what is found there counts.
+    // If the balls of this sample and the last one leave a gap, or if this sample is behind the surface, the lane
+    // goes back to the end of the last ball. The lane accepts the sample there in any case.
     const Mask retreating = a.get(kPhase) == code<N>(LanePhase::Retreat);
     accepted = retreating | (z <= a.get(kR) + r);
     a.put(kPhase, select(accepted, code<N>(LanePhase::Walk), code<N>(LanePhase::Retreat)));

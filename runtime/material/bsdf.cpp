@@ -40,7 +40,7 @@ BsdfSample Bsdf::sample(float lobe, glm::vec2 u) const {
   return {};
 }
 
-// Reflects with the probability that Fresnel's equations give, else refracts.
+// Reflects with the probability given by Fresnel's equations, otherwise refracts.
 BsdfSample Bsdf::sample_transparent(float lobe) const {
   const float cos_o = std::clamp(glm::dot(wo_, normal_), 0.0f, 1.0f);
   if (lobe < fresnel(cos_o, eta_)) return {.wi = reflect_about(wo_, normal_), .weight = glm::vec3(1)};
@@ -60,7 +60,7 @@ BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
     sample.weight = draw.weight;
     return sample;
   }
-  // Facets may send light where the surface itself is in the way.
+  // A facet may send light to the wrong side of the surface, which absorbs this light.
   if ((draw.wi.z < 0) != draw.through) return sample;
   const BsdfValue value = evaluate(sample.wi);
   if (value.pdf > 0 && !black(value.f)) {

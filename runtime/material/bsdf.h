@@ -1,16 +1,17 @@
-// How light leaves a surface: how much goes from wi to wo, and which wi to follow.
+// The scattering of light at a surface: the BSDF's value for a pair of directions, and sampling of directions to
+// follow.
 //
-// World space; wo and wi are unit vectors that point away from the surface, the normal is on wo's side.
+// World space. wo and wi are unit vectors that point away from the surface, and the normal is on wo's side.
 //
 //     const Bsdf bsdf(material_point, normal, wo, eta, inside);
 //     const BsdfSample next = bsdf.sample(lobe, u);   // to follow
 //     const BsdfValue value = bsdf.evaluate(wi);      // towards a light
 //
-// Radiance grows by eta^2 where it enters a medium of index eta: f and weight hold that factor as light from wi sees
-// it, 1 / eta^2 where wo looks into the medium. It is gone again when the path has left; until then eta_scale keeps
-// Russian roulette from judging by it. Diffuse and emissive are Lambert's; specular is a mirror that reflects
-// base_color at every angle; transparent is smooth glass with base_color as tint of each crossing; principled is
-// principled.h. Only that one has an opacity. Tested by: tests/runtime/material/bsdf_test.cpp
+// Radiance grows by eta^2 where it enters a medium of index eta. f and weight contain that factor as light from wi
+// sees it: 1 / eta^2 where wo looks into the medium. The factor cancels when the path has left the medium. Until then
+// eta_scale keeps Russian roulette from judging by the factor. Diffuse and emissive are Lambertian. Specular is a
+// mirror that reflects base_color at every angle. Transparent is smooth glass with base_color as tint per crossing.
+// Principled (principled.h) alone has an opacity. Tested by: tests/runtime/material/bsdf_test.cpp
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -27,26 +28,27 @@ namespace fathom::runtime {
 
 struct BsdfSample {
   glm::vec3 wi{0};
-  glm::vec3 weight{0};    // f |cos| / pdf; black: absorbed
-  float pdf = 0;          // per solid angle, of this wi over all lobes; 0 for a mirror's or a clear pane's
-  bool through = false;   // wi is on the other side of the surface
-  bool straight = false;  // through as if nothing were there but a tint: a hole by opacity, or a smooth thin wall
-  float eta_scale = 1;    // weight * eta_scale is without the scaling of radiance
+  glm::vec3 weight{0};   // f |cos| / pdf; black: absorbed
+  float pdf = 0;         // of wi over all lobes, per solid angle; 0 for a mirror or a clear pane
+  bool through = false;  // wi is on the other side of the surface
+  // Passed through unbent, with no more than a tint: through a hole by opacity, or a smooth thin wall.
+  bool straight = false;
+  float eta_scale = 1;  // weight * eta_scale is free of the scaling of radiance
 };
 
 class Bsdf {
  public:
-  // eta: refractive index of the space beyond the surface relative to that on wo's side; of what does
-  // not fill a body, of its material, from either side. inside: wo lies within the solid.
+  // eta: refractive index of the space beyond the surface relative to that on wo's side. If the material does not
+  // fill a body: the material's own index, from either side. inside: wo lies within the solid.
   Bsdf(const MaterialPoint& m, glm::vec3 normal, glm::vec3 wo, float eta, bool inside);
 
   BsdfSample sample(float lobe, glm::vec2 u) const;  // three uniform numbers in [0,1)
-  BsdfValue evaluate(glm::vec3 wi) const;            // mirrors and clear panes count nothing
-  // What of the light from -wo goes straight on to wo: the mean of sample()'s weights where it is straight. A ray
-  // towards a light may go on behind the surface and bring so much of it.
+  BsdfValue evaluate(glm::vec3 wi) const;            // without mirrors and clear panes
+  // Returns the part of the light from -wo that continues straight to wo: the mean of sample()'s weights, counted
+  // only if straight. A ray towards a light may continue behind the surface and bring this part of the light.
   glm::vec3 straight_through() const;
-  bool is_delta() const;   // evaluate() is black everywhere
-  bool has_lobes() const;  // sample() makes use of `lobe`
+  bool is_delta() const;   // true if evaluate() is black everywhere
+  bool has_lobes() const;  // true if sample() uses `lobe`
 
  private:
   struct Layers {
@@ -59,7 +61,7 @@ class Bsdf {
   MaterialType type_;
   glm::vec3 color_, normal_, wo_;
   float eta_;
-  std::optional<Layers> layers_;  // of principled materials only: the others are cheap
+  std::optional<Layers> layers_;  // only of principled materials, the others are cheap
 };
 
 }  // namespace fathom::runtime

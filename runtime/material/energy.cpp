@@ -13,12 +13,12 @@ namespace fathom::runtime {
 namespace {
 
 constexpr int kNodes = AlbedoRow::kNodes;
-// What the tables are made with: integrals that err by less than 1e-3, from the denser side, where total reflection
-// breaks the integrand, with more points.
+// Lattices for the tables, whose integrals err by less than 1e-3. From the denser side total reflection breaks the
+// integrand, and more points are needed.
 constexpr Lattice kFromOutside{377, 233}, kFromInside{2584, 1597};
 constexpr float kTableLeastAlpha = 1e-4f;
 
-// Four neighbours of a place among nodes 0, 1 ... and what each of them counts: Lagrange's cubic.
+// Four neighbouring nodes of a position among the nodes 0, 1 ..., and their weights: Lagrange's cubic.
 struct Stencil {
   int first;
   std::array<float, 4> weight;
@@ -33,7 +33,7 @@ Stencil stencil_at(float place) {
 
 float place_of(float cos) { return std::sqrt(std::sqrt(cos)) * (kNodes - 1); }
 
-// What each node counts in the average: int w(x) 8 x^7 dx, x = cos^(1/4).
+// Returns the weight of each node in the average: int w(x) 8 x^7 dx, x = cos^(1/4).
 std::array<float, kNodes> average_weights() {
   constexpr int kParts = 8192;
   std::array<double, kNodes> sums{};
@@ -49,10 +49,10 @@ std::array<float, kNodes> average_weights() {
   return weights;
 }
 
-// Roughnesses lie as cosines do: alpha^(1/4) = 0, 1/23 ... 1.
+// Roughnesses have the same nodes as cosines: alpha^(1/4) = 0, 1/23 ... 1.
 float node_alpha(int i) { return std::max(AlbedoRow::node_cos(i), kTableLeastAlpha); }
 
-// A table of rows, one for each roughness, each made when it is first asked for.
+// A table with a row per roughness, made when the row is first asked for.
 template <typename Row>
 class RowTable {
  public:
@@ -73,7 +73,7 @@ class RowTable {
   std::array<Entry, kNodes> entries_;
 };
 
-// Adds `share` times what lies at alpha between the rows that `row_at(node)` gives.
+// Adds `share` times the row at alpha, interpolated between the rows that `row_at(node)` gives.
 template <typename RowAt>
 void add_rows(float alpha, float share, AlbedoRow& sum, RowAt&& row_at) {
   const Stencil s = stencil_at(place_of(alpha));
@@ -84,13 +84,13 @@ void add_rows(float alpha, float share, AlbedoRow& sum, RowAt&& row_at) {
   }
 }
 
-// Of dielectrics from their thinner side.
+// Rows of dielectrics seen from their thinner side.
 struct OutsideRow {
   AlbedoRow reflected, lost;
 };
 
-// By s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Where it is near 0 slices lie close:
-// there the reflectance at the horizon goes from 0 to 1.
+// Slices are spaced by s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Slices lie close
+// near s = 0, where the reflectance at the horizon goes from 0 to 1.
 constexpr int kSlices = 32;
 constexpr float kMostS = (kMostEta - 1) / (kMostEta + 1);
 constexpr float slice_s(int slice) {
@@ -116,11 +116,11 @@ const AlbedoRow& inside_row(int slice, int roughness) {
   return tables[static_cast<std::size_t>(slice)].row(roughness, make);
 }
 
-// What s is between two slices: of their distance, or of their reflectances' (s^2), in which Fresnel's reflectance is
-// nearly linear (Schlick, "An Inexpensive BRDF Model for Physically-Based Rendering", 1994).
+// The variable in which rows are interpolated linearly between two slices: s, or the reflectance s^2, in which
+// Fresnel's reflectance is nearly linear (Schlick, "An Inexpensive BRDF Model for Physically-Based Rendering", 1994).
 enum class Between { Indices, Reflectances };
 
-// `row_at(slice, node)`; eta >= 1.
+// Interpolates the rows `row_at(slice, node)`. Requires eta >= 1.
 template <typename RowAt>
 AlbedoRow interpolate(float alpha, float eta, Between between, RowAt&& row_at) {
   const float s = std::min((eta - 1) / (eta + 1), kMostS);
@@ -137,8 +137,8 @@ AlbedoRow interpolate(float alpha, float eta, Between between, RowAt&& row_at) {
   return row;
 }
 
-// Points of a Fibonacci lattice as visible normals of `cos`, and what each counts. They lie denser where few normals
-// are, u = 1 - v^2, for there the light that is lost is lost. (Sloan and Joe, "Lattice Methods for Multiple
+// Visits the points of a Fibonacci lattice as visible normals for `cos`, with their weights. The points lie denser
+// where few normals are, u = 1 - v^2, because most light is lost there. (Sloan and Joe, "Lattice Methods for Multiple
 // Integration", 1994, section 4.)
 template <typename Visit>
 void for_visible_normals(float cos, const Ggx& ggx, Lattice lattice, Visit&& visit) {
@@ -152,7 +152,7 @@ void for_visible_normals(float cos, const Ggx& ggx, Lattice lattice, Visit&& vis
   }
 }
 
-// What is linear in a function of the cosine, by the function's values at the nodes.
+// A linear map from functions of the cosine to functions of the cosine, by values at the nodes.
 struct AlbedoMatrix {
   std::array<AlbedoRow, kNodes> row{};
 
@@ -167,8 +167,8 @@ struct AlbedoMatrix {
   }
 };
 
-// Node `o` of the matrix that makes of a function g the mean of g(cos_i) - g(cos_o) over the light of wo that leaves
-// lower; the facets reflect share(cos_m) of it.
+// Adds node `o` of the matrix that maps a function g to the mean of g(cos_i) - g(cos_o) over the light of wo that
+// leaves lower than wo. The facets reflect share(cos_m) of that light.
 template <typename Share>
 void add_lowered(std::size_t o, float alpha, AlbedoRow& row, Share&& share) {
   const Ggx ggx(alpha);
@@ -198,8 +198,8 @@ const AlbedoMatrix& lowered_by_reflection(int slice, int roughness) {
   });
 }
 
-// Results of the last calls of a thread, for a material asks the same at every hit: a product of matrices takes
-// longer than all else that is made of a coat.
+// A cache of a thread's last results, because a material asks for the same row at every hit. The product of matrices
+// takes longer than everything else for a coat.
 class CoatLosses {
  public:
   template <typename Make>
@@ -297,8 +297,7 @@ AlbedoRow coat_loss_of_reflection(float alpha, float eta, const AlbedoRow& coat)
   });
 }
 
-// Of a visible normal G2 / G1(wo) of the light that is reflected there gets away, and of the light that passes
-// G1(wi).
+// At a visible normal, G2 / G1(wo) of the reflected light gets away, and G1(wi) of the light that passes.
 float integrate_conductor_loss(float cos, float alpha, Lattice lattice) {
   const Ggx ggx(alpha);
   double sum = 0;

@@ -1,13 +1,14 @@
-// What a rough boundary makes of the light that falls on it, by direction, when light meets one microfacet and no
-// more: its albedo, and what is lost behind other facets. Materials give that back (Kulla and Conty, "Revisiting
-// Physically Based Shading at Imageworks", 2017).
+// The albedo of a rough boundary by direction, for light that meets one microfacet and no more: the part that it
+// reflects, and the part that is lost behind other facets. Materials give the lost light back (Kulla and Conty,
+// "Revisiting Physically Based Shading at Imageworks", 2017).
 //
 //     const AlbedoRow lost = conductor_loss(alpha);
 //     lost.at(cos_o), lost.average()
 //
-// The numbers come from tables made by quadrature, a row of one roughness (and index) when it is first asked for, by
-// whatever thread; a new material takes some milliseconds, rough glass some forty. Indices go up to kMostEta. Against
-// the integrals rows err by at most 5e-3 and 1e-3 in the mean, most of it at the horizon of nearly smooth surfaces.
+// The numbers come from tables made by quadrature. The first thread that asks for the row of a roughness (and index)
+// makes the row. A new material takes some milliseconds, rough glass some forty. Indices go up to kMostEta. Compared
+// with the integrals, rows err by at most 5e-3, and by 1e-3 in the mean, mostly at the horizon of nearly smooth
+// surfaces.
 // Tested by: tests/runtime/material/energy_test.cpp
 #pragma once
 
@@ -15,11 +16,11 @@
 
 namespace fathom::runtime {
 
-// An index further from 1 than this, or than its inverse, is taken as this.
+// Maximum index: an index further from 1 than this, or than its inverse, is clamped to it.
 inline constexpr float kMostEta = 4;
 
 // A function of the cosine in [0,1], by its values where cos^(1/4) = 0, 1/23 ... 1, with cubics between them.
-// (Near the horizon of a smooth surface it changes within cosines of a few alpha.)
+// (Near the horizon of a smooth surface the function changes within cosines of a few alpha.)
 struct AlbedoRow {
   static constexpr int kNodes = 24;
   std::array<float, kNodes> node;
@@ -30,30 +31,30 @@ struct AlbedoRow {
     return x * x * (x * x);
   }
   float at(float cos) const;
-  // Over the hemisphere by cosine, 2 int f mu dmu: of the function that at() gives, so that what is divided by it is
-  // normalised.
+  // Returns the average over the hemisphere by cosine, 2 int f mu dmu, of the function that at() gives, so that
+  // dividing by the average normalises this function.
   float average() const;
   float greatest() const;
 };
 
-// What is lost where facets reflect everything.
+// Returns the part that is lost if facets reflect all light.
 AlbedoRow conductor_loss(float alpha);
-// The part that a rough dielectric reflects; eta >= 1, index of the far side relative to this one.
+// Returns the part that a rough dielectric reflects. eta >= 1 is the index of the far side relative to this side.
 AlbedoRow reflection_albedo(float alpha, float eta);
-// What is neither reflected by a rough dielectric nor let through; any eta.
+// Returns the part that a rough dielectric neither reflects nor lets through, for any eta.
 AlbedoRow dielectric_loss(float alpha, float eta);
-// The part that a smooth dielectric reflects; eta >= 1.
+// Returns the part that a smooth dielectric reflects, for eta >= 1.
 AlbedoRow smooth_albedo(float eta);
 
-// What a coat over a rough boundary takes of the reflected light because that leaves lower than it came, where light
-// counts by what the coat passes of it on the way in or out, whichever is less: the mean of
-// max(0, coat(cos_i) - coat(cos_o)). `coat` is the part that the coat reflects, which must fall as the cosine rises:
-// where it does not the result is too small. eta >= 1. One row is kept for each thread and material.
+// Return the part of the light reflected by a rough boundary that a coat takes because the light leaves lower than it
+// came: the mean of max(0, coat(cos_i) - coat(cos_o)). The coat passes light as on the way in or on the way out,
+// whichever passes less. `coat` is the part that the coat reflects, which must fall as the cosine rises, otherwise
+// the result is too small. eta >= 1. Each thread keeps one row per material.
 AlbedoRow coat_loss_of_conductor(float alpha, const AlbedoRow& coat);
 AlbedoRow coat_loss_of_reflection(float alpha, float eta, const AlbedoRow& coat);
 
-// The integrals themselves, over the visible normals on a Fibonacci lattice of so many points: a pair of neighbours
-// in Fibonacci's sequence. `cos` in [0,1].
+// The integrals themselves, over the visible normals on a Fibonacci lattice. `points` and `step` are neighbours in
+// Fibonacci's sequence. `cos` is in [0,1].
 struct Lattice {
   int points, step;
 };

@@ -13,10 +13,10 @@ namespace {
 
 using compiler::MaterialNumbers;
 
-// Light that a medium may take away, per scene unit: beyond this nothing is left anyway.
+// Maximum absorption of a medium, per scene unit: beyond it no light is left anyway.
 constexpr float kLargestAbsorption = 1e18f;
 
-// Beer and Lambert's law turned round: the absorption after which `left` of the light remains at `depth` > 0.
+// Inverts Beer and Lambert's law: returns the absorption after which `left` of the light remains at `depth` > 0.
 glm::vec3 absorption_for(glm::vec3 left, float depth) {
   return glm::min(-log(left) / depth, glm::vec3(kLargestAbsorption));
 }
@@ -34,7 +34,8 @@ void put_transmission(const MaterialNumbers& n, MaterialType type, MaterialPoint
   }
 }
 
-// What fills a body has no holes: a path that came in by one would leave by refraction, brighter than it came.
+// Closes the holes of a material that fills a body: a path that came in by a hole would leave by refraction, brighter
+// than it came.
 void close(MaterialPoint& point) {
   if (point.fills()) point.opacity = 1;
 }
@@ -62,7 +63,7 @@ MaterialPoint to_point(const MaterialNumbers& n, MaterialType type, bool thin_wa
   return point;
 }
 
-// Puts a texture's value in place of the stand-in, part by part where it is a number.
+// Replaces a stand-in by a texture's value, component by component if the component is not NaN.
 void put(MaterialNumbers& numbers, const compiler::TexturedParameter& row, glm::dvec3 value) {
   const auto fit = [&](double given, double stand_in) {
     return given == given ? std::clamp(given, row.least, row.most) : stand_in;
@@ -75,18 +76,18 @@ void put(MaterialNumbers& numbers, const compiler::TexturedParameter& row, glm::
   }
 }
 
-// Whether what a texture makes of the parameter may let light straight through.
+// True if a texture of the parameter may make the surface let light straight through.
 bool may_open(const compiler::TexturedParameter& row) {
   const auto* number = std::get_if<compiler::MaterialNumber>(&row.parameter);
   return number && (*number == &MaterialNumbers::opacity || *number == &MaterialNumbers::transmission);
 }
 
-// (1 - 1/7)^5: what Schlick's approximation adds of the rest at F82's angle.
+// (1 - 1/7)^5: the part of the rest to 1 that Schlick's approximation adds at F82's angle.
 constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 
 }  // namespace
 
-// Light crosses the coat once, which takes the square root of coat_color.
+// Light crosses the coat once, so that the tint is the square root of coat_color.
 glm::vec3 MaterialPoint::emitted() const {
   if (coat_weight == 0) return emission * opacity;
   return emission * opacity * glm::sqrt(glm::mix(glm::vec3(1), coat_color, coat_weight));
@@ -117,7 +118,7 @@ MaterialPoint Materials::at(std::uint32_t material, glm::dvec3 position, glm::dv
   return to_point(numbers, m.type, m.thin_walled);
 }
 
-// Patterns nest a few deep at most (frontend/elaborate/textures.cpp).
+// The recursion is shallow: patterns nest a few levels at most (frontend/elaborate/textures.cpp).
 glm::dvec3 Materials::value(std::uint32_t texture, const TexturePoint& point, vm::Workspace& workspace) const {
   const compiler::Texture& node = scene_->textures[texture];
   if (const auto* constant = std::get_if<glm::dvec3>(&node)) return *constant;

@@ -1,5 +1,5 @@
-// Diffuse reflection of a rough surface: facets that are each Lambert's, with the light that goes on between them, so
-// that a white surface stays white.
+// Diffuse reflection of a rough surface: Lambertian facets, and the light that travels on between them, so that a
+// white surface stays white.
 // Source: Portsmouth, Kutz, Hill, "EON: A Practical Energy-Preserving Rough Diffuse BRDF", JCGT 2025.
 // Tested by: tests/runtime/material/bsdf_test.cpp
 #pragma once
@@ -12,7 +12,7 @@ namespace fathom::runtime {
 
 class OrenNayar {
  public:
-  // `color`: albedo of a facet, components in [0,1]; roughness in [0,1], 0 is Lambert's.
+  // `color`: albedo of a facet, components in [0,1]. `roughness`: in [0,1], Lambertian at 0.
   OrenNayar() = default;
   OrenNayar(glm::vec3 color, float roughness)
       : color_(color), roughness_(roughness), share_(1 / (1 + kFirst * roughness)) {
@@ -21,7 +21,7 @@ class OrenNayar {
     between_ = average < 1 ? between / (1 - average) : glm::vec3(0);
   }
 
-  // pi f; local space, the normal is z, both directions above.
+  // Returns pi f. Local space: the normal is z, and both directions lie above the surface.
   glm::vec3 operator()(glm::vec3 wo, glm::vec3 wi) const {
     const float s = glm::dot(wo, wi) - wo.z * wi.z;
     const float once = share_ * (1 + roughness_ * (s > 0 ? s / std::max(wo.z, wi.z) : s));
@@ -29,7 +29,8 @@ class OrenNayar {
   }
 
  private:
-  // Of white facets, light that met one of them; the paper's fit (its equation for G / pi).
+  // Returns the albedo of white facets for light that met only one facet, by the paper's fit (its equation for
+  // G / pi).
   float albedo(float cos) const {
     const float c = 1 - cos;
     const float g = c * (0.0571085289f + c * (0.491881867f + c * (-0.332181442f + c * 0.0714429953f)));

@@ -18,7 +18,7 @@ bool beyond(glm::dvec3 p) { return beyond(p.x) || beyond(p.y) || beyond(p.z); }
 double fraction(double x) { return x - std::floor(x); }
 std::int64_t cell(double x) { return static_cast<std::int64_t>(std::floor(x)); }
 
-// 0 below 0, 1 above 1, and 3 u^2 - 2 u^3 between.
+// Returns 0 below 0, 1 above 1, and 3 u^2 - 2 u^3 between.
 double cubic_step(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * (3 - 2 * u);
@@ -27,15 +27,15 @@ double cubic_step(double u) {
 // Perlin's 6 u^5 - 15 u^4 + 10 u^3.
 double fade(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
 
-// Scattered bits of a lattice point, by SplitMix64's finalizer (sampler.h).
+// Returns scattered bits for a lattice point, by SplitMix64's finalizer (sampler.h).
 std::uint64_t hash(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
   std::uint64_t h = mix64(seed + kGoldenGamma);
   for (const std::int64_t part : {x, y, z}) h = mix64(h ^ static_cast<std::uint64_t>(part)) + kGoldenGamma;
   return mix64(h);
 }
 
-// The dot product of `v` with the middle of one of a cube's twelve edges, as seen from its centre; four of them count
-// twice, so that four bits choose.
+// Returns the dot product of `v` with the vector from a cube's centre to the middle of one of its twelve edges. Four
+// edges count twice, so that four bits choose.
 double edge_dot(std::uint64_t bits, glm::dvec3 v) {
   const auto h = static_cast<unsigned>(bits >> 60);
   const double first = h < 8 ? v.x : v.y;
@@ -58,7 +58,7 @@ double stripes(const Pattern::Stripes& s, glm::dvec3 p) {
   if (beyond(along)) return 0.5;
   const double place = fraction(along), half = s.softness * std::min(s.width, 1 - s.width) / 2;
   if (!(half > 0)) return place < s.width ? 0 : 1;
-  // The edge at 0 falls, the one at `width` rises; each is met from both sides of the period's end.
+  // The edge at 0 falls, and the edge at `width` rises. Either is within reach from both sides of the period's end.
   const auto edge = [&](double at) { return cubic_step((place - at) / (2 * half) + 0.5); };
   return edge(s.width) - edge(1) + (1 - edge(0));
 }
@@ -81,8 +81,8 @@ double gradient_noise(glm::dvec3 p, std::uint64_t seed) {
 }
 
 double noise(const Pattern::Noise& n, glm::dvec3 p) {
-  // At the octaves' whole coordinates noise is 0: moved apart by the fractions of multiples of irrational numbers, no
-  // plane of the scene is all of it.
+  // Noise is 0 at an octave's whole coordinates. The octaves are moved apart by fractions of multiples of irrational
+  // numbers, so that no plane of the scene meets the zeros of all octaves.
   constexpr glm::dvec3 kApart(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
   double sum = 0, strength = 1, all = 0;
   for (int octave = 0; octave < n.octaves; ++octave) {
@@ -99,7 +99,7 @@ double bricks(const Pattern::Bricks& b, glm::dvec3 p) {
   const double row = p.y / b.height + kOffset;
   if (beyond(row) || beyond(p.x / b.width)) return 0.5;
   const double column = p.x / b.width + kOffset - b.shift * (std::floor(row) - 2 * std::floor(row / 2));
-  // Half of the mortar to either side of a cell's edge.
+  // Half of the mortar lies on either side of a cell's edge.
   const auto off_edge = [](double place, double size) {
     const double part = fraction(place);
     return std::min(part, 1 - part) * size;

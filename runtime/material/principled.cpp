@@ -11,16 +11,16 @@ namespace fathom::runtime {
 namespace {
 
 constexpr float kInversePi = 0.318309886183790672f;
-constexpr float kEvenPdf = kInversePi / 2;  // over a hemisphere
-// Below this a boundary is a mirror: no picture resolves a lobe a twentieth of a degree wide.
+constexpr float kEvenPdf = kInversePi / 2;  // uniform density over a hemisphere
+// A boundary of less roughness is a mirror: no image resolves a lobe a twentieth of a degree wide.
 constexpr float kLeastAlpha = 1e-3f;
-// Indices nearer to each other are taken as equal but for what they reflect (1/40000): nothing is bent that could
-// blur.
+// Indices nearer to each other count as equal, except for their reflectance (1/40000): light is not bent enough to
+// blur anything.
 constexpr float kLeastBend = 0.01f;
 constexpr float kLeastCos = 1e-6f;
-// Of a lobe that light may take, to be drawn.
+// Minimum chance of a lobe that light may take.
 constexpr float kLeastChance = 0.01f;
-// In place of an index: facets that reflect everything.
+// Stands for an index: facets reflect all light.
 constexpr float kReflectsAll = INFINITY;
 constexpr float kBelowOne = 0x1.fffffep-1f;
 
@@ -29,10 +29,11 @@ float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 glm::vec3 mirrored(glm::vec3 w) { return {-w.x, -w.y, w.z}; }
 glm::vec3 below(glm::vec3 w) { return {w.x, w.y, -w.z}; }
 
-// Of either with the mirror between them: the same bits from both, for near total reflection the last one counts.
+// Returns the cosine of wo, or wi, with the facet's normal between them. The bits are the same from both, because
+// near total reflection the last bit counts.
 float cos_between(glm::vec3 wo, glm::vec3 wi) { return std::min(glm::length(wo + wi) / 2, 1.0f); }
 
-// What is lost is lost near the horizon, where directions by the cosine are few.
+// Samples the hemisphere uniformly: light is lost near the horizon, where cosine-weighted directions are few.
 glm::vec3 even_over_hemisphere(glm::vec2 u) {
   const float z = 1 - u.x, radius = std::sqrt(std::max(1 - z * z, 0.0f));
   const SinCos angle = sincos_turn(u.y);
@@ -44,8 +45,8 @@ AlbedoRow rest_of(AlbedoRow row) {
   return row;
 }
 
-// specular_weight scales the reflectance at normal incidence, the square of s (OpenPBR 1.1, "Dielectric base"). In
-// double, so that both sides find the same boundary.
+// Returns the index after scaling by specular_weight, which multiplies the reflectance at normal incidence, the
+// square of s (OpenPBR 1.1, "Dielectric base"). Computed in double, so that both sides find the same boundary.
 float weighted_eta(float eta, float weight) {
   if (weight == 1) return eta;
   const double wide = static_cast<double>(eta);
@@ -53,7 +54,8 @@ float weighted_eta(float eta, float weight) {
   return static_cast<float>((1 + s) / (1 - s));
 }
 
-// Of diffuse light. What a boundary lets through is the same from both sides but for eta^2, as radiance is.
+// Returns the part of diffuse light that a boundary lets through. The part is the same from both sides except for
+// eta^2, as radiance is.
 float average_passed(float eta) {
   return eta >= 1 ? 1 - smooth_albedo(eta).average() : (1 - smooth_albedo(1 / eta).average()) * (eta * eta);
 }
@@ -76,8 +78,8 @@ Principled::Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool ins
   set_chances();
 }
 
-// As in OpenPBR the ratio of indices is turned over where the coat is the thinner medium: it has a base to shine on,
-// so total reflection would be wrong.
+// Adds the coat. If the coat is the thinner medium, the ratio of indices is inverted, as in OpenPBR: the coat has a
+// base to shine on, so that total reflection would be wrong.
 void Principled::add_coat(const MaterialPoint& m, float eta) {
   const float around = inside_ && m.fills() ? m.ior * eta : m.ior / eta;
   const float ratio = m.coat_ior / around;
@@ -98,7 +100,7 @@ void Principled::add_metal(const MaterialPoint& m) {
   metal_ = m.metalness * m.specular_weight;
   metal_tint_ = F82Tint(m.base_color, m.specular_color);
   if (smooth_metal_) return;
-  // Light that meets facets again and again, each time coloured: Kulla and Conty's geometric series.
+  // Light meets facets again and again, and is coloured each time: Kulla and Conty's geometric series.
   const AlbedoRow lost = conductor_loss(ggx_.alpha());
   const float once = 1 - lost.average();
   const glm::vec3 average = m.specular_weight * metal_tint_.average();
@@ -118,7 +120,8 @@ void Principled::add_boundary(const MaterialPoint& m) {
   if (has_glass && !smooth_boundary_) add_lost_glass(m);
 }
 
-// Where the surroundings are denser, as from inside, total reflection would hide the pigment: it lies bare.
+// Adds the pigment, which lies bare if the surroundings are denser, as from inside, because total reflection would
+// hide the pigment.
 void Principled::add_pigment(const MaterialPoint& m) {
   const float part = (1 - m.metalness) * (1 - m.transmission);
   AlbedoRow passed = AlbedoRow::constant(1);
@@ -139,8 +142,9 @@ void Principled::add_pigment(const MaterialPoint& m) {
   pigment_albedo_ = strength * m.base_color * pigment_.row.average();
 }
 
-// What was lost on both sides goes to both, so that each side gets back its loss and the two ways through are each
-// other's reverse: Kulla and Conty's split, with the greater of the two averages as divisor of what passes.
+// Adds the light lost on both sides to both sides, so that each side gets back its loss and the two ways through are
+// each other's reverse: Kulla and Conty's split, with the greater of the two averages as divisor of the light that
+// passes.
 void Principled::add_lost_glass(const MaterialPoint& m) {
   AlbedoRow here, beyond;
   float passed;
@@ -166,7 +170,7 @@ void Principled::add_lost_glass(const MaterialPoint& m) {
                            (part * passed * scale * at_o / std::max(average_here, average_beyond));
 }
 
-// Each lobe is drawn about as often as it has a part in what goes to wo.
+// Sets the chance of each lobe to about its part in the light that goes to wo.
 void Principled::set_chances() {
   const float reflected = fresnel(std::min(wo_.z, 1.0f), eta_);
   const float over_pigment = over_pigment_ > 0 ? boundary_o_ : 0;
@@ -176,7 +180,7 @@ void Principled::set_chances() {
   if (coat_weight_ > 0 && !inside_) chance_[kCoat] = 1 - coat_passes_o_;
   if (metal_ > 0) chance_[kMetal] = coat_passes_o_ * metal_ * greatest(coat_tint_ * metal_tint_(wo_.z));
   chance_[kBoundary] = coat_passes_o_ * (greatest(coat_tint_ * glossy) + greatest(boundary_passes(1 - reflected)));
-  // Facets may let through what the surface itself reflects wholly.
+  // Facets may let through light that the surface itself reflects totally.
   if (glass_ > 0 && !smooth_boundary_) chance_[kBoundary] = std::max(chance_[kBoundary], kLeastChance * glass_);
   chance_[kPigment] = greatest(pigment_albedo_);
   chance_[kLost] = greatest(lost_metal_.albedo() + lost_glass_.albedo());
@@ -195,14 +199,15 @@ bool Principled::is_delta() const {
 
 float Principled::coat_passes(float cos) const { return coat_weight_ > 0 ? 1 - coat_weight_ * coat_row_.at(cos) : 1; }
 
-// `row`, of directions outside, times what the coat lets through of them.
+// Returns `row`, a function of directions outside, times the part of the light that the coat lets through.
 AlbedoRow Principled::under_coat(AlbedoRow row) const {
   if (coat_weight_ == 0) return row;
   for (std::size_t i = 0; i < AlbedoRow::kNodes; ++i) row.node[i] *= 1 - coat_weight_ * coat_row_.node[i];
   return row;
 }
 
-// `row`, of directions outside, and what the coat takes too much of what facets below it reflect; eta: from outside.
+// Returns `row`, a function of directions outside, plus the excess that the coat takes of light reflected by facets.
+// eta: index from outside.
 AlbedoRow Principled::with_coat_loss(AlbedoRow row, float eta) const {
   if (coat_weight_ == 0 || eta < 1) return row;
   const AlbedoRow lost = eta == kReflectsAll ? coat_loss_of_conductor(ggx_.alpha(), coat_row_)
@@ -215,7 +220,7 @@ glm::vec3 Principled::boundary_reflects(float fresnel) const {
   return tint_ * (over_pigment_ * fresnel + glass_ * (thin_ ? slab_reflectance(fresnel) : fresnel));
 }
 
-// `passed`: 1 - Fresnel's reflectance; of a slab 1 - 2 R / (1 + R).
+// `passed` is 1 - Fresnel's reflectance. For a slab the result is based on 1 - 2 R / (1 + R).
 glm::vec3 Principled::boundary_passes(float passed) const {
   return coat_tint_through_ * glass_tint_ * (glass_ * (thin_ ? passed / (2 - passed) : passed));
 }
@@ -255,7 +260,7 @@ Principled::Draw Principled::draw(float lobe, glm::vec2 u) const {
   }
 }
 
-// `lobe` in [0,1): what is left of it.
+// `lobe` in [0,1): the rest of the number that chose the lobe.
 Principled::Draw Principled::draw_boundary(float lobe, glm::vec2 u) const {
   const glm::vec3 m = smooth_boundary_ ? glm::vec3(0, 0, 1) : ggx_.sample_visible(wo_, u);
   const float reflected = fresnel(std::clamp(glm::dot(wo_, m), 0.0f, 1.0f), eta_);
@@ -272,7 +277,8 @@ Principled::Draw Principled::draw_boundary(float lobe, glm::vec2 u) const {
   return draw;
 }
 
-// A thin wall bends light twice, back again; what its facets do to it is as in reflection, turned over.
+// Returns the direction beyond the boundary. A thin wall bends light back again, so that its facets act as in
+// reflection, turned over.
 glm::vec3 Principled::pass_boundary(glm::vec3 m) const {
   if (!thin_) return refract_through(wo_, m, eta_);
   return below(reflect_about(wo_, m));
@@ -340,9 +346,9 @@ void Principled::add_diffuse(glm::vec3 wi, BsdfValue& value) const {
   }
 }
 
-// Walter et al. 2007, equations 17 and 21, with what hides facets on one side taken to be independent of the other's.
-// As radiance: eta^2 of the equation is gone. The facet's normal is sought in double: wo + eta wi has few digits
-// left.
+// Walter et al. 2007, equations 17 and 21, with the masking on one side taken to be independent of that on the other
+// side. As radiance: the equation's eta^2 is gone. The facet's normal is computed in double, because wo + eta wi has
+// few digits left.
 void Principled::add_refracted(glm::vec3 wi, BsdfValue& value) const {
   const glm::dvec3 sum = glm::dvec3(wo_) + static_cast<double>(eta_) * glm::dvec3(wi);
   const double length2 = glm::dot(sum, sum);

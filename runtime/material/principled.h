@@ -1,21 +1,23 @@
-// A surface in layers: coat over metal, glass or pigment under a dielectric boundary. A subset of OpenPBR 1.1
-// (Academy Software Foundation, "OpenPBR Surface", 2024), in local space: the normal is z, wo lies above.
+// A surface in layers: a coat over metal, glass, or pigment under a dielectric boundary. A subset of OpenPBR 1.1
+// (Academy Software Foundation, "OpenPBR Surface", 2024), in local space: the normal is z, and wo lies above.
 //
 //     opacity * [ coat over ( metalness * metal + (1 - metalness) * body ) ]
 //     body = transmission * glass + (1 - transmission) * boundary over pigment
 //
-// Every part is reciprocal: f(wo,wi) = f(wi,wo), through a boundary but for eta^2; and none gives more than it gets:
-// - A rough boundary's lost light comes back as a diffuse lobe by what each direction lost, through glass on both
-//   sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017; energy.h).
+// Every part is reciprocal: f(wo,wi) = f(wi,wo), through a boundary except for eta^2. No part gives more light than
+// it gets:
+// - The lost light of a rough boundary comes back as a diffuse lobe, in proportion to the loss of each direction, and
+//   for glass on both sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017; energy.h).
 // - Pigment gets what the boundary lets through, h = 1 - E: h(wo) h(wi) / average (Kelemen and Szirmay-Kalos, "A
 //   Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001). With diffuse_roughness the
-//   divisor goes over to the greatest h, which may lose a few hundredths.
-// - Under the coat glossy parts count min(t(wo), t(wi)) for t = 1 - coat_weight E_coat, which is exact for mirrors.
+//   divisor moves towards the greatest h, which may lose a few hundredths.
+// - Glossy parts under the coat are multiplied by min(t(wo), t(wi)), t = 1 - coat_weight E_coat. That is exact for
+//   mirrors.
 //
-// Unlike OpenPBR: specular_weight, which changes the index, changes how much light is bent, too. The coat neither
-// darkens nor changes the boundary below it, and its colour does not depend on the angle. No fuzz, thin film,
-// anisotropy, subsurface or dispersion. From inside pigment is seen without boundary, and coat and specular_color do
-// not reflect there.
+// Differences from OpenPBR: specular_weight changes the index, and so how much light is bent. The coat neither
+// darkens nor changes the boundary below it, and its colour does not depend on the angle. There is no fuzz, thin
+// film, anisotropy, subsurface or dispersion. From inside, pigment is seen without a boundary, and neither the coat
+// nor specular_color takes part in reflection.
 // Tested by: tests/runtime/material/bsdf_test.cpp
 #pragma once
 
@@ -38,27 +40,27 @@ struct BsdfValue {
 
 class Principled {
  public:
-  // A direction drawn. Of a mirror or a clear pane `weight` is f |cos| / pdf; of all else evaluate() tells. Nothing
-  // is drawn where both are black.
+  // A sampled direction. `weight` is f |cos| / pdf for a mirror or a clear pane. For everything else use evaluate().
+  // A direction for which both are black is never sampled.
   struct Draw {
     glm::vec3 wi{0};
     glm::vec3 weight{0};
     bool delta = false;
     bool through = false;
-    bool same_medium = false;  // through a thin wall, on in the medium before it
+    bool same_medium = false;  // passed a thin wall or a hole, and stays in the medium
   };
 
-  // As Bsdf's.
+  // Parameters as of Bsdf.
   Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool inside);
   Draw draw(float lobe, glm::vec2 u) const;
   BsdfValue evaluate(glm::vec3 wi) const;
-  glm::vec3 straight_through() const;  // of the light from -wo; by holes and, where smooth, a thin wall
+  glm::vec3 straight_through() const;  // part of the light from -wo, through holes and a smooth thin wall
   bool is_delta() const;
-  float eta() const { return eta_; }  // that light is bent by
+  float eta() const { return eta_; }  // by which light is bent
 
  private:
   enum Lobe { kStraight, kCoat, kMetal, kBoundary, kPigment, kLost, kLostThrough, kLobes };
-  // What comes back, or through, evenly: strength * row(cos_i) * cos_i; the strength is wo's.
+  // Light that comes back, or passes, diffusely: strength * row(cos_i) * cos_i. The strength depends on wo.
   struct DiffuseLobe {
     glm::vec3 strength{0};
     AlbedoRow row = {};
@@ -94,13 +96,13 @@ class Principled {
   float coat_weight_ = 0, coat_eta_ = 1;
   AlbedoRow coat_row_;
   float coat_passes_o_ = 1;                        // coat_passes(wo)
-  glm::vec3 coat_tint_{1}, coat_tint_through_{1};  // of what comes back, of what crosses once
-  float metal_ = 0;                                // its part, specular_weight multiplied in
+  glm::vec3 coat_tint_{1}, coat_tint_through_{1};  // of reflected light, of light that crosses once
+  float metal_ = 0;                                // weight of the metal, times specular_weight
   F82Tint metal_tint_;
   glm::vec3 tint_{1};                   // specular_color
-  float over_pigment_ = 0, glass_ = 0;  // parts of the boundary
+  float over_pigment_ = 0, glass_ = 0;  // weights of the boundary over pigment, and of that of glass
   glm::vec3 glass_tint_{1};             // transmission_color
-  float boundary_o_ = 0;                // what of wo's light the boundary over pigment reflects
+  float boundary_o_ = 0;                // part of wo's light that the boundary over pigment reflects
   glm::vec3 pigment_albedo_{0};         // estimate, for wo
   bool rough_pigment_ = false;
   OrenNayar oren_nayar_;

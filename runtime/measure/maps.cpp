@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-// In units of the last place of `truth` as a float.
+// Returns the error in units in the last place of `truth` as a float.
 float units_apart(double depth, double truth) {
   const float rounded = static_cast<float>(truth);
   const float unit = std::nextafter(rounded, std::numeric_limits<float>::infinity()) - rounded;

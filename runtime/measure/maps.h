@@ -1,4 +1,4 @@
-// Chart C: what a picture's camera rays cost and how far off they are, pixel by pixel.
+// Chart C: what an image's camera rays cost and how large their errors are, pixel by pixel.
 // Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace fathom::runtime {
 
-// Of the ray through each pixel's centre, [y][x].
+// Measurements of the ray through each pixel's centre, [y][x].
 struct PixelMaps {
   int width, height;               // pixels
   std::vector<float> evaluations;  // of the field

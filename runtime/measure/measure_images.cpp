@@ -9,9 +9,9 @@
 namespace fathom::runtime {
 namespace {
 
-// Far from those of the pictures, which count from 1.
+// Far from the seeds of the images, which count from 1.
 constexpr std::uint64_t kReferenceSeed = 1u << 20;
-// Of the mean of the reference, squared: what keeps the relative error of dark pixels finite.
+// Share of the reference's mean, squared, that keeps the relative error of dark pixels finite.
 constexpr double kDarkShare = 0.01;
 constexpr double kTrimmed = 0.001;
 
@@ -27,7 +27,7 @@ Channels channels_of(const Film& film) {
 }
 
 struct RelativeError {
-  double all, trimmed;  // without the worst 0.1 %
+  double all, trimmed;  // `trimmed` is without the worst 0.1 %
 };
 
 RelativeError relative_error(const Channels& picture, const Channels& reference) {
@@ -48,7 +48,7 @@ RelativeError relative_error(const Channels& picture, const Channels& reference)
   return result;
 }
 
-// What is gathered at one point.
+// Measurements at one point.
 struct Gathered {
   ImagePoint point;
   std::vector<double> seconds, errors, trimmed;
@@ -104,7 +104,8 @@ std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene) {
   for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
     ways.push_back({.marching = {.method = Method::Sphere, .epsilon = epsilon}});
   }
-  const bool surrounded = scene.background.type != compiler::Background::Type::Gradient;  // sky, picture: sampled
+  // Sky and environment map are light sources that can be sampled.
+  const bool surrounded = scene.background.type != compiler::Background::Type::Gradient;
   if (scene.lamps.empty() && scene.lights.empty() && !surrounded) return ways;
   for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
     ways.push_back({.sampler = sampler});
@@ -153,7 +154,7 @@ std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scen
                                              const ImagePlan& plan, const std::string& scene_name) {
   std::vector<ImagePoint> points;
   for (const ImageWay& way : ways) {
-    // At least two samples: a single one is taken at the pixel's centre.
+    // Takes at least two samples, because a single sample lies at the pixel's centre.
     for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({way, spp});
   }
   return measure_points(scene, points, plan, reference_picture(scene, plan), scene_name);

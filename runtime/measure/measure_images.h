@@ -1,5 +1,5 @@
-// The measuring half of chart B: small pictures of a scene drawn in several ways, at several numbers of samples and
-// with several seeds, against a reference whose rays were all searched in double. Tested by:
+// Measures for chart B: small images of a scene, rendered with several settings, several numbers of samples and
+// several seeds, against a reference whose rays were all searched in double. Tested by:
 // tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace fathom::runtime {
 
-// How a picture is drawn, as far as it makes a difference to its error.
+// Render settings that make a difference to an image's error.
 struct ImageWay {
   Marching marching = {};
   compiler::SamplerKind sampler = compiler::SamplerKind::Blue;
@@ -21,14 +21,14 @@ struct ImageWay {
 
 struct ImagePlan {
   int width = 64, height = 36;  // pixels
-  int spp = 64;                 // at most; the curve's other points have a quarter of the next
-  int seeds = 16;               // pictures for each point; the reference has seeds of its own
+  int spp = 64;                 // maximum; each further point of the curve has a quarter of the point before
+  int seeds = 16;               // images per point; the reference has a seed of its own
   int reference_spp = 1024;
   ImageWay reference_way = {.marching = {.method = Method::Certified}};
 };
 
-// The default, and sphere tracing at several eps; of a scene with lamps, lights, a sky or a picture round it also
-// other samplers and ways to find light.
+// Returns the default, and sphere tracing at several eps. For a scene with lamps, lights, a sky or an environment map
+// also returns other samplers and other ways to sample lights.
 std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene);
 
 // Linear sRGB, [y][x][rgb].
@@ -40,13 +40,13 @@ struct ImagePoint {
   int spp;
 };
 
-// One row for each point, seed by seed so that all share the machine's moods. A picture takes one thread, the
-// reference all. Of the plan size and seeds count.
+// Returns one row per point. Renders seed by seed, so that all points share the machine's fluctuations. An image
+// takes one thread, the reference all. Only the plan's size and seeds are used.
 std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scene, std::span<const ImagePoint> points,
                                              const ImagePlan& plan, const Channels& reference,
                                              const std::string& scene_name);
 
-// Of every way the plan's numbers of samples.
+// Measures every way with each of the plan's numbers of samples.
 std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageWay> ways,
                                              const ImagePlan& plan, const std::string& scene_name);
 

@@ -14,9 +14,9 @@ namespace {
 
 using Status = Arrival::Status;
 
-// Of the extent: an error that large is another surface's hit.
+// Share of the extent: an error larger than this is another surface's hit.
 constexpr double kGross = 0.004;
-// Methods in double take a point at a time; so many rays of a set are enough to time them.
+// Methods in double take one point at a time. This many rays of a set are enough to time them.
 constexpr std::size_t kTimedInDouble = 2000;
 
 bool in_double(const Marching& marching) {
@@ -28,7 +28,7 @@ double share(const std::vector<double>& sorted, double quantile) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(quantile * static_cast<double>(sorted.size())))];
 }
 
-// Normals at hits, as the renderer finds them (`exact`: in double). [ray]; zero where there is no hit.
+// Returns normals at hits, as the renderer finds them (`exact`: in double). [ray]; zero for rays without a hit.
 std::vector<glm::dvec3> normals_at(const compiler::CompiledScene& scene, const Field& field,
                                    std::span<const Ray> rays, std::span<const Arrival> arrivals, bool exact) {
   std::vector<glm::dvec3> normals(rays.size(), glm::dvec3(0));
@@ -83,7 +83,7 @@ class Comparison {
     return row;
   }
 
-  // Whether the reference says what is true of the ray.
+  // True if the reference is right about the ray.
   bool is_known(std::size_t i) const {
     return reference_[i].status == Status::Hit || reference_[i].status == Status::Miss;
   }

@@ -1,5 +1,5 @@
-// The measuring half of chart A: every method on every class of rays, timed side by side on one pinned thread and
-// compared with the certified search in double. Tested by: tests/runtime/chart/chart_measure_test.cpp
+// Measures for chart A: every method on every class of rays, timed side by side on one pinned thread and compared
+// with the certified search in double. Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
 #include <span>
@@ -11,12 +11,13 @@
 
 namespace fathom::runtime {
 
-// What is charted: each method, those with a threshold at eps 1e-2 to 1e-6, in float and double; the reference last.
+// Returns the methods of the chart, in float and double. Methods with a threshold have eps 1e-2 to 1e-6. The
+// reference is last.
 std::vector<Marching> charted_methods();
 
-// One row for each method and set, `scene_name` in all. Times are medians over `rounds`, each method once a round. A
-// hit is gross when it is off by more than a 250th of the extent. Rays that the reference calls contacts or invalid
-// count for nobody.
+// Returns one row per method and set, all with `scene_name`. Times are medians over `rounds`, and a round runs each
+// method once. A hit is gross when its error is more than a 250th of the extent. Rays that the reference calls
+// contacts or invalid do not count.
 std::vector<RayMeasurement> measure_rays(const compiler::CompiledScene& scene, const Field& field,
                                          std::span<const RaySet> sets, std::span<const Marching> methods, int rounds,
                                          const std::string& scene_name);

@@ -15,10 +15,10 @@ using glm::dvec3;
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  // Not the standard's distributions: their numbers differ between libraries.
+  // The standard library's distributions would differ between libraries.
   double uniform(double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(engine_() >> 11) * 0x1p-53); }
   std::size_t index(std::size_t count) { return engine_() % count; }
-  // Evenly over the sphere.
+  // Returns a direction that is uniform over the sphere.
   dvec3 direction() {
     while (true) {
       const dvec3 v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
@@ -34,10 +34,10 @@ class Random {
 dvec3 to_float(dvec3 v) { return dvec3(glm::vec3(v)); }
 
 struct Place {
-  dvec3 position, normal;  // the normal has unit length and is on the ray's side
+  dvec3 position, normal;  // unit length, on the ray's side
 };
 
-// Where the camera's rays meet surfaces, by the search in double.
+// Returns the camera rays' hits, by the search in double.
 std::vector<Place> places_of(const compiler::CompiledScene& scene, const Field& field, const std::vector<Ray>& rays) {
   const MarchResult seen = march(field, rays, {.method = Method::Certified});
   vm::Workspace workspace;

@@ -1,4 +1,4 @@
-// The rays that `fathom chart` follows: what a camera sends, what bounces off surfaces, and what barely touches them.
+// The rays that `fathom chart` marches: camera rays, rays bounced off surfaces, and rays that barely touch surfaces.
 // Tested by: tests/runtime/chart/chart_measure_test.cpp
 #pragma once
 
@@ -14,18 +14,19 @@ namespace fathom::runtime {
 
 struct RaySet {
   std::string ray_class;
-  std::vector<Ray> rays;  // their numbers are exact in float, so that all methods and the truth are given the same
+  // Exact in float, so that all methods and the reference are given the same rays.
+  std::vector<Ray> rays;
 };
 
-// `count` rays each, as far as the camera sees surfaces, of
-//   camera   through places of the picture
-//   bounce   from four bands above what those hit, evenly over the hemisphere
-//   grazing  along the tangent planes of what those hit, above or below by 1e-6 to 1e-2 of the extent, evenly in the
-//            logarithm
+// Returns `count` rays of each class. Without surfaces in the camera's view there are only camera rays.
+//   camera   through points of the image
+//   bounce   from four bands above the camera rays' hits, uniform over the hemisphere
+//   grazing  along the tangent planes at the camera rays' hits, above or below by 1e-6 to 1e-2 of the extent,
+//            uniform in the logarithm
 std::vector<RaySet> make_ray_sets(const compiler::CompiledScene& scene, const Field& field, std::size_t count,
                                   std::uint64_t seed);
 
-// The size of what is looked at, scene units: the field's band is a ten-thousandth of it.
+// Returns the size of the visible scene, scene units. The field's band is a ten-thousandth of this size.
 double extent_of(const Field& field);
 
 }  // namespace fathom::runtime

@@ -8,10 +8,10 @@
 namespace fathom::runtime {
 namespace {
 
-// The square's coordinates in double; samples are multiples of 2^-24, whose middle is the point meant.
+// Samples are multiples of 2^-24, and each stands for the middle of its interval. Coordinates are in double.
 constexpr double kHalfStep = 0x1p-25;
 
-// exp is e^x: the integral of e^(-x) sin(pi y) is (1 - 1/e) * 2/pi.
+// Returns e^(-x) sin(pi y), whose integral is (1 - 1/e) * 2/pi.
 double smooth(glm::vec2 u) {
   const double x = static_cast<double>(u.x) + kHalfStep, y = static_cast<double>(u.y) + kHalfStep;
   return std::exp(-x) * std::sin(std::numbers::pi * y);
@@ -36,7 +36,7 @@ glm::vec2 draw(const PixelKey& pixel, std::uint32_t sample, int bounce) {
   return sampler.next2();
 }
 
-// [y * side + x]
+// Returns the error of each pixel. [y * side + x]
 std::vector<double> error_picture(const SamplePlan& plan, const SquareIntegrand& integrand, int side, int bounce) {
   std::vector<double> errors;
   for (int y = 0; y < side; ++y) {
@@ -50,9 +50,9 @@ std::vector<double> error_picture(const SamplePlan& plan, const SquareIntegrand&
   return errors;
 }
 
-// The mean power of the coefficients of the picture's discrete Fourier transform of at most `most` periods, but for
-// the constant; of all coefficients it would be the sum of the squares over their number. Rows first, then columns.
-// Of the plane one half: the picture is real, and the other half is its mirror image.
+// Returns the mean power of the coefficients of the image's discrete Fourier transform with at most `most` periods,
+// except the constant. For all coefficients the mean would be the sum of the squares over their number. Transforms
+// rows first, then columns. Half of the plane is enough, because the image is real and the other half mirrors it.
 double mean_power(const std::vector<double>& picture, int side, int most) {
   using Complex = std::complex<double>;
   std::vector<Complex> wave;  // [i] e^(2 pi i / side)

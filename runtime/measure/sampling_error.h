@@ -1,6 +1,6 @@
-// How fast a sampler's error falls with the number of samples, and how it is spread over the pixels.
+// Measures how fast a sampler's error falls with the number of samples, and how the error is spread over the pixels.
 //
-// Errors are of integrals over the unit square that are known in closed form. Tested by:
+// The errors are those of integrals over the unit square that are known in closed form. Tested by:
 // tests/runtime/sampling_error_test.cpp
 #pragma once
 
@@ -18,7 +18,7 @@ struct SquareIntegrand {
   double (*value)(glm::vec2 u);
   double integral;
 };
-// smooth, straight edge, disc.
+// Returns the integrands smooth, straight edge and disc.
 std::span<const SquareIntegrand> square_integrands();
 
 struct SamplingError {
@@ -26,17 +26,18 @@ struct SamplingError {
   double rmse;
 };
 
-// The errors after each of `counts` samples, which rise, over `repeats` pixels with seeds of their own. The pair is
-// the first of the bounce, or of all when `bounce` is -1.
+// Returns the errors after each of `counts` samples, in ascending order, over `repeats` pixels with seeds of their
+// own. The samples are the first pair of the bounce, or the first pair of all when `bounce` is -1.
 std::vector<SamplingError> sampling_errors(SamplerKind kind, const SquareIntegrand& integrand,
                                            std::span<const int> counts, int repeats, int bounce);
 
-// The exponent of the power law through the errors, by least squares in logarithms: -0.5 for independent samples.
+// Returns the exponent of the power law through the errors, by least squares in logarithms; -0.5 if samples are
+// independent.
 double error_slope(std::span<const SamplingError> errors);
 
-// How the errors of a square picture of one integrand, `side` pixels and `spp` samples, are spread over frequencies:
-// the mean power of those of at most side/8 periods, over the mean power of all. White noise has 1. Mean over
-// `seeds`.
+// Returns how the errors of a square image of one integrand, `side` pixels and `spp` samples, are spread over
+// frequencies: the mean power of frequencies of at most side/8 periods, over the mean power of all. White noise has
+// 1. Mean over `seeds`.
 double low_frequency_power(SamplerKind kind, const SquareIntegrand& integrand, int spp, int side, int seeds,
                            int bounce);
 

@@ -1,4 +1,4 @@
-// Timing for charts and benches: variants of one measurement interleaved round by round on one pinned thread, in
+// Timing for charts and benches. Variants of one measurement are interleaved round by round on one pinned thread, in
 // thread CPU time, so that ratios inside a table hold while the machine's speed drifts.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace fathom::runtime {
 
-// Keeps the calling thread on the processor it runs on.
+// Pins the calling thread to the processor it runs on.
 inline void pin_thread() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -20,7 +20,7 @@ inline void pin_thread() {
   pthread_setaffinity_np(pthread_self(), sizeof set, &set);
 }
 
-// The same for as long as it lives.
+// Pins the calling thread for the lifetime of the object.
 class Pinned {
  public:
   Pinned() {
@@ -50,7 +50,7 @@ inline Spread spread(std::vector<double> values) {
   return {values[values.size() / 2], values.front(), values.back()};
 }
 
-// Seconds of each variant in each round. [variant][round]
+// Returns the seconds of each variant in each round. [variant][round]
 inline std::vector<std::vector<double>> time_interleaved(const std::vector<std::function<void()>>& variants,
                                                          int rounds) {
   std::vector<std::vector<double>> seconds(variants.size());
@@ -65,7 +65,7 @@ inline std::vector<std::vector<double>> time_interleaved(const std::vector<std::
   return seconds;
 }
 
-// Ratios a/b of the same round.
+// Returns the spread of the ratios a/b of the same round.
 inline Spread ratio(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / b[i]);

@@ -12,9 +12,9 @@ namespace {
 
 using Projection = compiler::Camera::Projection;
 
-constexpr double kMillimetre = 1e-3;  // scene units, where f-stops are given
+constexpr double kMillimetre = 1e-3;  // scene units, which are metres where f-stops are given
 
-// Half the picture's width and height, at unit distance when in perspective.
+// Returns half the image's width and height, at unit distance for a perspective camera.
 glm::dvec2 half_size(const compiler::Camera& camera, double aspect) {
   if (camera.projection == Projection::Orthographic) return {camera.width / 2, camera.width / 2 * aspect};
   if (camera.vertical_fov) {
@@ -36,8 +36,8 @@ std::vector<glm::dvec2> polygon(int sides, double rotation) {
   return corners;
 }
 
-// A uniform point of the unit disk, near for near u: Shirley and Chiu, "A Low Distortion Map Between Disk and
-// Square", 1997.
+// Maps u to a uniform point of the unit disk. Near u give near points: Shirley and Chiu, "A Low Distortion Map
+// Between Disk and Square", 1997.
 glm::dvec2 square_to_disk(glm::dvec2 u) {
   const glm::dvec2 v = 2.0 * u - 1.0;
   if (v == glm::dvec2(0)) return v;
@@ -47,8 +47,8 @@ glm::dvec2 square_to_disk(glm::dvec2 u) {
   return {radius * angle.cos, radius * angle.sin};
 }
 
-// A uniform point of a polygon round 0: a sector, and in its triangle a point whose distance from 0 has a square as
-// even as u.y.
+// Maps u to a uniform point of a polygon around 0. u.x gives the sector and the direction in the sector. u.y is the
+// square of the distance from 0, relative to the side.
 glm::dvec2 square_to_polygon(glm::dvec2 u, const std::vector<glm::dvec2>& corners) {
   const double along = u.x * static_cast<double>(corners.size() - 1);
   const std::size_t side = std::min(static_cast<std::size_t>(along), corners.size() - 2);
@@ -88,7 +88,7 @@ void Camera::set_axes(const compiler::Camera& camera) {
 void Camera::set_lens(const compiler::Camera& camera) {
   focus_distance_ = camera.focus_distance.value_or(glm::length(camera.target - camera.position));
   if (camera.f_stop) {
-    // The lens that gives the field of view, however that was said.
+    // Focal length of the lens with this field of view, whichever way the scene gives it.
     const double focal_length = camera.sensor_width / (2 * half_.x) * kMillimetre;
     lens_radius_ = focal_length / (2 * *camera.f_stop);
   } else {
@@ -121,7 +121,7 @@ glm::dvec2 Camera::lens_point(glm::vec2 u) const {
          (corners_.empty() ? square_to_disk(glm::dvec2(u)) : square_to_polygon(glm::dvec2(u), corners_));
 }
 
-// Longitude from the left, half a turn before the middle; colatitude from the top.
+// Longitude grows from the left, half a turn before the centre. Colatitude grows from the top.
 CameraRay Camera::panorama_ray(double x, double y) const {
   const SinCosReal longitude = sincos_turn(x / size_.x - 0.5), colatitude = sincos_turn(y / size_.y / 2);
   const glm::dvec3 level = forward_ * longitude.cos + right_ * longitude.sin;

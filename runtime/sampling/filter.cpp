@@ -14,7 +14,7 @@ double box(double) { return 1; }
 
 double tent(double t) { return 1 - t; }
 
-// Cut off at three standard deviations, and lowered to be 0 there.
+// Truncated at three standard deviations, and lowered to be 0 there.
 double gaussian(double t) {
   return static_cast<double>(exp(static_cast<float>(-4.5 * t * t))) - static_cast<double>(exp(-4.5f));
 }
@@ -34,7 +34,7 @@ double mitchell(double t) {
 
 struct Shape {
   double (*value)(double t);
-  double width;  // of the support unless the scene says otherwise, pixels
+  double width;  // of the support unless the scene gives another, pixels
 };
 // [FilterKind]
 constexpr Shape kShapes[] = {{box, 1}, {tent, 2}, {gaussian, 3}, {blackman_harris, 3}, {mitchell, 4}};
@@ -48,7 +48,7 @@ double filter_value(FilterKind kind, double t) { return shape_of(kind).value(t);
 
 Filter::Filter(FilterKind kind, std::optional<double> width)
     : kind_(kind), radius_(width.value_or(shape_of(kind).width) / 2) {
-  std::size_t positive = kCells;  // cells before the filter changes its sign
+  std::size_t positive = kCells;  // number of cells before the filter changes its sign
   for (std::size_t i = 0; i <= kCells; ++i) {
     const double value = filter_value(kind, static_cast<double>(i) / kCells);
     if (value < 0) positive = std::min(positive, i);
@@ -63,12 +63,12 @@ Filter::Filter(FilterKind kind, std::optional<double> width)
     first_[k] = static_cast<std::uint16_t>(cell);
   }
   negative_from_ = positive == kCells ? INFINITY : radius_ * static_cast<double>(positive) / kCells;
-  // A coordinate is positive so often, else negative; the weights' mean is 1.
+  // A coordinate is positive with probability below_[positive], else negative. The weights' mean is 1.
   weight_ = static_cast<float>(1 / (2 * below_[positive] - 1));
 }
 
-// The |offset| below which that share of the magnitude lies, in [0,1): in its cell the root of the quadratic that a
-// linear density has as its integral.
+// Returns the |offset| below which the share of the magnitude lies, share in [0,1). The density is linear in a cell,
+// so the offset is the root of a quadratic.
 double Filter::distance(double share) const {
   std::size_t cell = first_[static_cast<std::size_t>(share * kCells)];
   while (below_[cell + 1] <= share) ++cell;
@@ -80,12 +80,12 @@ double Filter::distance(double share) const {
 }
 
 FilterSample Filter::sample(glm::vec2 u) const {
-  // What the general way comes to for a constant, at a fraction of its time.
+  // Shortcut for a constant: the same as below, at a fraction of its time.
   if (kind_ == FilterKind::Box) return {(u - 0.5f) * static_cast<float>(2 * radius_), 1};
   FilterSample sample;
   for (int axis = 0; axis < 2; ++axis) {
     const double side = 2 * static_cast<double>(u[axis]) - 1;
-    // Of the share 1, which is that of u = 0, the place is the support's end.
+    // u = 0 has the share 1, which lies at the support's end.
     const double away = side == -1 ? radius_ : distance(std::abs(side));
     sample.offset[axis] = static_cast<float>(std::copysign(away, side));
     sample.weight *= away >= negative_from_ ? -weight_ : weight_;

@@ -5,7 +5,7 @@
 namespace fathom::runtime {
 namespace {
 
-// In [0,1): a multiple of 2^-53.
+// Returns a random number in [0,1), a multiple of 2^-53.
 double random_of(std::uint64_t seed, int frame, int run) {
   std::uint64_t hash = mix64(seed + kGoldenGamma);
   hash = mix64(hash + kGoldenGamma * (static_cast<std::uint64_t>(frame) + 1));
@@ -21,11 +21,11 @@ std::vector<ShutterRun> shutter_runs(int spp, int times, std::uint64_t seed, int
   std::vector<ShutterRun> runs;
   std::uint32_t first = 0;
   for (int run = 0; run < count; ++run) {
-    // Of an odd number of samples the last run has the one that is left.
+    // The last run takes the sample that is left of an odd number.
     const bool last = run + 1 == count;
     const auto end = static_cast<std::uint32_t>(last ? spp : 2 * (pairs * (run + 1) / count));
     const double time = (first + random_of(seed, frame, run) * (end - first)) / spp;
-    // Rounding up must not show what the next frame begins with.
+    // Rounding up must not show the first moment of the next frame.
     runs.push_back({{first, end}, std::min(time, 0x1.fffffffffffffp-1)});
     first = end;
   }

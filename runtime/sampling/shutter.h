@@ -1,10 +1,10 @@
-// The moments that a shutter sees. Everything in a scene may move, so time is sampled by scenes: the samples of a
-// pixel are cut into runs, and each run sees the scene of one moment. A run's moment lies anywhere in the run's share
-// of the time, so the mean over them is the light of the whole time: stratified sampling in one dimension (Cook,
-// Porter, Carpenter, "Distributed Ray Tracing", 1984).
+// Motion blur by stratified shutter times. Everything in a scene may move, so a pixel's samples are split into runs,
+// and each run sees the scene at one moment. A run's moment lies anywhere in the run's share of the shutter time, so
+// the mean over the runs estimates the light of the whole time: stratified sampling in one dimension (Cook, Porter,
+// Carpenter, "Distributed Ray Tracing", 1984).
 //
-// Runs are of even length: the samples with even numbers and those with odd ones, which the denoiser compares, see
-// the same moments.
+// Runs have even lengths. The denoiser compares samples with even numbers and samples with odd numbers, and even
+// lengths give both the same moments.
 //
 // Tested by: tests/runtime/sampling/shutter_test.cpp
 #pragma once
@@ -19,7 +19,8 @@ namespace fathom::runtime {
 
 inline constexpr int kUsualShutterTimes = 16;
 
-// Of a frame's random numbers, by its number: noise that stood still would be seen. Of frame 0 the seed itself.
+// Returns the seed of a frame's random numbers. Each frame has its own, because noise that stands still is visible.
+// Frame 0 has `seed` itself.
 constexpr std::uint64_t frame_seed(std::uint64_t seed, int frame) {
   if (frame == 0) return seed;
   return mix64(mix64(seed + kGoldenGamma) + kGoldenGamma * static_cast<std::uint64_t>(frame));
@@ -27,11 +28,12 @@ constexpr std::uint64_t frame_seed(std::uint64_t seed, int frame) {
 
 struct ShutterRun {
   SampleRange samples;
-  double time;  // when it sees the scene: a share of the time that the shutter is open, in [0,1)
+  double time;  // moment of the scene, as a share of the time that the shutter is open, in [0,1)
 };
 
-// At most `times` runs, in order, of `spp` samples together; as long as each other where their number divides spp/2,
-// else by two samples longer or shorter, with as much more or less of the time. `seed` is that of all frames.
+// Returns at most `times` runs, in order, with `spp` samples together. Runs are equally long if their number divides
+// spp/2. Otherwise their lengths differ by two samples, and their shares of the time accordingly. `seed` is that of
+// all frames.
 std::vector<ShutterRun> shutter_runs(int spp, int times, std::uint64_t seed, int frame);
 
 }  // namespace fathom::runtime

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Where u falls among running sums that end at 1: the index, and how far into it, in [0,1).
+// Finds u among running sums that end at 1. Returns the index, and how far u lies into that interval, in [0,1].
 template <class T>
 std::pair<std::size_t, double> find(std::span<const T> sums, double u) {
   const auto above = std::upper_bound(sums.begin(), sums.end() - 1, u, [](double a, T b) { return a < double(b); });

@@ -1,7 +1,7 @@
-// A piecewise-constant density over the directions: cells of equal longitude and polar angle, as the pixels of a
-// latitude-longitude picture. Within a cell directions are uniform per solid angle.
+// A piecewise-constant density over directions. Cells have equal longitude and polar angle, like the pixels of a
+// latitude-longitude image. Within a cell directions are uniform per solid angle.
 //
-// Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 3rd ed. 2016, sections 13.6.7 and 14.2.4; by the
+// Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 3rd ed. 2016, sections 13.6.7 and 14.2.4, with the
 // cells' solid angles instead of the sine at their middles. Tested by: tests/runtime/sampling/sphere_table_test.cpp
 #pragma once
 
@@ -12,30 +12,30 @@
 
 namespace fathom::runtime {
 
-// A direction <-> u and v in [0,1]: v runs from +y down to -y with the polar angle; u is the turn about y, 1/2 at -z
-// and growing towards +x.
+// Map a direction to u and v in [0,1], and back. v runs from +y down to -y with the polar angle. u is the turn about
+// y, 1/2 at -z and growing towards +x.
 glm::dvec2 to_latlong(glm::dvec3 direction);
 glm::dvec3 from_latlong(glm::dvec2 uv);
 
 class SphereTable {
  public:
   SphereTable() = default;
-  // Densities, in any unit, of height rows of width cells from +y down; none is negative, each finite.
+  // Takes densities in any unit, finite and not negative: `height` rows of `width` cells, from +y down.
   SphereTable(int width, int height, std::span<const float> values);
 
-  // The mean of the values over the sphere; 0: nothing to sample.
+  // Returns the mean of the values over the sphere; 0 when there is nothing to sample.
   double mean() const { return mean_; }
-  glm::vec3 sample(glm::vec2 u) const;   // only when mean() > 0
+  glm::vec3 sample(glm::vec2 u) const;   // needs mean() > 0
   float pdf(glm::vec3 direction) const;  // per solid angle
 
  private:
-  double solid_angle(std::size_t row) const;  // of a cell
+  double solid_angle(std::size_t row) const;  // of one cell of the row
 
   std::size_t width_ = 0, height_ = 0;
   double mean_ = 0;
   std::vector<double> heights_;  // y of the rows' borders, height_ + 1
   std::vector<double> rows_;     // running sums of the rows' probabilities
-  std::vector<float> columns_;   // likewise within each row
+  std::vector<float> columns_;   // the same within each row
 };
 
 }  // namespace fathom::runtime

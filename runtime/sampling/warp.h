@@ -1,4 +1,4 @@
-// Maps from the unit square to directions, each beside its density.
+// Maps from the unit square to directions, with their densities.
 // Tested by: tests/runtime/sampling/warp_test.cpp
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace fathom::runtime {
 
-// A direction of the upper hemisphere (z >= 0) with density cos/pi per solid angle.
+// Returns a direction of the upper hemisphere (z >= 0) with density cos/pi per solid angle.
 // Malley's method: a uniform point of the disk, lifted onto the hemisphere (Pharr, Jakob, Humphreys, "Physically
 // Based Rendering", 3rd ed. 2016, section 13.6.3).
 inline glm::vec3 square_to_cosine_hemisphere(glm::vec2 u) {
@@ -21,7 +21,7 @@ inline glm::vec3 square_to_cosine_hemisphere(glm::vec2 u) {
 }
 inline float square_to_cosine_hemisphere_pdf(glm::vec3 w) { return w.z > 0 ? w.z * 0.318309886183790672f : 0.0f; }
 
-// Axes of unit length about the unit vector z; all directions are unit vectors.
+// Orthonormal axes around the unit vector z. All directions are unit vectors.
 // Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017, listing 3.
 template <class T>
 struct FrameOf {
@@ -40,7 +40,7 @@ struct FrameOf {
 };
 using Frame = FrameOf<float>;
 
-// `local` in the frame whose z axis is n.
+// Returns `local`, given in the frame with the z axis n, in world coordinates.
 inline glm::vec3 to_frame(glm::vec3 n, glm::vec3 local) { return Frame(n).to_world(local); }
 
 }  // namespace fathom::runtime

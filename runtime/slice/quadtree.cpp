@@ -12,15 +12,15 @@
 namespace fathom::runtime {
 namespace {
 
-// Edges of the tiles, pixels; a tile holds kTilesAcross * kTilesAcross of the next.
+// Edges of the tiles of each level, pixels. A tile holds kTilesAcross * kTilesAcross tiles of the next level.
 constexpr int kEdges[] = {256, 64, 16};
 constexpr int kLevels = 3, kTilesAcross = 4;
 static_assert(kTilesAcross * kTilesAcross == vm::kEnclosedBoxes);
-// With fewer choices a row at a time is as fast.
+// With fewer choices, evaluating row by row is as fast.
 constexpr std::size_t kLeastChoices = 24;
 
 struct Tile {
-  int x, y;  // of its first pixel
+  int x, y;  // first pixel
 };
 
 class QuadtreeWorker {
@@ -35,7 +35,7 @@ class QuadtreeWorker {
     }
   }
 
-  // The sixteen tiles of a level that start at `first`, as far as the picture goes, or only the one numbered `only`.
+  // Evaluates the sixteen tiles of a level that start at `first`, as far as the image goes, or only tile `only`.
   void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
     const int edge = kEdges[level];
     set_boxes(first, edge);
@@ -60,7 +60,7 @@ class QuadtreeWorker {
   }
 
  private:
-  // What of `part` matters in box i; the part itself where writing that down costs more than it saves.
+  // Returns the part of `part` that matters in box i, or `part` itself if a smaller part costs more than it saves.
   const vm::Part& cut(const vm::Part& part, vm::Specialiser& specialiser, std::size_t i, int level) {
     constexpr std::uint32_t kCheap = 16;  // choices
     if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
@@ -73,7 +73,7 @@ class QuadtreeWorker {
   }
   vm::Boxes boxes() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
 
-  // From the first pixel's centre to the last one's, in the coordinates the pixels are evaluated at.
+  // Sets the tiles' boxes, from the first pixel's centre to the last pixel's, in the coordinates of evaluation.
   void set_boxes(Tile first, int edge) {
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       const Tile tile = tile_of(first, edge, i);
@@ -86,7 +86,7 @@ class QuadtreeWorker {
     }
   }
 
-  // A coordinate of a pixel.
+  // Returns a coordinate of a pixel's centre.
   float place(std::size_t axis, int x, int y) const {
     return by_column_[axis] ? columns_[axis][static_cast<std::size_t>(x)] : rows_[axis][static_cast<std::size_t>(y)];
   }
@@ -122,7 +122,8 @@ class QuadtreeWorker {
   const Slice& slice_;
   const bool sign_;
   std::vector<float>& field_;
-  // [axis] where the first row's pixels are, and the first column's, and whether it changes along a row.
+  // [axis] coordinates of the first row's pixels, of the first column's pixels, and true if the coordinate changes
+  // along a row.
   std::array<std::vector<float>, 3> columns_, rows_;
   std::array<bool, 3> by_column_{};
   vm::Workspace workspace_;
@@ -141,7 +142,7 @@ bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceVal
   const int step = kEdges[0] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   std::atomic<int> next{0};
-  // The largest tiles are handed out one by one; what is known of sixteen costs as much as of one.
+  // Threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing one.
   constexpr int kTiles = kTilesAcross * kTilesAcross;
   const auto work = [&] {
     QuadtreeWorker worker(slice, wanted, field);

@@ -12,7 +12,7 @@
 namespace fathom::runtime {
 namespace {
 
-// PixelRows are handed out one by one; each worker has its own scratch memory.
+// Rows of pixels, which threads take one by one. Each thread has its own scratch memory.
 class PixelRows {
  public:
   PixelRows(const vm::VerifiedProgram& distance, const Slice& slice, std::vector<float>& field)
@@ -42,8 +42,8 @@ class PixelRows {
   std::atomic<int> next_{0};
 };
 
-// The colour-blind see blue and orange as different as anyone does; both are sRGB encoded already. The far end of
-// either is its faint colour, so that the surface stands out.
+// Colours of one side of the surface, sRGB encoded. Blue and orange differ to the colour-blind as much as to anyone.
+// Each side becomes fainter with the distance, so that the surface stands out.
 struct Shade {
   glm::dvec3 near, far, line;
 };
@@ -52,8 +52,9 @@ constexpr Shade kOutside{{0.95, 0.62, 0.25}, {1.0, 0.94, 0.84}, {0.66, 0.36, 0.0
 constexpr glm::dvec3 kSurfaceLine{0.04, 0.04, 0.05};
 constexpr glm::dvec3 kNotANumber{1, 0, 1};
 constexpr double kSurfaceWidth = 2.4, kBandWidth = 1.2;  // of the lines, pixels
-constexpr double kFlat =
-    1e-5;  // per pixel, of a band: a slope some thousand times less than a distance's is rounding
+// Slope below which the field counts as flat, in bands per pixel. A distance is some thousand times steeper, so less
+// is rounding.
+constexpr double kFlat = 1e-5;
 
 class DistanceShader {
  public:
@@ -65,11 +66,11 @@ class DistanceShader {
     if (std::isnan(d)) return kNotANumber;
     const Shade& shade = d < 0 ? kInside : kOutside;
     const double bands = std::abs(d) / step_;
-    // Half way to the faint colour after four bands.
+    // Halfway to the faint colour after four bands.
     glm::dvec3 color = glm::mix(shade.near, shade.far, std::isinf(bands) ? 1.0 : bands / (bands + 4));
     const double slope = slope_per_pixel(x, y);
     const double nearest = std::round(bands);
-    // A level that a whole region is at, as above a floor seen from above, is no line.
+    // A region that lies entirely at a band's level, as above a floor seen from above, gets no line.
     if (nearest >= 1 && std::isfinite(bands) && slope > kFlat * step_) {
       color = glm::mix(color, shade.line, 0.75 * coverage(std::abs(bands - nearest) * step_, slope, kBandWidth));
     }
@@ -82,7 +83,7 @@ class DistanceShader {
         field_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]);
   }
 
-  // How fast the field changes, per pixel. Of the differences to either side the larger one: at a crease they cancel.
+  // Returns the field's change per pixel, by the larger of the differences to both sides: at a crease the two cancel.
   double slope_per_pixel(int x, int y) const {
     const double here = value(x, y);
     const auto difference = [&](int i, int j) {
@@ -94,7 +95,8 @@ class DistanceShader {
                       std::max(difference(x, y - 1), difference(x, y + 1)));
   }
 
-  // How much of a pixel a line covers whose middle is `away` from the pixel's, in units of the field.
+  // Returns the share of a pixel that a line covers. `away`: from the line's middle to the pixel's, in units of the
+  // field.
   static double coverage(double away, double slope, double line_width) {
     if (!(slope > 0)) return away == 0 ? 1 : 0;
     return std::clamp(0.5 * line_width + 0.5 - away / slope, 0.0, 1.0);

@@ -1,4 +1,4 @@
-// Pictures of the field on a plane across one of the axes: where it is solid, or how far the surface is.
+// Images of the field on a plane across one of the axes: where the field is solid, or how far the surface is.
 // Tested by: tests/runtime/slice/slice_test.cpp
 #pragma once
 
@@ -10,20 +10,20 @@
 
 namespace fathom::runtime {
 
-// f at the pixels' centres in float32, [y][x], the same for any number of threads. Of programs that can be cut the
-// picture is a quadtree (runtime/slice/quadtree.h), of others it is cut into rows.
+// Returns f at the pixels' centres in float32, [y][x], the same for any number of threads. Programs that can be
+// pruned are evaluated by a quadtree (runtime/slice/quadtree.h), other programs row by row.
 std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
                                   SliceValues wanted = SliceValues::Exact);
 
-// White where the value is negative, black elsewhere, nothing between.
+// Returns an image that is white where the value is negative and black elsewhere, without shades between.
 Picture sign_picture(const std::vector<float>& field, int width, int height);
 
-// How far the bands of distance_picture() are apart: the number 1, 2 or 5 times a power of ten that is nearest to a
+// Returns the step between the bands of distance_picture(): 1, 2 or 5 times a power of ten, whichever is nearest to a
 // tenth of `length`.
 double band_step(double length);
 
-// Blue inside, orange outside, fainter with the distance; a black line where the value is 0 and a thin one at every
-// multiple of `step`, in the hue of its side; magenta where the value is not a number.
+// Returns an image that is blue inside and orange outside, fainter with the distance. The line of value 0 is black. A
+// thin line at every multiple of `step` has the hue of its side. NaN is magenta.
 Picture distance_picture(const std::vector<float>& field, int width, int height, double step);
 
 }  // namespace fathom::runtime

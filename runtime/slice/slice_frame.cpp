@@ -6,8 +6,8 @@
 namespace fathom::runtime {
 namespace {
 
-// The scene's axes of a slice: that of its first coordinate, that of its second, and whether the picture's right and
-// up are their negative directions.
+// Scene axes of a slice: of its first and of its second coordinate. `left` and `down` are true if the image's right
+// and up are their negative directions.
 struct View {
   int first, second;
   bool left, down;
@@ -19,9 +19,9 @@ View view_of(Axis axis) {
   return {0, 1, false, false};
 }
 
-constexpr double kWithoutEnd = 2;  // scene units; how far an endless side is shown
+constexpr double kWithoutEnd = 2;  // scene units; where an infinite side ends
 
-// An interval with ends, not empty, a tenth longer than [lo, hi].
+// Makes the interval finite, not empty, and a tenth longer than [lo, hi].
 void frame_side(double& lo, double& hi) {
   if (!(lo <= hi)) lo = -kWithoutEnd, hi = kWithoutEnd;
   if (!std::isfinite(lo)) lo = std::min(-kWithoutEnd, std::isfinite(hi) ? hi - 2 * kWithoutEnd : 0);

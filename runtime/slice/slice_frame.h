@@ -1,7 +1,7 @@
-// The frame of a slice: which rectangle of which plane it shows, in how many pixels, and which values are wanted
-// there. Planes lie across one of the axes.
+// The frame of a slice: the rectangle it shows of a plane, the number of pixels, and the kind of values needed.
+// Planes lie across one of the axes.
 //
-// The views are right-handed, the third axis towards the eye:
+// The views are right-handed, with the third axis towards the eye:
 //
 //     across  right  up
 //     z       +x     +y    from the front
@@ -24,21 +24,21 @@ enum class Axis { X, Y, Z };
 struct Slice {
   Axis axis = Axis::Z;
   double at = 0;              // scene units
-  glm::dvec2 lo{0}, hi{0};    // corners by the plane's axes: (x, y) across z, (x, z) across y, (z, y) across x
+  glm::dvec2 lo{0}, hi{0};    // corners in the plane's axes: (x, y) across z, (x, z) across y, (z, y) across x
   int width = 1, height = 1;  // pixels
 
-  // The centre of pixel (column, row), row 0 at the top.
+  // Returns the centre of pixel (column, row), with row 0 at the top.
   glm::dvec3 point(int column, int row) const;
 };
 
-// The two of the point's coordinates that a plane across the axis has, in the order of Slice::lo.
+// Returns the point's two coordinates in a plane across the axis, in the order of Slice::lo.
 glm::dvec2 on_plane(Axis axis, glm::dvec3 point);
 
-// The slice of `box`, a tenth larger, widened until the pixels are square. A side without an end is taken to 2 from
-// the origin, or to a length of 4.
+// Returns the slice of `box`, a tenth larger, widened until the pixels are square. An infinite side ends at 2 from
+// the origin, or has a length of 4.
 Slice frame_slice(const compiler::Box& box, Axis axis, double at, int width, int height);
 
-// What is wanted of the field: its values, or no more than numbers of the same sign.
+// Kind of values needed of the field: exact values, or any numbers of the same sign.
 enum class SliceValues { Exact, Sign };
 
 }  // namespace fathom::runtime

@@ -14,7 +14,7 @@ namespace {
 struct OperationCount {
   const vm::OpcodeInfo* operation;
   std::size_t count;
-  std::size_t cost;  // of all of them
+  std::size_t cost;  // total over all occurrences
 };
 
 std::vector<OperationCount> count_operations(const vm::Program& program) {
@@ -71,7 +71,7 @@ std::string operation_table(const vm::VerifiedProgram& program) {
 std::string cost_by_node(const vm::VerifiedProgram& program) {
   const std::vector<NodeCost> rows = count_nodes(program.program());
   std::vector<std::string> places;
-  std::size_t width = 5;  // of "place"
+  std::size_t width = 5;  // width of the heading "place"
   for (const NodeCost& row : rows) {
     const bool known = row.node->line > 0;
     places.push_back(known ? fmt::format("{}:{}", row.node->line, row.node->column) : "-");

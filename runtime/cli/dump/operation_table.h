@@ -1,4 +1,4 @@
-// What a program spends its time on, by operation and by place in the scene, as tables for people.
+// Tables of a program's cost by operation and by node of the scene.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace fathom::cli {
 
-// Operations that occur, the most expensive first; costs are multiply-adds a point.
+// Returns the operations that occur, the most expensive first. Costs are multiply-adds per point.
 std::string operation_table(const vm::VerifiedProgram& program);
 
-// The same by the node of the scene that instructions come from: type and name, where it is written.
+// Returns the cost per node of the scene, with the node's type, name and source location.
 std::string cost_by_node(const vm::VerifiedProgram& program);
 
 }  // namespace fathom::cli

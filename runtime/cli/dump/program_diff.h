@@ -1,4 +1,4 @@
-// What two programs differ in, for `fathom dump --diff a b`.
+// Differences between two programs, for `fathom dump --diff a b`.
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
@@ -9,12 +9,12 @@
 namespace fathom::cli {
 
 struct DiffSide {
-  std::string name;  // for people
+  std::string name;  // as shown in the output
   const vm::VerifiedProgram& program;
 };
 
-// Their sizes, then a unified diff of their instructions, which are equal where they do the same with the same
-// numbers, wherever they stand; nothing but a line that says so when the programs are equal.
+// Returns the sizes and a unified diff of the instructions. Instructions are equal if they have the same operation
+// and the same numbers, regardless of their offsets. For equal programs the result is a single line.
 std::string program_diff(const DiffSide& before, const DiffSide& after);
 
 }  // namespace fathom::cli

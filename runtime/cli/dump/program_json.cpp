@@ -7,14 +7,14 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// A file's name may be no UTF-8; JSON must be.
+// Replaces invalid UTF-8, which file names may contain and JSON must not.
 std::string print(const OrderedJson& json) { return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
 
 OrderedJson immediate_json(const vm::Program& program, const vm::OpcodeInfo& row, std::size_t word, int index) {
   return vm::is_integer_immediate(row, index) ? OrderedJson(program.words[word]) : OrderedJson(program.wide[word]);
 }
 
-// By name; of an outline a list of the groups.
+// Returns the immediates by name. For an outline, returns a list with one object per group.
 OrderedJson immediates_json(const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
   const std::uint32_t word = program.words[at];
   OrderedJson groups = OrderedJson::array();
@@ -28,7 +28,7 @@ OrderedJson immediates_json(const vm::Program& program, std::size_t at, const vm
   return row.form == vm::Form::Outline ? groups : groups[0];
 }
 
-// What the operand says beside the row: "at" and "min" of a shape, "operands" of a function.
+// Adds the flags in the operand of an instruction: "at" and "min" of a shape, "operands" of a function.
 void add_modes(OrderedJson& line, const vm::Program& program, std::size_t at, const vm::OpcodeInfo& row) {
   const std::uint32_t word = program.words[at];
   const std::uint32_t operand = vm::operand_of(word);
@@ -70,7 +70,7 @@ std::string program_json(const vm::VerifiedProgram& verified, std::string_view w
   head["locals"] = program.locals;
   head["cost"] = verified.cost();
   std::string out = print(head);
-  out.back() = ',';  // the object goes on
+  out.back() = ',';  // the object continues below
   out += "\"code\":[";
   int values = 0, points = 1;
   for (std::size_t i = 0, at = 0; at < program.words.size(); ++i) {

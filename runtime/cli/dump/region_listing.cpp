@@ -16,11 +16,10 @@
 namespace fathom::cli {
 namespace {
 
-// Regions of a program too short for them are built for at most as long as evaluating it takes, this number of
-// multiply-adds: seconds.
+// Budget in multiply-adds, a few seconds, for building regions of a program too short for renders to use regions.
 constexpr double kMaxCost = 2e10;
 
-// The part as a program of its own, whose instructions keep the names that those they come from have.
+// Makes a program of a region's part. Its instructions keep the symbols of the instructions that they come from.
 vm::VerifiedProgram as_program(const vm::Part& part, const vm::Program& whole) {
   vm::Program program;
   program.words = part.words, program.wide = part.wide, program.locals = part.locals;

@@ -1,4 +1,5 @@
-// What fathom dump --region prints. Tested by: tests/runtime/cli/cli_dump_test.cpp
+// The output of fathom dump --region.
+// Tested by: tests/runtime/cli/cli_dump_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,8 +10,8 @@
 
 namespace fathom::cli {
 
-// The part of the scene's program that matters in the region at `point` (scene coordinates), and the whole program;
-// nothing when the scene's program cannot be cut.
+// Returns a listing of the program part for the region around `point` (scene coordinates), and of the whole program.
+// Returns nullopt if no regions can be built for the scene.
 std::optional<std::string> region_listing(const compiler::CompiledScene& scene, glm::dvec3 point);
 
 }  // namespace fathom::cli

@@ -13,12 +13,12 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::size_t kShown = 4;  // of each stack, from the top
+constexpr std::size_t kShown = 4;  // entries shown per stack, from the top
 
 std::string text_of(float value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 std::string text_of(glm::vec3 p) { return fmt::format("({} {} {})", text_of(p.x), text_of(p.y), text_of(p.z)); }
 
-// The top last, as it was pushed.
+// Formats a stack, its top last.
 template <typename Entry>
 std::string text_of(const char* name, const std::vector<Entry>& stack) {
   if (stack.empty()) return "";
@@ -29,7 +29,7 @@ std::string text_of(const char* name, const std::vector<Entry>& stack) {
   return text;
 }
 
-// The number on top of a stack that is not finite; what lies deeper was there before.
+// Returns the non-finite number on top of a stack, if any. Deeper entries were reported by earlier steps.
 std::optional<float> not_finite(const vm::TraceStep& step) {
   const glm::vec3 p = step.points.back();
   for (const float number : {step.values.empty() ? 0.0f : step.values.back(), p.x, p.y, p.z}) {
@@ -41,12 +41,12 @@ std::optional<float> not_finite(const vm::TraceStep& step) {
 }  // namespace
 
 double trace_work(const vm::VerifiedProgram& program) {
-  constexpr double kDispatch = 8;  // of an instruction, in multiply-adds
+  constexpr double kDispatch = 8;  // cost of dispatching an instruction, in multiply-adds
   const std::vector<std::uint32_t>& words = program.program().words;
   double prefix = 0, work = 0;
   for (std::size_t at = 0; at < words.size(); at += vm::instruction_length(words[at])) {
     const vm::OpcodeInfo& row = *vm::find_opcode(words[at] & 0xff);
-    double rounds = 1;  // of loops within the shape
+    double rounds = 1;  // iterations of loops within the shape
     for (int i = 0; row.form != vm::Form::Outline && i < row.immediates; ++i) {
       const std::size_t own = at + 1 + static_cast<std::size_t>(vm::leading_immediates(words[at]));
       if (vm::is_integer_immediate(row, i))
@@ -68,7 +68,7 @@ std::string trace_listing(const vm::VerifiedProgram& program, glm::dvec3 point) 
     at = end;
     return line;
   };
-  while (listing[at] != ' ') text += next_line();  // the head
+  while (listing[at] != ' ') text += next_line();  // the listing's head
   vm::trace(program, point, [&](const vm::TraceStep& step) {
     const std::string line = next_line();
     text += line + ";" + text_of("points", step.points) + text_of("values", step.values) + "\n";

@@ -9,12 +9,14 @@
 
 namespace fathom::cli {
 
-// What a trace takes, in multiply-adds: it grows with the square of the length. More than a second or two is refused.
+// Returns the cost of a trace in multiply-adds, which is quadratic in the program's length. `fathom dump` refuses
+// traces above kMostTraceWork, which takes a second or two.
 double trace_work(const vm::VerifiedProgram& program);
 inline constexpr double kMostTraceWork = 1e9;
 
-// `point` is in the program's coordinates. The stacks stand in comments, so the assembler reads the listing as ever.
-// It ends with the first instruction that left a NaN or an infinity, if one did.
+// Returns the listing with stacks at `point`, in the program's coordinates. The stacks are comments, so that the
+// assembler accepts the listing. The last line names the first instruction that produced a NaN or an infinity, if any
+// did.
 std::string trace_listing(const vm::VerifiedProgram& program, glm::dvec3 point);
 
 }  // namespace fathom::cli

@@ -28,7 +28,7 @@ std::string digest_of(const std::string& text) {
   return vm::digest({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}).text();
 }
 
-// Rows of the identity that are the scene's; all others are settings.
+// True if a row of the identity describes the scene. All other rows are settings.
 bool is_of_scene(const std::string& row) { return row == "scene" || row == "program" || row == "moments"; }
 
 std::string digest_of(const runtime::Identity& identity, bool scene, std::string text) {
@@ -38,7 +38,7 @@ std::string digest_of(const runtime::Identity& identity, bool scene, std::string
   return digest_of(text);
 }
 
-// What decides the files and is no sample's.
+// Returns the settings that affect the output files but are not part of the identity.
 std::string settings_beside(const runtime::FilmHeader& header, const RenderRequest& request) {
   std::string text = fmt::format("{}:{} bits {} denoise {}\n", header.samples.first, header.samples.last,
                                  request.bits, request.denoise);
@@ -56,7 +56,7 @@ std::string settings_beside(const runtime::FilmHeader& header, const RenderReque
   return text;
 }
 
-// Empty when one cannot be read.
+// Returns a digest of the files' contents, or "" if a file cannot be read.
 std::string digest_of_files(const std::vector<std::string>& files) {
   std::string digests;
   for (const std::string& file : files) {

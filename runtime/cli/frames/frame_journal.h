@@ -1,12 +1,13 @@
-// The journal of a sequence of frames: which are done, of which scene and settings, and a digest of their files. So a
-// run that goes on knows which to leave as they are. A text beside the pictures, a line for each frame:
+// The journal of a sequence of frames: for each completed frame, digests of its scene, its settings and its files. A
+// resumed run skips the frames that the journal lists. The journal is a text file next to the images with one line
+// per frame:
 //
 //     fathom frames 1
 //     37 SCENE SETTINGS FILES
 //
-// Digests are XXH3-128 in hexadecimal. The file is replaced as a whole with each frame, whose line is put among those
-// that are there by then: runs of other frames may write to it, too. Where two do so at once a line may be lost,
-// which costs a frame that is rendered again.
+// Digests are XXH3-128 in hexadecimal. Each completed frame re-reads the file, adds its line and replaces the file as
+// a whole, so runs of other frames may share the journal. If two runs do so at the same moment, a line may be lost,
+// and that frame is rendered again.
 //
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
@@ -29,17 +30,18 @@ class FrameJournal {
     bool operator==(const Entry&) const = default;
   };
 
-  // Beside the first output: "frames/hop.png" -> "frames/hop.frames".
+  // Returns the journal's path for the first output: "frames/hop.png" -> "frames/hop.frames".
   static std::string path_beside(const std::string& output);
 
   explicit FrameJournal(std::string path) : path_(std::move(path)) {}
 
-  // An ExitCode, after a message, when what is there is no journal.
+  // Reads the journal if it exists. Prints a message and returns an exit code if the file is not a journal.
   std::optional<ExitCode> read(const Streams& streams);
   bool empty() const { return entries_.empty(); }
-  // Whether the frame was done as `request`, of the frame, would do it, and its files are still what they were.
+  // True if the journal lists the frame with the scene and settings of `request`, and the frame's files are
+  // unchanged.
   bool has(int frame, const runtime::FilmHeader& header, const RenderRequest& request) const;
-  // The frame is done; the reason when that cannot be kept.
+  // Adds a completed frame. Returns the problem if the journal cannot be written.
   [[nodiscard]] std::optional<std::string> add(int frame, const runtime::FilmHeader& header,
                                                const RenderRequest& request);
 

@@ -1,4 +1,4 @@
-// The files that a render writes beside each other: pictures, maps of costs, counts and the checkpoint.
+// All files that a render writes: images, cost maps, statistics and the checkpoint.
 // Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
 
@@ -11,13 +11,14 @@
 
 namespace fathom::cli {
 
-// Those that the picture is in, with its layers and costs.
+// Returns the files of the finished image: the image, its layers and its cost maps.
 std::vector<std::string> finished_files(const RenderRequest& request);
 
-// Every file the run will write, but for streams.
+// Returns every file that the render will write, except streams.
 std::vector<std::string> output_files(const RenderRequest& request);
 
-// Whether every file could be written, as far as can be known before there is anything to write.
+// Checks in advance, as far as possible, that every file can be written. Otherwise prints a message and returns an
+// exit code.
 std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams);
 
 }  // namespace fathom::cli

@@ -1,4 +1,4 @@
-// The frames of a scene that moves: those that --frames asks for, their times, and the scene's arguments for each.
+// The frames of an animated scene: the requested range, their times, and the scene's arguments for each frame.
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
 
@@ -11,20 +11,21 @@
 
 namespace fathom::cli {
 
-// The frames of a scene that moves.
+// The requested frames of an animated scene.
 struct Sequence {
   compiler::Animation animation;
   FrameRange frames;
   double fps;
 
   double time_of(int frame) const { return frame / fps; }  // seconds
-  // The scene's arguments for the frame.
+  // Returns `arguments` with the definitions for the frame's time and number.
   SceneArguments at(const SceneArguments& arguments, int frame) const;
   std::string describe(int frame) const;  // "frame 37 (1.542 s)"
 };
 
-// Those asked for, or the exit code after a message when the scene does not move, does not say how many frames there
-// are, or is given its time on the command line, too. The input has what the scene imports, then.
+// Returns the requested frames. Prints a message and returns an exit code if the scene is not animated, if --frames
+// all is given and the scene declares no number of frames, or if the command line also defines the time. Also loads
+// the scene's imports into `input`.
 std::variant<Sequence, ExitCode> sequence_of(const FrameOptions& options, SceneInput& input,
                                              const SceneArguments& arguments, const Streams& streams);
 

@@ -50,7 +50,7 @@ class FrameRun {
     return limit ? std::optional(*limit - seconds()) : std::nullopt;
   }
 
-  // The request for one of the frames.
+  // Returns the render request for one frame.
   RenderRequest request_of(int index) const {
     const int frame = sequence_.frames.at(index);
     RenderRequest request = request_;
@@ -70,7 +70,7 @@ class FrameRun {
     return request;
   }
 
-  // What can be known before the first frame is compiled.
+  // Checks everything that can be checked before the first frame is compiled.
   std::optional<ExitCode> check() {
     std::vector<std::string> files = {journal_path_};
     for (int index = 0; index < sequence_.frames.count(); ++index) {
@@ -125,7 +125,7 @@ class FrameRun {
                              done() == 1 ? "is" : "are")});
   }
 
-  // Before the frame of this index was done.
+  // Reports that the sequence ended before the frame `index` was completed.
   ExitCode stop(int index, std::string_view why, ExitCode code) const {
     note(streams_, fmt::format("{} at frame {}: {} of {} are done; --resume goes on", why, sequence_.frames.at(index),
                                done(), count_of(static_cast<std::size_t>(sequence_.frames.count()), "frame")));

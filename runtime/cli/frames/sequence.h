@@ -1,5 +1,5 @@
-// `fathom render --frames`: a picture for each frame, one after the other, in files that have its number in their
-// names; and a journal of them, by which a run that was ended goes on.
+// `fathom render --frames`: renders one image per frame in sequence, with the frame's number in the file names, and
+// keeps a journal from which an interrupted run resumes.
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp, scripts/frames-test
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace fathom::cli {
 
-// All frames that the request asks for.
+// Renders all requested frames.
 ExitCode render_frames(const RenderRequest& request, const Streams& streams,
                        std::optional<Interruption>& interruption);
 

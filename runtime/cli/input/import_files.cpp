@@ -21,7 +21,7 @@ bool is_below(const fs::path& path, const fs::path& root) {
 
 compiler::ImportReader import_reader(const SceneArguments& arguments, const Streams& streams) {
   using Read = std::variant<std::string, compiler::ImportFault>;
-  // Standard input lies in the folder we are in.
+  // Imports of a scene from standard input are relative to the current folder.
   const fs::path folder = arguments.path == "-" ? "." : "." / fs::path(arguments.path).parent_path();
   return [=, root = arguments.root, limits = arguments.limits, on_import = arguments.on_import,
           &streams](const std::string& path) -> Read {

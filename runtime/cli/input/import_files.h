@@ -1,4 +1,4 @@
-// The files that a scene imports, as they are read from its folder.
+// Reads the files that a scene imports.
 // Tested by: tests/runtime/cli/input/cli_imports_test.cpp
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace fathom::cli {
 
-// Reads what lies below `--root`, which is the scene's folder where it is not given, links followed.
+// Returns a reader for files below `--root`, by default the scene's folder. Links are resolved before the check.
 compiler::ImportReader import_reader(const SceneArguments& arguments, const Streams& streams);
 
 }  // namespace fathom::cli

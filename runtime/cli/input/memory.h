@@ -1,4 +1,4 @@
-// The limit of memory: the bytes that a verb may take, and those that pictures and their denoising take.
+// The limit of memory: the bytes that a verb may use, and the bytes needed for images and for denoising.
 // Tested by: tests/runtime/cli/input/cli_limits_test.cpp
 #pragma once
 
@@ -9,15 +9,15 @@
 
 namespace fathom::cli {
 
-// Bytes: what the limit says, or three quarters of the machine's memory.
+// Returns the limit of memory in bytes, by default three quarters of the machine's memory.
 double allowed_memory(const compiler::Limits& limits);
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 
-// Bytes a pixel: of the picture that is written, three floats and what is encoded of them; of the denoiser's work.
+// Bytes per pixel: of the image being written (three floats and their encoded form), and of the denoiser's work.
 inline constexpr double kPictureBytes = 24, kDenoiserBytes = 128;
 
-// Bytes as "12 MiB".
+// Formats bytes as "12 MiB".
 std::string in_words(double bytes);
 
 }  // namespace fathom::cli

@@ -12,7 +12,7 @@
 namespace fathom::cli {
 namespace {
 
-// "r=0.5" or "angle=pi/4".
+// Reads a definition: "r=0.5" or "angle=pi/4".
 Verdict read_definition(std::string_view text, std::pair<std::string, double>& definition) {
   const std::size_t middle = text.find('=');
   if (middle == std::string_view::npos || middle == 0) {
@@ -29,7 +29,7 @@ Verdict read_definition(std::string_view text, std::pair<std::string, double>& d
   return std::nullopt;
 }
 
-// "nodes=2000000"; a formula will do.
+// Reads a limit, "nodes=2000000". The value may be a formula.
 Verdict read_limit(std::string_view text, compiler::Limits& limits) {
   std::pair<std::string, double> given;
   if (Verdict verdict = read_definition(text, given)) {

@@ -21,7 +21,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// Whatever it is, with its name for messages.
+// Reads a scene file of any kind. The Source carries the file's name for messages.
 std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
   const std::string& path = arguments.path;
   auto text = read_text(path, arguments.limits, streams);
@@ -33,21 +33,22 @@ std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& argument
   return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
 }
 
-// Of which the folder counts: of standard input the one we are in.
+// Returns a path whose folder locates the scene's other files. For standard input that is the current folder.
 std::string folder_name(const std::string& path) { return path == "-" ? "" : path; }
 
-// Of a name the last counts.
+// Concatenates definitions. A later definition of the same name overrides an earlier one.
 compiler::Definitions both(compiler::Definitions first, const compiler::Definitions& then) {
   first.insert(first.end(), then.begin(), then.end());
   return first;
 }
 
-// Whether more is asked for than what is compiled in the end. (on_pass alone is for who likes to watch.)
+// True if the options ask for intermediate results of the compilation. on_pass does not count, because it only
+// observes.
 bool asks_for_graph(const compiler::CompileOptions& options) {
   return options.stop_after || options.on_syntax || options.lint;
 }
 
-// Stored programs as they are to be run, unless they are too much.
+// Prepares stored programs for execution without proofs, unless they exceed the limits.
 std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::CompiledScene stored,
                                                               const SceneArguments& arguments,
                                                               const Streams& streams) {
@@ -66,7 +67,7 @@ ExitCode fail_without_text(const SceneArguments& arguments, const Streams& strea
               {kKeepText});
 }
 
-// Of a file without the scene's text.
+// Handles a compiled file without the scene's text.
 std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
                                                             const SceneArguments& arguments, const Streams& streams,
                                                             const compiler::CompileOptions& options) {
@@ -82,7 +83,7 @@ std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScen
   return within_limits(std::move(stored.scene), arguments, streams);
 }
 
-// The source as messages are to name it: the text in a compiled file by both their names.
+// Renames the source for messages: text from a compiled file gets the names of both files.
 compiler::Source named(const compiler::Source& source, const std::string& path) {
   const std::string name = source_name(path);
   if (path.empty() || source.name() == name) return source;
@@ -101,7 +102,7 @@ void print(const compiler::Diagnostics& diagnostics, const compiler::Source& sou
   streams.err << vm::printable(source.name()) << ": " << fmt::format("{}", fmt::join(counts, ", ")) << '\n';
 }
 
-// Whether anything is wrong with the command line's values for parameters (E05xx).
+// True if one of the errors concerns the command line's values for parameters (E05xx).
 bool about_definitions(const compiler::Diagnostics& diagnostics) {
   const auto& all = diagnostics.all();
   return std::any_of(all.begin(), all.end(), [](const auto& d) { return d.code.starts_with("E05"); });
@@ -148,7 +149,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   options.limits = arguments.limits;
   options.limits.memory = allowed_memory(arguments.limits);
-  // A file of compiled programs is what it is.
+  // A compiled file is rendered as is: its model is not put on a stage with ground and lamp.
   if (input.stored) options.stage = false;
   Verbosity verbosity(streams.verbosity, streams);
   if (const auto watch = verbosity.watch_compiler().on_pass) {
@@ -190,7 +191,7 @@ std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, co
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   const auto animation = compiler::read_animation(input.source, diagnostics, arguments.limits, definitions,
                                                   import_reader(arguments, streams));
-  if (animation) return *animation;  // warnings are for who compiles it
+  if (animation) return *animation;  // compile_scene() reports the warnings later
   print(diagnostics, named(input.source, arguments.path), arguments, streams);
   return about_definitions(diagnostics) ? kUsage : kBadScene;
 }

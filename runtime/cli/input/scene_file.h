@@ -1,4 +1,4 @@
-// The scene every verb starts from: reading its file, compiling it, printing what is wrong with it.
+// Reads a scene's file, compiles it, and prints its errors and warnings: the first step of every verb with a scene.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
@@ -13,36 +13,38 @@
 
 namespace fathom::cli {
 
-// A scene as a file has it.
+// A scene as read from its file.
 struct SceneInput {
-  compiler::Source source;                      // its text; empty when a file of compiled programs came without
-  std::optional<compiler::StoredScene> stored;  // of such a file
+  compiler::Source source;                      // the text; empty for a compiled file without text
+  std::optional<compiler::StoredScene> stored;  // set for a compiled file
 };
 
-// The scene's text and programs, or the exit code after a message.
+// Returns the scene's text and programs, or the exit code after a message.
 std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, const Streams& streams);
 
-// The text alone, also of a compiled file whose programs are for another machine.
+// The scene's text only, also from a compiled file whose programs are for another machine.
 struct SceneText {
   compiler::Source source;
-  bool compiled = false;  // it came in such a file
+  bool compiled = false;  // the text comes from a compiled file
 };
-// What the file was compiled with comes before the command line's definitions.
+// Reads the text. Definitions stored in a compiled file are inserted before the command line's.
 std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams);
 
-// Compiles and prints the diagnostics, warnings too. When there were errors, kBadScene, or kUsage for values that the
-// scene's parameters cannot have. The programs of a compiled file that are not those of its text, or came without,
-// are taken as they are, unproved and with a warning, unless `options` ask for what lies between text and programs.
+// Compiles the scene and prints all errors and warnings. After errors, returns kBadScene, or kUsage if they concern
+// the command line's values for parameters. If a compiled file has no text, or programs that differ from those of its
+// text, then its programs are used as they are, without proofs and with a note. This fallback does not apply if
+// `options` ask for intermediate results of the compilation.
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options = {});
 
-// What the scene says of its animation, or the exit code after a message. The input has what the scene imports, then,
-// so that all its frames are of the same files.
+// Reads the scene's animation, or returns the exit code after a message. Also loads the scene's imports into `input`,
+// so that all frames use the same files.
 std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
                                                            const Streams& streams);
 
-// A stored scene as its file has it, places and names of instructions too, but with proofs or without, as they are.
+// Returns a stored scene as in its file, including source locations and instruction names. Stored proofs are kept if
+// compiling the text gives the same programs, and otherwise dropped.
 compiler::CompiledScene proved_or_claimed(const SceneInput& input);
 
 }  // namespace fathom::cli

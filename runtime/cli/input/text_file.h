@@ -1,4 +1,4 @@
-// Texts as verbs read them: of a file or of standard input, as far as the limit says, and their names for messages.
+// Reads texts from files or standard input up to the limit of size, and names them in messages.
 // Tested by: tests/runtime/cli/input/cli_files_test.cpp, tests/runtime/cli/input/cli_limits_test.cpp
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace fathom::cli {
 
-// The text of a file, or of standard input for "-"; otherwise the reason, for people. No more than the limit
-// `file-size` is read, whatever the file.
+// Returns the text of a file, or of standard input for "-", or the reason why it cannot be read. Reads no more than
+// the limit `file-size`, whatever the kind of file.
 struct Unreadable {
   std::string reason;
   std::string help = "";
@@ -21,7 +21,7 @@ std::variant<std::string, Unreadable> read_text(const std::string& path, const c
                                                 const Streams& streams);
 ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable);
 
-// The file's name for messages: in a sentence, and before the number of a line.
+// Name of the file for messages: quoted() within a sentence, source_name() before a line number.
 std::string quoted(const std::string& path);
 std::string source_name(const std::string& path);
 

@@ -15,7 +15,8 @@
 namespace fathom::cli {
 namespace {
 
-// Nodes the root reaches; the graph may hold more, which passes left behind. Children have smaller numbers.
+// Counts the nodes reachable from the root, because passes leave unreachable nodes in the graph. Children have
+// smaller ids than their parents.
 std::size_t count_nodes(const compiler::Scene& scene) {
   std::vector<bool> reached(scene.root + 1);
   reached[scene.root] = true;

@@ -1,4 +1,4 @@
-// What `fathom render -v` to `-vvvvvv` tell, and of other verbs the first two, each level beside those below it:
+// Output of `fathom render -v` to `-vvvvvv`, and of other verbs up to `-vv`. Each level includes the lower levels:
 //
 //     1  what the scene compiled to and in what time; camera  4  materials, surfaces
 //     2  the compiler's passes and the size after each        5  how often each operation occurs
@@ -19,9 +19,9 @@ class Verbosity {
  public:
   Verbosity(int level, const Streams& streams) : level_(level), streams_(streams) {}
 
-  // Options for compile() that report the passes; starts the clock.
+  // Returns options for compile() that report each pass. Starts the clock.
   compiler::CompileOptions watch_compiler();
-  void describe(const compiler::CompiledScene& scene) const;  // the first level
+  void describe(const compiler::CompiledScene& scene) const;  // level 1
   void describe(const compiler::CompiledScene& scene, const runtime::Settings& settings) const;
 
  private:

@@ -18,7 +18,7 @@ std::string longest_name(const CLI::Option& option) {
   return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().back();
 }
 
-// What CLI11 says, in our words; it knows the option's name only as the start of its message.
+// Rewords a message of CLI11, which mentions the option's name only at its start.
 std::string explain(const CLI::ParseError& error) {
   const std::string what = error.what();
   const std::string name = what.substr(0, what.find_first_of(": "));
@@ -73,7 +73,7 @@ void Arguments::option(const std::string& names, const std::string& value, const
   option.option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
 }
 
-// What a verb does not declare itself, so that every verb knows -q, and every verb with a scene -v.
+// Adds the common options that the verb does not declare itself: -q for every verb, -v for every verb with a scene.
 void Arguments::add_common(const Streams& streams) {
   group("Options");
   if (app_->get_option_no_throw("--quiet") == nullptr) {
@@ -91,7 +91,8 @@ std::optional<int> Arguments::parse(std::span<const std::string> args, const Str
     return kDone;
   }
   try {
-    app_->parse(std::vector<std::string>(args.rbegin(), args.rend()));  // CLI11 wants the last argument first
+    // CLI11 expects the arguments in reverse order.
+    app_->parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::CallForHelp&) {
     streams.out << help_text(table_, streams.columns);
     return kDone;

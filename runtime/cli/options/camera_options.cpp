@@ -14,14 +14,15 @@ using compiler::Camera;
 
 std::string point(glm::dvec3 p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); }
 
-// As few digits as say the angle again after it was radians.
+// Formats an angle with 15 digits, few enough to drop the rounding error of the conversion to radians and back.
 std::string degrees(double radians) { return fmt::format("{:.15g}", radians / compiler::kDegree); }
 
 bool along(glm::dvec3 a, glm::dvec3 b) {
   return !(glm::length(glm::cross(glm::normalize(a), glm::normalize(b))) > 1e-6);
 }
 
-// Of a view from straight above -z is up in the picture, as on a map and in a slice.
+// Checks the view direction. If the view is parallel to the camera's up vector, as from straight above, -z becomes up
+// in the image, as on a map and in a slice.
 std::optional<ExitCode> check_view(compiler::CompiledScene& scene, const Streams& streams) {
   Camera& camera = scene.camera;
   const glm::dvec3 view = camera.target - camera.position;

@@ -1,4 +1,4 @@
-// --position, --look-at and --frame: where a picture is taken from, said on the command line.
+// The command line's camera: --position, --look-at and --frame.
 // Tested by: tests/runtime/cli/options/cli_camera_test.cpp
 #pragma once
 
@@ -14,18 +14,19 @@
 namespace fathom::cli {
 
 struct CameraOptions {
-  std::optional<glm::dvec3> position, look_at;  // in the scene's coordinates
+  std::optional<glm::dvec3> position, look_at;  // in scene coordinates
   bool frame = false;
 };
 
 void add_camera_options(Arguments& arguments, CameraOptions& options);
 
-// Places the scene's camera for its film, whose size is settled, and for its field of view. A camera that the scene
-// does not have frames the scene; then come the options. An ExitCode after a message where they make no camera.
+// Places the scene's camera for its film, whose size must be settled, and for its field of view. If the scene has no
+// camera, a default camera first frames the whole scene. The options then override the camera. Prints a message and
+// returns an exit code if the options make no valid camera.
 std::optional<ExitCode> place_camera(const CameraOptions& options, compiler::CompiledScene& scene,
                                      const Streams& streams);
 
-// The camera as a scene file has it, in the scene's coordinates: `"camera": {"position": [0, 1, 4], ...}`.
+// Returns the camera as in a scene file, in scene coordinates: `"camera": {"position": [0, 1, 4], ...}`.
 std::string camera_text(const compiler::CompiledScene& scene);
 
 }  // namespace fathom::cli

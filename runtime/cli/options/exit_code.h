@@ -1,5 +1,5 @@
-// What the program's exit status means: the one list, printed by `fathom --help`. The codes above 2 are those of
-// sysexits.h, so that a script can tell what to do next.
+// The program's exit codes and their meanings, the only list of them, printed by `fathom --help`. Codes above 2
+// follow sysexits.h, so that scripts can tell what to do next.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 

@@ -35,7 +35,7 @@ Verdict read_frames(std::string_view text, FrameOptions& options) {
   return std::nullopt;
 }
 
-// "24", "23.976" or "30000/1001".
+// Reads frames per second: "24", "23.976" or "30000/1001".
 Verdict read_fps(std::string_view text, double& fps) {
   const std::size_t over = text.find('/');
   const std::optional<double> number = to_number(text.substr(0, over));
@@ -76,7 +76,7 @@ void add_motion_options(Arguments& arguments, FrameOptions& options) {
 }
 
 std::string numbered(const std::string& path, int frame) {
-  const std::size_t name = path.rfind('/') + 1;  // 0 where there is none
+  const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
   std::size_t begin = path.rfind('#');
   if (begin != path.npos && begin >= name) {
     const std::size_t end = begin + 1;

@@ -1,5 +1,4 @@
-// The options that say which moments of a scene that moves are rendered, --frames, --fps and what goes with them;
-// and the names of the files of frames.
+// The options for animated scenes, such as --frames and --fps, and the names of the frames' files.
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
 
@@ -10,7 +9,7 @@
 
 namespace fathom::cli {
 
-// Frames first, first + step, ... before `last`.
+// Frames first, first + step, ..., all less than `last`.
 struct FrameRange {
   int first = 0, last = 1, step = 1;
 
@@ -19,7 +18,7 @@ struct FrameRange {
 };
 
 struct FrameOptions {
-  bool all = false;  // that the scene says there are
+  bool all = false;  // --frames all: as many as the scene declares
   std::optional<FrameRange> range;
   std::optional<double> fps;
   bool fixed_noise = false;
@@ -28,16 +27,15 @@ struct FrameOptions {
   bool given() const { return all || range; }
 };
 
-// --frames alone.
+// Adds --frames only.
 void add_frames_option(Arguments& arguments, const std::string& doc, FrameOptions& options);
-// --frames and --fps.
+// Adds --frames and --fps.
 void add_frame_options(Arguments& arguments, FrameOptions& options);
-// Those of a render, in a group of their own.
+// Adds the motion options of `fathom render`, in a group of their own.
 void add_motion_options(Arguments& arguments, FrameOptions& options);
 
-// The name of a frame's file: the frame's number takes the place of the row of # in the name, of which each is a
-// digit and there are more where the number needs them; without any it comes before the ending, in four digits. Of a
-// folder, "dir/", the number is the name.
+// Returns the file name of a frame. The frame's number replaces the last run of # in the name, padded to one digit
+// per #. A name without # gets four digits before its ending. In a folder, "dir/", the number is the name.
 //
 //     "out.png", 7 -> "out-0007.png"      "shot.##.exr", 7 -> "shot.07.exr"      "dir/", 7 -> "dir/0007"
 std::string numbered(const std::string& path, int frame);

@@ -1,4 +1,5 @@
-// Messages that wait until it is known whether they are news: of frame after frame the same warnings are said once.
+// Buffers messages until the caller knows that they are new, so that the same warnings of many frames are printed
+// once.
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
 
@@ -17,10 +18,10 @@ class HeldMessages {
                                    streams.color, streams.out_terminal, streams.columns, streams.options,
                                    streams.quiet, streams.verbosity} {}
 
-  const Streams& streams() const { return streams_; }  // to be written to
+  const Streams& streams() const { return streams_; }  // the streams whose messages are held
 
   void release() { to_ << text_.str(); }
-  // Unless they are `last`, which they become.
+  // Prints the messages unless they equal `last`, and stores them in `last`.
   void release_news(std::string& last) {
     if (text_.str() != last) release();
     last = text_.str();

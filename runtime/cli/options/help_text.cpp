@@ -13,11 +13,11 @@ namespace fathom::cli {
 namespace {
 
 constexpr int kLeastColumns = 40, kUsualColumns = 80, kMostColumns = 120;
-constexpr int kDocColumn = 30;    // where the text of an option begins
-constexpr int kLeastDoc = 30;     // less room than that for it, and it begins on a line of its own
-constexpr int kNarrowIndent = 6;  // there
+constexpr int kDocColumn = 30;    // column at which an option's description begins
+constexpr int kLeastDoc = 30;     // with fewer columns for it, the description gets lines of its own
+constexpr int kNarrowIndent = 6;  // indentation of such a description
 
-// In code points.
+// Returns the width in code points.
 int width_of(std::string_view text) {
   return static_cast<int>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -34,7 +34,8 @@ std::string usage(const OptionTable& table) {
   return line;
 }
 
-// "command   # comment". Where that is too long, the comment goes before the command, whose lines a shell can join.
+// Formats an example line, "command   # comment". In a line that is too long, the comment goes above the command, and
+// the command is split into lines that a shell joins.
 std::string example(std::string_view line, int columns) {
   constexpr int kIndent = 2;
   if (kIndent + width_of(line) <= columns) return blanks(kIndent) + std::string(line) + '\n';

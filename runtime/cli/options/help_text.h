@@ -1,4 +1,4 @@
-// Help for people, wrapped to a terminal's width.
+// Help texts for people, wrapped to the terminal's width.
 // Tested by: tests/runtime/cli/options/cli_help_test.cpp
 #pragma once
 
@@ -10,21 +10,21 @@
 
 namespace fathom::cli {
 
-// The width of the terminal that standard output is, or what the variable COLUMNS says, from 40 to 120; 80 when
-// neither says.
+// Returns the variable COLUMNS, or else the width of the terminal on standard output, or else 80, clamped to 40 to
+// 120.
 int terminal_columns();
 
-// The text broken at blanks into lines of `width` characters. A longer word has a line of its own.
+// Breaks the text at blanks into lines of at most `width` characters. A longer word gets a line of its own.
 std::vector<std::string> wrap(std::string_view text, int width);
 
-// The text in lines that are indented by `indent`.
+// Wraps the text into lines indented by `indent`.
 std::string paragraph(std::string_view text, int indent, int columns);
 
-// `name` and, from column `indent` on, `doc`. A name that is too long has lines of its own, and so has every name
-// where little room is left for `doc`.
+// Formats `name` and, from column `indent` on, `doc`. If `name` is too long, or if too few columns are left for
+// `doc`, each of the two has lines of its own.
 std::string hanging(std::string_view name, std::string_view doc, int indent, int columns);
 
-// The help of a verb.
+// Returns the help of a verb.
 std::string help_text(const OptionTable& table, int columns);
 
 }  // namespace fathom::cli

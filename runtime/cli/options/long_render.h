@@ -1,4 +1,4 @@
-// The options of `fathom render` for renders that take long or are done in parts.
+// The options of `fathom render` for long renders and for renders of parts.
 // Tested by: tests/runtime/cli/picture/cli_checkpoint_test.cpp, tests/runtime/cli/cli_merge_test.cpp
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace fathom::cli {
 
-// The ending of a checkpoint's name where --checkpoint does not say it.
+// Ending of a checkpoint's default name.
 inline constexpr const char* kCheckpointEnding = ".checkpoint";
 
 struct LongRender {
@@ -24,11 +24,12 @@ struct LongRender {
   std::optional<runtime::SampleRange> sample_range;
 };
 
-// --checkpoint-interval alone.
+// Adds --checkpoint-interval only.
 void add_interval_option(Arguments& arguments, LongRender& request);
 void add_long_render_options(Arguments& arguments, LongRender& request);
 
-// Puts them into the options, over the scene's settings. An ExitCode, after a message, when they do not go together.
+// Merges the options into the render options, overriding the scene's settings. Prints a message and returns an exit
+// code if they conflict.
 std::optional<ExitCode> apply(const LongRender& request, const compiler::CompiledScene& scene,
                               runtime::RenderOptions& options, const Streams& streams);
 

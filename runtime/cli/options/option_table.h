@@ -1,4 +1,4 @@
-// The options of a verb as data. The help, the completion scripts and the manual page are made of it.
+// A verb's options as data, from which the help, the completion scripts and the manual page are generated.
 #pragma once
 
 #include <string>
@@ -8,25 +8,26 @@
 namespace fathom::cli {
 
 struct OptionRow {
-  std::string names;  // "-o,--output"; of a positional argument its name
-  std::string value;  // what stands for the value in the help: "FILE"; empty for a flag
+  std::string names;  // "-o,--output"; a positional argument's name
+  std::string value;  // placeholder of the value in the help, "FILE"; empty for a flag
   std::string doc;
-  std::string group;               // the heading it stands under
-  std::vector<std::string> words;  // the only values it takes; empty: others, too
-  bool required = true;            // of a positional argument
-  bool repeated = false;           // of a positional argument: one or more
+  std::string group;               // heading above the option
+  std::vector<std::string> words;  // the valid values; empty: not restricted to a list
+  bool required = true;            // positional arguments only
+  bool repeated = false;           // positional arguments only: accepts several values
 };
 
 struct OptionTable {
   std::string verb, description;
-  std::string examples;  // a line each: "command   # comment"; after an empty line paragraphs of prose
+  // One line per example, "command   # comment". After an empty line: paragraphs of prose.
+  std::string examples;
   std::vector<OptionRow> positionals, options;
 };
 
-// "-o,--output" as "-o" and "--output".
+// Splits the names: "-o,--output" into "-o" and "--output".
 std::vector<std::string> names_of(const OptionRow& option);
 
-// Whether the value is the name of a file, or of a folder.
+// True if the value names a file or a folder.
 bool takes_file(const OptionRow& option);
 
 }  // namespace fathom::cli

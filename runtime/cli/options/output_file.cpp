@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kFilmEnding = ".film";
 
-// One name for a file however it is written, whether it exists or not.
+// Returns one canonical name per file, however its path is spelled and whether or not the file exists.
 std::filesystem::path canonical_name(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
@@ -66,7 +66,7 @@ std::string_view ending_of(const Output& output) {
 }
 
 void add_format_option(Arguments& arguments, bool shown_only, int& format) {
-  std::vector<std::string_view> names;  // those that are shown come first
+  std::vector<std::string_view> names;  // displayable formats come first
   for (const runtime::ImageFormatInfo& known : runtime::kImageFormats) {
     if (known.shown || !shown_only) names.push_back(known.ending);
   }

@@ -1,5 +1,5 @@
-// Where a verb reads and writes: `out` is for data, `err` for people. Also the form of every message that is not
-// about a place in a scene file:
+// A verb's input and output streams: `out` is for data, `err` for people. Also prints all messages that are not about
+// a place in a scene file, in this form:
 //
 //     error: unknown option `--sppp`
 //       = help: did you mean `--spp`?
@@ -23,31 +23,31 @@ struct Streams {
   std::istream& in;
   std::ostream& out;
   std::ostream& err;
-  bool terminal = false;           // a person watches `err`: progress may redraw its line
+  bool terminal = false;           // `err` is a terminal: progress may redraw its line
   bool color = false;              // `err` understands colours and NO_COLOR does not forbid them
-  bool out_terminal = false;       // `out` is a terminal, which shows no pictures
-  int columns = 80;                // of the terminal that help is printed on
-  OptionTable* options = nullptr;  // when set, a verb puts its options there and does nothing else
-  // What every verb knows, set by Arguments: -q, and how often -v was given to a verb that has no -v of its own.
+  bool out_terminal = false;       // `out` is a terminal, which cannot show images
+  int columns = 80;                // width for wrapped help
+  OptionTable* options = nullptr;  // when set, a verb stores its options there and does nothing else
+  // Options common to all verbs, set by Arguments: -q, and the count of -v for verbs without a -v of their own.
   mutable bool quiet = false;
   mutable int verbosity = 0;
 };
 
-using Help = std::vector<std::string>;  // each a line after "= help:"
+using Help = std::vector<std::string>;  // each string is one "= help:" line
 
 // Prints the message and returns `code`, so that a verb can end with `return fail(...)`.
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help = {});
 
-// Text to standard output, in which names of scenes may be: controls of a terminal as \u0085, what is no UTF-8 as
-// U+FFFD. JSON keeps its meaning.
+// Prints text that may contain names from scenes to standard output. Terminal control characters become escapes such
+// as \u0085, and invalid UTF-8 becomes U+FFFD. JSON keeps its meaning.
 void print(const Streams& streams, std::string_view text);
 
-// A line about what was done, not printed with -q.
+// Prints a line about completed work, unless -q is given.
 void say(const Streams& streams, std::string_view message);
 void note(const Streams& streams, std::string_view message);
 void warn(const Streams& streams, std::string_view message);
 
-// "1 error", "2 errors".
+// Formats a count: "1 error", "2 errors".
 std::string count_of(std::size_t count, std::string_view noun);
 
 }  // namespace fathom::cli

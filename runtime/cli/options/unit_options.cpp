@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMostUnit = std::int64_t{1} << 40;
 
-// The variables in which queues give the number of a task, and the number of their first.
+// Environment variables in which queues pass a task's number, and the number of the first task.
 struct QueueVariable {
   const char* name;
   int first;
@@ -44,7 +44,7 @@ Verdict read_unit(std::string_view text, UnitOptions& options) {
   return std::nullopt;
 }
 
-// The number of the task, from 0, in the first variable that is set.
+// Returns the task's number, counted from 0, from the first variable that is set.
 std::variant<std::uint64_t, ExitCode> queue_number(const Streams& streams) {
   for (const QueueVariable& row : kQueueVariables) {
     const char* text = std::getenv(row.name);
@@ -59,7 +59,7 @@ std::variant<std::uint64_t, ExitCode> queue_number(const Streams& streams) {
 }
 
 constexpr std::array<std::string_view, 4> kUnitNames = {"--plan", "--unit", "--units", "--per-task"};
-// What may be said beside them: how the work is done.
+// Options allowed together with kUnitNames, because they only affect how the work is done.
 constexpr std::array<std::string_view, 7> kRunning = {
     "--threads", "--limit", "--quiet", "--verbose", "--profile", "--checkpoint-interval", "--error-format"};
 
@@ -117,7 +117,7 @@ std::variant<std::vector<UnitRange>, ExitCode> units_of(const UnitOptions& optio
     }
     const std::uint64_t each = options.per_task.value_or(1);
     ranges.push_back({number * each, number * each + each});
-    // The last task may have fewer.
+    // The last task may have fewer units.
     if (ranges.back().first < count) ranges.back().last = std::min(ranges.back().last, count);
   }
   for (const UnitRange& range : ranges) {

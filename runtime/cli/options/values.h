@@ -1,7 +1,7 @@
-// Values of flags: text to numbers, sizes, angles and points, with a message that says what would be right.
+// Readers of option values: numbers, sizes, angles and points from text, with messages that explain the valid form.
 //
-// Every reader stores into its last argument and returns nullopt, or leaves it alone and returns what is wrong. A
-// Setter is a reader with its target bound, ready for Arguments::option.
+// Every reader stores into its last argument and returns nullopt, or leaves the argument unchanged and returns the
+// problem. A Setter is a reader bound to its target, ready for Arguments::option.
 // Tested by: tests/runtime/cli/cli_test.cpp
 #pragma once
 
@@ -32,7 +32,8 @@ class Setter {
       : set_(std::move(set)), words_(std::move(words)) {}
 
   Verdict operator()(std::string_view text) const { return set_(text); }
-  const std::vector<std::string>& words() const { return words_; }  // the only texts it takes; empty: others, too
+  // The valid values. Empty: not restricted to a list.
+  const std::vector<std::string>& words() const { return words_; }
 
  private:
   std::function<Verdict(std::string_view text)> set_;
@@ -49,7 +50,7 @@ struct Rectangle {
   glm::dvec2 lo, hi;
 };
 
-// A rectangle of a picture, half open; each side in pixels or in hundredths of the picture's width or height.
+// A half-open rectangle of the image, each side in pixels or in percent of the image's width or height.
 struct CropSides {
   struct Side {
     double value = 0;
@@ -58,38 +59,38 @@ struct CropSides {
   Side x0, y0, x1, y1;
 };
 
-// The whole text as a finite number, in decimal or scientific notation.
+// Parses the whole text as a finite number, in decimal or scientific notation.
 std::optional<double> to_number(std::string_view text);
 
-// `count` numbers between separators: commas, or blanks when `blanks`. nullopt when that is not what the text is.
+// Parses exactly `count` numbers separated by commas, or by blanks if `blanks`. Returns nullopt for any other text.
 std::optional<std::vector<double>> to_numbers(std::string_view text, std::size_t count, bool blanks);
 
-// "16:9", "4x3", "2.35:1" to width over height.
+// Reads width over height from "16:9", "4x3" or "2.35:1".
 Verdict read_aspect(std::string_view text, double& aspect);
 
-// "0.785", "0.785rad" or "45deg" to radians in (0, pi). A bare number above pi was surely meant in degrees: an error
-// that says how to write that.
+// Reads an angle in (0, pi) radians from "0.785", "0.785rad" or "45deg". A bare number above pi is surely meant in
+// degrees, so the error explains how to write degrees.
 Verdict read_angle(std::string_view text, double& radians);
 
-// "1920x1080".
+// Reads "1920x1080".
 Verdict read_size(std::string_view text, PixelSize& size);
 
-// "1,2,3".
+// Reads "1,2,3".
 Verdict read_point(std::string_view text, glm::dvec3& point);
 
-// "x0,y0,z0,x1,y1,z1", two opposite corners with the smaller coordinates first.
+// Reads two opposite corners, "x0,y0,z0,x1,y1,z1", the smaller coordinates first.
 Verdict read_box(std::string_view text, PointBox& box);
 
-// "x0,y0,x1,y1", two opposite corners with the smaller coordinates first, the corners apart in both.
+// Reads two opposite corners, "x0,y0,x1,y1", the smaller coordinates first. The corners differ in both coordinates.
 Verdict read_rectangle(std::string_view text, Rectangle& rectangle);
 
-// "0,0,640,360", "25%,25%,75%,75%": whole pixels or percent, two opposite corners.
+// Reads two opposite corners in whole pixels or percent: "0,0,640,360", "25%,25%,75%,75%".
 Verdict read_crop(std::string_view text, CropSides& crop);
 
-// "90", "90s", "10m", "1.5h" to seconds, more than 0.
+// Reads a positive duration in seconds from "90", "90s", "10m" or "1.5h".
 Verdict read_duration(std::string_view text, double& seconds);
 
-// Stops within -100 and 100.
+// Reads an exposure in stops, from -100 to 100.
 Verdict read_exposure(std::string_view text, double& stops);
 
 Verdict read_finite(std::string_view text, double& number);
@@ -97,10 +98,10 @@ Verdict read_positive(std::string_view text, double& number);
 Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
 Verdict read_seed(std::string_view text, std::uint64_t& seed);
 
-// A whole number in [lo, hi] for `target`.
+// Makes a Setter for a whole number in [lo, hi].
 Setter whole(std::optional<int>& target, int lo, int hi = std::numeric_limits<int>::max());
 
-// One of `words`, stored as its index; anything else is an error that lists them.
+// Makes a Setter that stores the index of a word in `words`. Any other text is an error that lists the words.
 Setter one_of(std::vector<std::string_view> words, int& target);
 
 Setter any_text(std::optional<std::string>& target);

@@ -1,4 +1,4 @@
-// The program's version: that of project() in CMakeLists.txt, which tests/runtime/cli/cli_test.cpp compares it with.
+// The program's version, equal to that of project() in CMakeLists.txt (checked by tests/runtime/cli/cli_test.cpp).
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,8 @@ namespace fathom::cli {
 
 inline constexpr std::string_view kVersion = "0.1.0";
 
-// The commit the program was built from, with `+` when files had changed since CMake last looked; empty outside a
-// repository. Defined in a file that CMake makes.
+// Commit from which the program was built, followed by `+` if the last run of CMake found modified files. Empty
+// outside a repository. Defined in a file that CMake generates.
 extern const std::string_view kCommit;
 
 }  // namespace fathom::cli

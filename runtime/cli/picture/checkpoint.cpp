@@ -12,21 +12,21 @@
 namespace fathom::cli {
 namespace {
 
-// Writing may take no more than this share of the time: threads that finish a unit wait for it.
+// Maximum fraction of the time spent on writing, because threads that finish a unit wait for the write.
 constexpr double kMostShare = 0.05;
 
 std::string text_of(runtime::PixelRect area) {
   return fmt::format("{},{},{},{}", area.x0, area.y0, area.x1, area.y1);
 }
 
-// What a resumed render must agree in beside what films that are merged must.
+// Extends an identity by the facts that a resumed render must match but merged films need not: crop and sample range.
 runtime::Identity with_part(runtime::Identity identity, runtime::PixelRect area, runtime::SampleRange samples) {
   identity.emplace_back("crop", text_of(area));
   identity.emplace_back("sample range", fmt::format("{}:{}", samples.first, samples.last));
   return identity;
 }
 
-// What the checkpoint differs in from the render that this is.
+// Lists the differences between the checkpoint's render and this render.
 std::vector<std::string> differences(const runtime::FilmFile& file, const runtime::FilmHeader& header,
                                      const runtime::Settings& settings) {
   return runtime::differences(with_part(file.header.identity, file.shape.area, file.header.samples),
@@ -103,7 +103,8 @@ std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& head
       {"add --resume to go on from it", remedy()});
 }
 
-// What cannot be resumed is no loss where the name was ours to choose; what was never a film is not ours.
+// Decides about a file that cannot be resumed. If the name was not given by the user, a damaged film may be replaced.
+// A file that was never a film is not ours and stays.
 std::optional<ExitCode> Checkpoint::refuse_to_replace(const runtime::UnreadFilm& unread,
                                                       const Streams& streams) const {
   if (unread.missing) return fail(streams, kIo, unread.problem, {remedy()});
@@ -140,8 +141,8 @@ bool Checkpoint::write(const runtime::FilmHeader& header, const runtime::Partial
   return save([&](runtime::AtomicFile& file) { runtime::write_film(header, render, file); }, streams);
 }
 
-// A file that another run puts there is seen, except between the last look and the renaming: syncing, which may take
-// seconds, comes before both.
+// Detects a file that another run has put at the path, except between the last check and the renaming. Syncing, which
+// may take seconds, comes before both.
 bool Checkpoint::save(const std::function<void(runtime::AtomicFile&)>& fill, const Streams& streams) {
   runtime::AtomicFile file(path_);
   bool another = replaced_by_another();
@@ -162,7 +163,7 @@ bool Checkpoint::save(const std::function<void(runtime::AtomicFile&)>& fill, con
   return !problem_;
 }
 
-// A file that is gone is no loss.
+// A file that has disappeared does not count as replaced.
 bool Checkpoint::replaced_by_another() const {
   const auto there = runtime::stamp_of(path_);
   return there && there != known_;
@@ -182,7 +183,7 @@ void Checkpoint::remove(const Streams& streams) {
   } else if (ours_) {
     const auto target = std::filesystem::canonical(path_, ignored);
     if (!ignored) std::filesystem::remove(target, ignored);
-    std::filesystem::remove(path_, ignored);  // where that was a link
+    std::filesystem::remove(path_, ignored);  // if path_ was a link
   }
   ours_ = false;
 }

@@ -1,12 +1,12 @@
-// When a render's checkpoint is written, replaced and removed.
+// Rules for writing, replacing and removing a render's checkpoint.
 //
-// One that was asked for by name is kept when the render is done, as a finished one. Else it lies beside the first
-// output, is there from the first interval's end on, or when a signal or the time limit ends the render, and goes
-// when the render is done. What cannot be written is reported once and tried again at the next interval; the file
-// that was there stays.
+// A checkpoint named on the command line is kept, in its finished state, when the render is done. Any other
+// checkpoint lies next to the first output. It is written first at the end of the first interval, or when a signal or
+// the time limit ends the render, and it is removed when the render is done. A failed write is reported once and
+// retried at the next interval, and the previous file stays.
 //
-// What would be lost with a file is never replaced: neither this very render's earlier state, nor what another run
-// writes there meanwhile, nor what is no film.
+// Three kinds of files are never replaced, because their content would be lost: an earlier state of the same render,
+// a file that another run writes meanwhile, and a file that is not a film.
 //
 // Tested by: tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
@@ -25,34 +25,35 @@ inline constexpr double kCheckpointInterval = 60;  // seconds
 
 class Checkpoint {
  public:
-  // `path` was `named` on the command line, or is made from an output's.
+  // `named`: `path` was given on the command line, not derived from an output's name.
   Checkpoint(std::string path, bool named, double interval, const runtime::ReadLimits& limits)
       : path_(std::move(path)), named_(named), interval_(interval), limits_(limits) {}
 
-  // For --resume: what there is, into `options`. An ExitCode, after a message, when it is of another render or cannot
-  // be read; a note when there is none. Of the pictures that are `one_of_many` most have none, and one of another
-  // render is replaced, if nobody named it.
+  // For --resume: loads the checkpoint into `options`. Prints a message and returns an exit code if the checkpoint
+  // belongs to another render or cannot be read. Prints a note if there is no checkpoint. `one_of_many` marks one of
+  // many frames or units: most of them have no checkpoint, so there is no note, and a checkpoint of another render is
+  // replaced unless its name was given on the command line.
   std::optional<ExitCode> resume(const runtime::FilmHeader& header, const runtime::Settings& settings,
                                  runtime::RenderOptions& options, const Streams& streams, bool one_of_many = false);
-  // Without it. An ExitCode, after a message, when what there is could be resumed, or is no film, or, under a name of
-  // the command line, anything else; a note when it will be replaced.
+  // For a render without --resume. Prints a message and returns an exit code if the existing file could be resumed or
+  // is not a film, or if its name was given on the command line. Prints a note if the file will be replaced.
   std::optional<ExitCode> begin_afresh(const runtime::FilmHeader& header, const runtime::Settings& settings,
                                        const Streams& streams);
-  // An ExitCode, after a message, when it cannot be written, as far as can be known.
+  // Prints a message and returns an exit code if the path is known in advance not to be writable.
   std::optional<ExitCode> check_path(const Streams& streams) const;
 
-  // To be called often while the render is under way; writes when it is time.
+  // Writes the checkpoint if the interval is over. To be called often during the render.
   void tick(const runtime::FilmHeader& header, const runtime::RenderOptions::Look& look, double seconds,
             const Streams& streams);
-  // Now; false, after a warning, when it cannot be done.
+  // Writes the checkpoint now. Returns false, after a warning, if the write fails.
   bool write(const runtime::FilmHeader& header, const runtime::PartialRender& render, const Streams& streams);
-  void remove(const Streams& streams);  // when it is this render's
+  void remove(const Streams& streams);  // removes only a state of this render
 
   const std::string& path() const { return path_; }
   bool named() const { return named_; }
-  // Whether there is a state of this render in it, read or written by it, and still there.
+  // True if the file is still the state of this render that this run read or wrote.
   bool holds_state() const { return ours_ && runtime::stamp_of(path_) == known_; }
-  // Why it was not written the last time.
+  // Problem of the last write, if any.
   const std::optional<std::string>& problem() const { return problem_; }
   int written() const { return written_; }
 
@@ -66,10 +67,10 @@ class Checkpoint {
   const std::string path_;
   const bool named_;
   const double interval_;
-  const runtime::ReadLimits limits_;         // of a file that is there
-  double due_ = 0;                           // seconds since the render began; 0: not known yet
-  std::optional<runtime::FileStamp> known_;  // of the file as this run found it or wrote it
-  bool ours_ = false;                        // that file is a state of this render
+  const runtime::ReadLimits limits_;         // for reading an existing file
+  double due_ = 0;                           // seconds since the render began; 0: not set yet
+  std::optional<runtime::FileStamp> known_;  // the file as this run found it or wrote it
+  bool ours_ = false;                        // the known file is a state of this render
   bool warned_ = false;
   std::optional<std::string> problem_;
   int written_ = 0;

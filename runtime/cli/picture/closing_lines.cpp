@@ -7,13 +7,13 @@
 namespace fathom::cli {
 namespace {
 
-// "1836", "69.96 million".
+// Formats a count: "1836", "69.96 million".
 std::string large(std::uint64_t count) {
   if (count < 1'000'000) return std::to_string(count);
   return fmt::format("{:.2f} million", static_cast<double>(count) * 1e-6);
 }
 
-// Samples are the same everywhere, or they are an average.
+// Describes the samples per pixel: the number if all pixels have the same, else the average.
 std::string samples(const runtime::Film& film) {
   const std::uint64_t all = film.samples(), pixels = film.area().pixels();
   const runtime::PixelRect area = film.area();

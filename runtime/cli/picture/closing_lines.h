@@ -1,4 +1,4 @@
-// The lines that a render closes with: what was drawn, its rays and its time. The files follow them.
+// The lines printed at the end of a render: the image, its rays and its time. The names of the files follow them.
 //
 //     drew ball.json: 32x16 pixels, 2 samples per pixel
 //     rays: 1836, 41.2 % of them hit, 12 searched in double
@@ -16,10 +16,10 @@
 
 namespace fathom::cli {
 
-// Three lines. Counts of what went wrong are in them when they are not 0.
+// Returns three lines. Counts of failures appear only if they are not 0.
 std::string closing_lines(std::string_view scene, const runtime::RenderResult& result);
 
-// One line for --watch, which ends in what was written.
+// Returns one line for --watch that ends with the written files.
 std::string closing_line(std::string_view scene, const runtime::RenderResult& result,
                          const std::vector<std::string>& written);
 

@@ -12,7 +12,7 @@ namespace fathom::cli {
 namespace {
 
 struct Map {
-  const char* name;  // of the file, and of what is counted
+  const char* name;  // of the file and of the counted quantity
   double runtime::PixelMeans::*value;
 };
 constexpr Map kMaps[] = {

@@ -1,10 +1,10 @@
-// `fathom render --cost-map`: what each pixel cost, as a coloured picture or as plain numbers.
+// `fathom render --cost-map`: the cost of each pixel, as a coloured image or as plain numbers.
 //
 //     --cost-map cost.png     writes cost-evaluations.png and cost-instructions.png
 //
-// Values are means over the pixel's samples: evaluations of the field by all rays of a path, and the instructions the
-// machine ran in them. Both are the same for any number of threads and tile size. Tested by:
-// tests/runtime/cli/picture/cli_profile_test.cpp
+// Values are means over the pixel's samples: field evaluations by all rays of a path, and instructions executed by
+// the machine in them. Both are independent of the number of threads and the tile size.
+// Tested by: tests/runtime/cli/picture/cli_profile_test.cpp
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@
 
 namespace fathom::cli {
 
-// The files for a `path` that was asked for.
+// Returns the files written for the `path` of --cost-map.
 std::vector<std::string> cost_map_files(const std::string& path);
 
-// Writes them from a film that keeps the cost; the reason when it cannot be done. `lines` collects what is said of
-// each: its name, size, and what its numbers or colours mean.
+// Writes the maps from a film with the cost layer. Returns the problem, if any. Appends one line per map to `lines`:
+// its name, its size, and the meaning of its numbers or colours.
 std::optional<std::string> write_cost_maps(const std::string& path, const runtime::Film& film,
                                            std::vector<std::string>& lines);
 

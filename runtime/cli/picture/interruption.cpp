@@ -3,7 +3,7 @@
 namespace fathom::cli {
 namespace {
 
-// What a signal handler may touch.
+// Signal handlers may only access lock-free atomics.
 std::atomic<bool> stop_asked = false, picture_asked = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 

@@ -1,7 +1,8 @@
-// Signals while a render is under way: SIGINT, SIGTERM and SIGHUP ask it to stop, and a second SIGINT ends the
-// program at once; SIGHUP and SIGTERM may come twice, from a shell or a queue's task and to its whole group. SIGUSR1
-// asks for the picture so far. Under nohup SIGHUP stays ignored. Outside the object's life signals do what they did
-// before. Tested by: tests/runtime/cli/picture/cli_checkpoint_test.cpp
+// Signals during a render: SIGINT, SIGTERM and SIGHUP ask the render to stop, and a second SIGINT ends the program at
+// once. A second SIGHUP or SIGTERM has no further effect, because shells and queues may send one to the task and one
+// to its process group. SIGUSR1 asks for the image so far. Under nohup, SIGHUP stays ignored. The destructor restores
+// the previous actions.
+// Tested by: tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@
 
 namespace fathom::cli {
 
-// One at a time.
+// At most one object may exist at a time.
 class Interruption {
  public:
   Interruption();
@@ -18,9 +19,9 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  // Becomes true with the first signal that asks to stop.
+  // Becomes true with the first signal that asks the render to stop.
   const std::atomic<bool>& stop() const;
-  // Whether a picture was asked for since the last call.
+  // True if SIGUSR1 has arrived since the last call.
   bool picture_wanted();
 
  private:

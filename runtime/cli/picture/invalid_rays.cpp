@@ -9,7 +9,7 @@
 namespace fathom::cli {
 namespace {
 
-// By the scene's program, or that of the medium whose rays came there.
+// Finds the operation without a value at `at`, in the scene's program or in the program of one of its media.
 std::optional<compiler::NanPlace> explain(const compiler::CompiledScene& scene, glm::dvec3 at) {
   if (auto place = compiler::explain_nan(scene.distance, at)) return place;
   for (const compiler::Medium& medium : scene.media) {

@@ -1,5 +1,5 @@
-// What `fathom render` says of rays that met a place where the field is not a number: how many, where, and which
-// operation of the scene that is due to.
+// The warning of `fathom render` about rays that met a place where the field is NaN: their number, such a place, and
+// the operation of the scene that causes the NaN.
 // Tested by: tests/runtime/cli/picture/cli_invalid_test.cpp
 #pragma once
 

@@ -17,7 +17,7 @@ namespace {
 
 using MaybeScene = std::variant<compiler::CompiledScene, ExitCode>;
 
-// The picture that the scene's background names.
+// Reads the environment map that the scene's background names.
 std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
                                         KeptWork& kept, runtime::RenderOptions& options, const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
@@ -42,7 +42,7 @@ const compiler::Parameter* find_time(const compiler::CompiledScene& scene) {
   return found == scene.parameters.end() ? nullptr : &*found;
 }
 
-// Of options that are for motion alone.
+// Checks the options that only apply to motion.
 std::optional<ExitCode> check_motion(const RenderRequest& request, const compiler::CompiledScene& scene, bool blurs,
                                      const Streams& streams) {
   if (!blurs && request.frames.shutter_times) {
@@ -62,7 +62,7 @@ std::optional<ExitCode> check_motion(const RenderRequest& request, const compile
               {adaptive ? "add --no-adaptive" : "leave out --noise, or the camera's `shutter`"});
 }
 
-// The scene as the picture's own, at another time.
+// Compiles the picture's scene at another time.
 MaybeScene compile_moment(const Picture& picture, const SceneInput& input, double time, const Streams& streams) {
   SceneArguments arguments = picture.request.scene;
   arguments.definitions.emplace_back(compiler::kTimeParameter, time);
@@ -82,7 +82,7 @@ MaybeScene compile_moment(const Picture& picture, const SceneInput& input, doubl
   return compiled;
 }
 
-// `seed` is that of all frames.
+// Compiles the scene at the moments of the open shutter. `seed` is the seed shared by all frames.
 std::optional<ExitCode> open_shutter(Picture& picture, const SceneInput& input, double time, std::uint64_t seed,
                                      const Streams& streams) {
   RenderRequest& request = picture.request;
@@ -91,7 +91,7 @@ std::optional<ExitCode> open_shutter(Picture& picture, const SceneInput& input, 
   const int times = request.frames.shutter_times.value_or(runtime::kUsualShutterTimes);
   const auto runs =
       runtime::shutter_runs(request.options.spp.value_or(picture.scene.settings.spp), times, seed, frame);
-  picture.moments.reserve(runs.size());  // for those that point to them
+  picture.moments.reserve(runs.size());  // options.moments points to the elements
   for (const runtime::ShutterRun& run : runs) {
     MaybeScene scene = compile_moment(picture, input, time + open * run.time, streams);
     if (const auto* code = std::get_if<ExitCode>(&scene)) return *code;
@@ -111,7 +111,7 @@ void say_what_is_always_so(const RenderRequest& request, const Streams& streams)
   }
 }
 
-// Puts the command line over the scene, and finds what else the picture takes.
+// Applies the command line's settings to the scene, and prepares everything else that the picture needs.
 std::optional<ExitCode> complete(Picture& picture, const SceneInput& input, KeptWork& kept, const Streams& streams) {
   RenderRequest& request = picture.request;
   compiler::CompiledScene& scene = picture.scene;

@@ -1,4 +1,4 @@
-// One picture of a scene: compiled, with all that it takes beside the scene, and ready to be rendered.
+// One picture of a scene: the scene compiled and everything else prepared, ready to be rendered.
 // Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/frames/cli_frames_test.cpp,
 // tests/runtime/cli/frames/cli_shutter_test.cpp
 #pragma once
@@ -15,21 +15,21 @@
 namespace fathom::cli {
 
 struct Picture {
-  RenderRequest request;  // its options are those of the render
+  RenderRequest request;  // request.options are the options of the render
   compiler::CompiledScene scene;
-  std::vector<compiler::CompiledScene> moments;  // that the shutter sees; the options point to them
+  std::vector<compiler::CompiledScene> moments;  // the scene during the open shutter; request.options point to them
 };
 
-// What the next picture of a scene need not make again, where it would be the same.
+// Work that the next picture of a scene reuses where the result would be the same.
 struct KeptWork {
   std::shared_ptr<runtime::RegionStore> regions = std::make_shared<runtime::RegionStore>();
   std::string background_file;
-  std::shared_ptr<const runtime::EnvironmentImage> background;  // that was in it
-  std::string messages;                                         // what the compiler said last
-  bool begun = false;  // a picture was drawn, so what is always so has been said
+  std::shared_ptr<const runtime::EnvironmentImage> background;  // image in background_file
+  std::string messages;                                         // the compiler's last messages
+  bool begun = false;  // a picture was drawn, so the notes common to all pictures have been printed
 };
 
-// Or the exit code after a message.
+// Returns the picture, or the exit code after a message.
 std::variant<std::unique_ptr<Picture>, ExitCode> prepare_picture(const RenderRequest& request,
                                                                  const SceneInput& input, KeptWork& kept,
                                                                  const Streams& streams);

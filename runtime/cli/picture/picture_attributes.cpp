@@ -14,7 +14,7 @@
 namespace fathom::cli {
 namespace {
 
-// Columns of the matrix that acts on row vectors: of (p - eye) along each axis.
+// Columns of a matrix that acts on row vectors: column_along() gives the coordinate of p - eye along an axis.
 using Column = glm::dvec4;
 Column column_along(glm::dvec3 axis, glm::dvec3 eye) { return {axis, -glm::dot(axis, eye)}; }
 
@@ -39,7 +39,8 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
   const bool orthographic = camera.projection() == Projection::Orthographic;
   const Column one{0, 0, 0, 1}, w = orthographic ? one : z;
   const glm::dvec2 half = camera.half_extent();
-  // 0 to 1 from the left and from the bottom; 1 - 1/depth in perspective, which no finite depth brings to 1.
+  // worldToNDC maps x and y to 0 to 1 from the left and from the bottom. In perspective the depth becomes 1 -
+  // 1/depth, which is below 1 for every finite depth.
   const Column depth = orthographic ? z : z - one;
   runtime::Attributes attributes = {
       {"worldToCamera", matrix_of({x, y, z, one})},
@@ -50,7 +51,7 @@ runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, con
       {"fathom.exposure", static_cast<float>(scene.film.exposure)},
       {"fathom.tone", std::string(compiler::kToneCurves[static_cast<std::size_t>(scene.film.tone)])},
   };
-  // A panorama is no linear map.
+  // A panorama has no linear projection.
   if (camera.projection() != Projection::Panorama) {
     attributes["worldToNDC"] = matrix_of({0.5 * (x / half.x + w), 0.5 * (y / half.y + w), depth, w});
   }

@@ -1,5 +1,5 @@
-// What an OpenEXR file says of its render: names of pbrt-v4 where it has one, `fathom.` before ours. docs/LAYERS.md
-// lists them.
+// The attributes that an OpenEXR file stores about its render. Attributes of pbrt-v4 keep their names, and our own
+// begin with `fathom.`. docs/LAYERS.md lists them.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace fathom::cli {
 
-// The same for every run, and for every part of a render.
+// Returns attributes that are the same for every run and for every part of a render.
 runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings);
 
-// Adds how many samples a pixel has on average, and which of them some pixel has: "0:16", "0:4,8:12". Of a render
-// whose samples were shared out the numbers of the average pixel's.
+// Adds the average number of samples per pixel, and the ranges of samples that at least one pixel has: "0:16",
+// "0:4,8:12". If samples were distributed adaptively, the range is that of the average pixel.
 void describe_samples(const runtime::PartialRender& render, runtime::Attributes& attributes);
 
-// The exposure and tone curve among them; those of a file that says nothing where they are missing.
+// Returns the exposure and tone curve from the attributes, or the defaults where these are missing.
 runtime::ToneMapping tone_in(const runtime::Attributes& attributes);
 
 }  // namespace fathom::cli

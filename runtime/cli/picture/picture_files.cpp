@@ -10,7 +10,7 @@
 namespace fathom::cli {
 namespace {
 
-// The layers that an output is of, and where each goes. Standard output has nothing beside it.
+// One layer of an output and its file. Standard output holds only the image itself.
 struct LayerFile {
   runtime::Layer layer;
   Output output;
@@ -83,7 +83,7 @@ std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams&
   return std::nullopt;
 }
 
-// Of the formats that are shown only some have 16 bits.
+// Among the displayable formats only some have 16 bits.
 std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& streams) {
   if (!pictures.deep) return std::nullopt;
   for (const Output& output : pictures.outputs) {

@@ -1,4 +1,4 @@
-// The files that pictures are written to: one, or one for each layer, for each -o.
+// The files of an image: for each -o one file, or one file per layer.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #pragma once
 
@@ -15,23 +15,24 @@ namespace fathom::cli {
 
 struct PictureFiles {
   std::vector<Output> outputs;
-  bool albedo = false, depth = false, normal = false, noisy = false;  // beside formats that hold one layer
-  bool deep = false;  // 16 bits a sample, where the format may have them
+  // Layers written to files of their own, next to outputs whose format holds one layer.
+  bool albedo = false, depth = false, normal = false, noisy = false;
+  bool deep = false;  // 16 bits per channel in formats that support them
 };
 
-// Every file that would be written; standard output is none.
+// Returns every file that would be written, without standard output.
 std::vector<std::string> files_of(const PictureFiles& pictures);
 
-// An ExitCode, after a message, when one of them cannot be written, as far as can be known before; or when 16 bits
-// are asked for and a format has 8.
+// check_paths() prints a message and returns an exit code if a file is known in advance not to be writable.
+// check_bits() does so if 16 bits are requested and a format has 8.
 std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams& streams);
 std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& streams);
 
-// The warning that "3 samples" overfilled a sum of the film.
+// Returns the warning that `what`, such as "3 samples", overflowed a sum of the film.
 std::string lost_text(std::string_view what);
 
-// Writes everything; `lines` collects what was written. The reason when one cannot be written: those after it are
-// not. `seconds` is the time the render took, for files that say so.
+// Writes all files and appends a line for each to `lines`. Returns the first problem, after which no further file is
+// written. `seconds` is the render time, for formats that store it.
 std::optional<std::string> write_pictures(const PictureFiles& pictures, const runtime::FilmHeader& header,
                                           const runtime::PartialRender& render, std::optional<double> seconds,
                                           std::vector<std::string>& lines, const Streams& streams);

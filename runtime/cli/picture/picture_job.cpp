@@ -27,7 +27,7 @@ std::optional<std::string> write_stats(const std::string& path, const runtime::S
   return write_text(text, path);
 }
 
-// What stands before lines about one frame, or unit, of several.
+// Returns the prefix of lines about one frame or unit of several.
 std::string frame_text(const RenderRequest& request) {
   if (request.unit) return fmt::format("unit {}: ", *request.unit);
   if (!request.frame) return "";
@@ -36,7 +36,7 @@ std::string frame_text(const RenderRequest& request) {
 
 constexpr const char* kNoPictureYet = "no picture is written: no pixel has a sample yet";
 
-// "a pixel has 3 samples at least, 5.20 on average, 8 at most"
+// Returns "a pixel has 3 samples at least, 5.20 on average, 8 at most".
 std::string samples_in(const runtime::Film& film) {
   std::uint32_t least = ~0u, most = 0;
   const runtime::PixelRect area = film.area();
@@ -78,7 +78,7 @@ PictureJob::PictureJob(Picture& picture, const Streams& streams, Watching* watch
 
 ExitCode PictureJob::run() {
   if (const auto code = begin()) return *code;
-  // Under --watch a signal that ends programs ends this one.
+  // Under --watch a stop signal ends the program at once.
   if (!watching_ && !interruption_) interruption_.emplace();
   runtime::RenderResult result = render();
   line_.wipe();
@@ -98,7 +98,7 @@ std::optional<ExitCode> PictureJob::begin() {
   return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
 }
 
-// All that is printed meanwhile comes from the thread that ticks.
+// Only the thread that calls on_tick prints during the render.
 runtime::RenderResult PictureJob::render() {
   runtime::RenderOptions options = request_.options;
   options.cancel = watching_ ? &watching_->changed : &interruption_->stop();
@@ -124,8 +124,8 @@ runtime::RenderResult PictureJob::render() {
   return runtime::render(scene_, options);
 }
 
-// For SIGUSR1: the render goes on, so what cannot be written now is no failure. Threads wait for the pictures, but
-// not for the denoiser.
+// Handles SIGUSR1. A failed write is only a warning, because the render goes on. Render threads wait while the images
+// are written, but not for the denoiser.
 void PictureJob::write_so_far(const runtime::RenderOptions::Look& look) {
   std::optional<std::string> problem;
   std::vector<std::string> lines;
@@ -155,7 +155,7 @@ void PictureJob::write_so_far(const runtime::RenderOptions::Look& look) {
   streams_.err.flush();
 }
 
-// The checkpoint before the pictures: those can be made of it.
+// Writes the checkpoint before the images, because the images can be made from the checkpoint.
 ExitCode PictureJob::end(runtime::RenderResult& result) {
   using End = runtime::RenderEnd;
   const End ended = result.stats.end;
@@ -166,8 +166,8 @@ ExitCode PictureJob::end(runtime::RenderResult& result) {
   const bool keep = checkpoint_ && (undone || checkpoint_->named());
   if (keep) checkpoint_->write(header_, result, streams_);
   if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
-  // A picture without any would take the place of one that may be good.
-  // Nor is a part of a unit its film.
+  // An image without samples would replace a file that may be good. The film of an incomplete unit must not look
+  // complete.
   const bool pictures = request_.unit ? !undone : ended != End::Cancelled || result.film.samples() > 0;
   if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
   if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
@@ -199,13 +199,14 @@ std::string PictureJob::earlier_state() const {
   return fmt::format("an earlier state of it is in {}; --resume goes on from that", checkpoint_->path());
 }
 
-// Rays that were lost where the field is not a number.
+// Warns of rays that were lost because the field is NaN.
 void PictureJob::warn_of_invalid(const runtime::Stats& stats) {
   const std::optional<glm::dvec3>& at = stats.march.invalid_at;
   if (at) warn(streams_, invalid_text(scene_, stats.march.invalid, stats.march.rays, *at));
 }
 
-// Of a whole picture with all its samples: parts may well be empty.
+// Warns of an image that shows nothing. Applies only to whole images with all their samples, since parts may well be
+// empty.
 void PictureJob::warn_of_picture(const runtime::RenderResult& result) {
   using End = runtime::RenderEnd;
   const runtime::Settings& used = result.settings;
@@ -216,14 +217,14 @@ void PictureJob::warn_of_picture(const runtime::RenderResult& result) {
 
 void PictureJob::warn_of_lost(const runtime::Stats& stats) {
   if (stats.saturated > 0) warn(streams_, lost_text(count_of(stats.saturated, "sample")));
-  // Where other light is brighter, so faint a light is black in every picture.
+  // If most lit samples are brighter, light this faint is black in every image anyway.
   if (stats.faint_samples == 0 || 2 * stats.faint_samples < stats.lit_samples) return;
   warn(streams_, fmt::format("{} of {} with light are too faint for the film, which counts in steps of {:.2g}: "
                              "coarse or black; scale the lights up, and --exposure down",
                              stats.faint_samples, count_of(stats.lit_samples, "sample"), runtime::kFilmStep));
 }
 
-// Writes everything, or all but the pictures, and prints the closing numbers, whose memory is that of writing, too.
+// Writes all files, or all except the images, and prints the closing lines. The peak memory in them includes writing.
 std::optional<std::string> PictureJob::write_all(runtime::RenderResult& result, bool pictures) {
   std::vector<std::string> lines;
   std::optional<double> seconds;
@@ -249,7 +250,7 @@ void PictureJob::print_closing(const runtime::RenderResult& result, const std::v
   for (const std::string& line : lines) err << line << '\n';
 }
 
-// What was rendered is not lost with the picture.
+// Reports a write error. The samples are not lost with the image if the checkpoint holds them.
 ExitCode PictureJob::fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
   Help help;
   if (checkpoint_ && (kept ? !checkpoint_->problem() : checkpoint_->write(header_, result, streams_))) {

@@ -1,5 +1,5 @@
-// A render from its compiled scene to its files: what it goes on from, what is shown and kept meanwhile, and what is
-// written at its end.
+// Renders a compiled scene to its files: resumes a checkpoint, shows progress and saves checkpoints during the
+// render, and writes the results.
 // Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace fathom::cli {
 
-// For --watch: the scene's file and what it imports, and whether the render under way is no longer of it.
+// For --watch: the scene's file with its imports, and whether they have changed since the render began.
 struct Watching {
   runtime::FileWatch files;
   std::atomic<bool> changed = false;
@@ -27,18 +27,18 @@ struct Watching {
 
 PictureFiles pictures_of(const RenderRequest& request);
 
-// None with --watch, which begins again with every change, so there is nothing to keep.
+// Returns nullopt with --watch, which renders from scratch after every change.
 std::optional<Checkpoint> checkpoint_of(const RenderRequest& request);
 
 class PictureJob {
  public:
   PictureJob(Picture& picture, const Streams& streams, Watching* watching, std::optional<Interruption>& interruption);
 
-  const runtime::FilmHeader& header() const { return header_; }  // of its film files
+  const runtime::FilmHeader& header() const { return header_; }  // header of its film files
 
-  // Once.
+  // To be called once.
   ExitCode run();
-  // Whether all samples are taken and everything is written; what was counted.
+  // True if all samples are taken and all files are written.
   bool complete() const { return complete_; }
   const runtime::Stats& stats() const { return stats_; }
 

@@ -19,13 +19,13 @@ namespace {
 
 constexpr const char* kFrameRemedy = "turn the camera to the scene; --frame shows the whole scene";
 
-// Where a finite box is that no ray of a camera meets: "behind the camera", "to the left of the view"; empty when the
-// box may be in view.
+// Tells where a finite box outside the view lies: "behind the camera", "to the left of the view". Empty if a camera
+// ray might hit the box.
 std::string place_out_of_view(const compiler::Box& box, const runtime::Camera& camera, const compiler::Film& film) {
   if (camera.projection() == compiler::Camera::Projection::Panorama || camera.has_lens()) return {};
   if (box.empty() || !box.finite()) return {};
   const bool perspective = camera.projection() == compiler::Camera::Projection::Perspective;
-  const double margin = film.filter_width.value_or(4);  // pixels beyond the picture that its filter may reach
+  const double margin = film.filter_width.value_or(4);  // pixels beyond the image that the filter may cover
   const glm::dvec2 half = camera.half_extent() * (1.0 + 2 * margin / glm::dvec2(film.width, film.height));
   bool behind = true, left = true, right = true, above = true, below = true;
   for (int i = 0; i < 8; ++i) {
@@ -53,13 +53,13 @@ std::string place_of_scene(const compiler::CompiledScene& scene) {
   return place_out_of_view(scene.bound, runtime::Camera(scene.camera, film.width, film.height), film);
 }
 
-// What every pixel has in common.
+// Properties that all pixels of the image share.
 struct Summary {
-  bool hit = false;                     // some ray met a solid
-  bool lit = false;                     // some pixel has light
-  bool alike = true;                    // all pixels are shown in one color
-  double brightest = 0;                 // channel
-  std::array<std::uint8_t, 3> color{};  // of the first pixel, as shown
+  bool hit = false;                     // some ray hit a solid
+  bool lit = false;                     // some pixel has nonzero radiance
+  bool alike = true;                    // all pixels are displayed in one color
+  double brightest = 0;                 // maximum radiance of any channel
+  std::array<std::uint8_t, 3> color{};  // displayed color of the first pixel
 };
 
 Summary summarize(const compiler::CompiledScene& scene, const runtime::Film& film) {
@@ -83,7 +83,7 @@ Summary summarize(const compiler::CompiledScene& scene, const runtime::Film& fil
   return summary;
 }
 
-// The name of the solid that the camera is in; nullopt when it is in none.
+// Returns the name of the solid around the camera, nullopt if there is none.
 std::optional<std::string> solid_around_camera(const compiler::CompiledScene& scene) {
   if (scene.camera.projection == compiler::Camera::Projection::Orthographic) return std::nullopt;
   vm::Workspace workspace;
@@ -92,7 +92,7 @@ std::optional<std::string> solid_around_camera(const compiler::CompiledScene& sc
   return scene.surfaces[value.surface].name;
 }
 
-// Stops that bring the brightest channel of the picture to a half.
+// Returns the exposure, in stops, that brings the brightest channel to one half.
 double stops_to_show(double brightest) { return std::clamp(std::round(std::log2(0.5 / brightest)), -100.0, 100.0); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is said of a picture that shows nothing: no solid in view, black throughout, one color throughout.
+// Warnings about an image that shows nothing: no solid in view, black throughout, or one color throughout.
 // Tested by: tests/runtime/cli/picture/cli_picture_warning_test.cpp
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace fathom::cli {
 
-// W0516, where the box of the whole scene proves that no camera ray meets it.
+// Adds the warning W0516 if the scene's bounding box proves that no camera ray can hit the scene.
 void warn_of_empty_view(const compiler::CompiledScene& scene, compiler::Diagnostics& diagnostics);
 
-// Of a picture that is complete; nullopt when it shows something, and for a single pixel.
+// Returns the warning for a complete image. Returns nullopt if the image shows something or has a single pixel.
 std::optional<std::string> picture_warning(const compiler::CompiledScene& scene, const runtime::RenderResult& result);
 
 }  // namespace fathom::cli

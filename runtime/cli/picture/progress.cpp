@@ -8,10 +8,10 @@
 namespace fathom::cli {
 namespace {
 
-constexpr double kRedrawSeconds = 0.1;  // on a terminal
-// Elsewhere, for logs: every tenth of the work or ten seconds, but not a burst of lines when all is done in a moment.
+constexpr double kRedrawSeconds = 0.1;  // minimum interval on a terminal
+// For logs: a line for every tenth of the work or every ten seconds, but at most one per second.
 constexpr double kLineFraction = 0.1, kLineSeconds = 10, kLeastSeconds = 1;
-constexpr double kTrustedSeconds = 0.5;  // before that a guess of the time left is noise
+constexpr double kTrustedSeconds = 0.5;  // before this, an estimate of the remaining time is noise
 
 std::string describe(const runtime::Progress& progress) {
   const double rate = progress.seconds > 0 ? static_cast<double>(progress.rays) / progress.seconds : 0;

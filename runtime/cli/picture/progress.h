@@ -1,4 +1,4 @@
-// How far a render is, for the person who waits: one line that is redrawn on a terminal, else a line now and then.
+// Progress of a render: one line that is redrawn on a terminal, or occasional lines elsewhere.
 //
 //     42 %   3.1 Mray/s   about 12 s left
 //
@@ -13,26 +13,26 @@
 
 namespace fathom::cli {
 
-// "12 s", "3 min 20 s", "1 h 05 min".
+// Formats a duration: "12 s", "3 min 20 s", "1 h 05 min".
 std::string duration(double seconds);
 
 class ProgressLine {
  public:
-  // `prefix` comes before what is said.
+  // `prefix` begins every line.
   explicit ProgressLine(const Streams& streams, std::string prefix = "")
       : streams_(streams), prefix_(std::move(prefix)) {}
-  ~ProgressLine();  // wipes the line
+  ~ProgressLine();  // erases the line
 
   void update(const runtime::Progress& progress);
-  void wipe();  // what a terminal shows of it
+  void wipe();  // erases the line on a terminal
 
  private:
   bool due(const runtime::Progress& progress) const;
 
   const Streams& streams_;
   const std::string prefix_;
-  double last_seconds_ = 0;   // when a line was last shown
-  double last_fraction_ = 0;  // what it said
+  double last_seconds_ = 0;   // time of the last line
+  double last_fraction_ = 0;  // fraction in the last line
   bool drawn_ = false;
 };
 

@@ -20,14 +20,14 @@ std::string maybe(const std::optional<T>& value, const char* otherwise) {
   return value ? fmt::format("{}", *value) : otherwise;
 }
 
-// What the camera sees may come from the command line.
+// Returns the horizontal field of view, or "the scene's" where the command line cannot change the field of view.
 std::string view_of(const compiler::Camera& camera) {
   if (camera.projection != compiler::Camera::Projection::Perspective) return "the scene's";
   if (camera.vertical_fov || camera.focal_length) return "the scene's";
   return number(camera.fov) + " rad";
 }
 
-// Where the camera is may come from the command line, too, or from the size of the picture.
+// Returns the camera's position and target, which depend on the command line and on the image's size.
 std::string place_of(const compiler::CompiledScene& scene) {
   const glm::dvec3 from = scene.camera.position + scene.origin, to = scene.camera.target + scene.origin;
   return fmt::format("{},{},{} to {},{},{}", from.x, from.y, from.z, to.x, to.y, to.z);
@@ -50,7 +50,7 @@ std::string marching_of(const runtime::Marching& marching) {
   return text;
 }
 
-// A digest of the scenes and of the camera's place in each, which may come from the command line.
+// Returns a digest of the scenes and the cameras at all moments. The command line may change the cameras.
 std::string moments_of(const std::vector<runtime::Moment>& moments) {
   vm::ByteWriter bytes;
   for (const runtime::Moment& moment : moments) {
@@ -74,7 +74,7 @@ std::string layers_of(const runtime::Settings& settings) {
   add(kept.variance, "variance");
   add(kept.halves, "halves");
   add(kept.cost, "cost");
-  // Regions change what rays cost, and nothing else: large scenes round distances alike without them.
+  // Regions affect only the cost of rays: large scenes round distances alike without regions.
   if (kept.cost) text += settings.regions ? fmt::format(" (regions of {} MB)", settings.region_memory >> 20) : "";
   return text;
 }
@@ -109,7 +109,7 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
       {"marching", marching_of(settings.marching)},
       {"layers", layers_of(settings)},
   };
-  // A render without them is what it was before there were any.
+  // The rows appear only with moments, so that older films without motion blur keep their identity.
   if (!options.moments.empty()) {
     identity.emplace_back("shutter times", std::to_string(options.moments.size()));
     identity.emplace_back("moments", moments_of(options.moments));

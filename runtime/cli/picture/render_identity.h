@@ -1,5 +1,5 @@
-// What makes two renders the same, sample by sample: the scene, its programs and every setting that changes bits, by
-// name. Film files carry it, and a mismatch names what differs.
+// The identity of a render: by name, the scene, its programs and every setting that changes bits of a sample. Film
+// files store the identity, and a mismatch reports the rows that differ.
 // Tested by: tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
 
@@ -9,14 +9,14 @@
 
 namespace fathom::cli {
 
-// The version of what the renderer makes of a scene: films of another are of another render. Raised by whoever
-// changes a bit of a picture; tests/runtime/renderer_bits_test.cpp fails until it is.
+// Version of the renderer's output. Films of different versions belong to different renders. Raise the number with
+// every change to the bits of an image: tests/runtime/renderer_bits_test.cpp fails until then.
 inline constexpr int kRendererBits = 8;
 
 runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                   const runtime::RenderOptions& options);
 
-// The head of the render's film files.
+// Returns the header of the render's film files.
 runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                 const runtime::RenderOptions& options);
 

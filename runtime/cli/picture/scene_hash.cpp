@@ -20,7 +20,8 @@ void absorb(const compiler::CompiledField& field, vm::ByteWriter& bytes) {
 
 }  // namespace
 
-// Film and settings have rows of their own, for the command line may say otherwise, or change no sample.
+// Film and settings are left out: the command line may override them, some change no sample, and the identity has
+// rows of its own for the others.
 std::string scene_hash(const compiler::CompiledScene& scene) {
   compiler::CompiledScene rest = scene;
   rest.film = {};

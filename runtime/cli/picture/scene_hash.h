@@ -1,4 +1,4 @@
-// Digests of a scene as it was compiled: films carry them, and so do pictures that have attributes.
+// Digests of a compiled scene, stored in films and in images with attributes.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp, tests/runtime/cli/picture/cli_checkpoint_test.cpp
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace fathom::cli {
 
-// Digests in hexadecimal: of all that the scene was compiled to, but for its film and settings; of its programs.
+// Hexadecimal digests of the whole compiled scene except its film and settings, and of its programs.
 std::string scene_hash(const compiler::CompiledScene& scene);
 std::string program_hash(const compiler::CompiledScene& scene);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 160;  // pixels
 constexpr std::uint32_t kSamples = 4;
-constexpr double kSampleEvaluations = 8;  // that a sample costs beside its own, for shading and the film
+constexpr double kSampleEvaluations = 8;  // fixed cost per sample for shading and the film, in field evaluations
 
 }  // namespace
 

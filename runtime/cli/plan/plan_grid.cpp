@@ -7,10 +7,10 @@ namespace fathom::cli {
 namespace {
 
 constexpr double kUnitSeconds = 120, kLeastUnitSeconds = 60, kMostUnitSeconds = 300;
-constexpr double kUnitsPerMachine =
-    30;  // so that the last to end keep the others waiting for a small part of the time
-constexpr double kStartsPerSecond = 200;  // of units, by a queue
-constexpr int kLeastTile = 64;            // pixels a side
+// So many that the machines wait only a small part of the time for the last unit.
+constexpr double kUnitsPerMachine = 30;
+constexpr double kStartsPerSecond = 200;  // units that a queue can start per second
+constexpr int kLeastTile = 64;            // pixels per side
 
 int edge(int length, int parts, int at) { return static_cast<int>(static_cast<std::int64_t>(length) * at / parts); }
 

@@ -63,7 +63,7 @@ class PlanMerge {
     return indices;
   }
 
-  // Whether all units of the frame are there, by their heads.
+  // Checks by the film headers that all units of the frame exist.
   std::optional<ExitCode> check(int index) const {
     const std::uint64_t first = first_unit(index);
     const auto looked =
@@ -80,7 +80,7 @@ class PlanMerge {
         help);
   }
 
-  // The film of a unit, of the same render as `first`.
+  // Reads the film of a unit and checks that it belongs to the same render as `first`.
   std::variant<runtime::FilmFile, ExitCode> read(std::uint64_t number, const runtime::FilmFile* first) const {
     const std::string file = unit_file(folder_, number);
     auto read = runtime::read_film(file, read_limits(request_.limits));
@@ -100,7 +100,7 @@ class PlanMerge {
                 differ);
   }
 
-  // The frame lies in memory whole, and one unit beside it.
+  // Merges the units of a frame. The whole frame and one unit are in memory at the same time.
   std::optional<ExitCode> merge(int index) const {
     const PlanGrid& grid = plan_.grid;
     const std::uint64_t begin = first_unit(index);

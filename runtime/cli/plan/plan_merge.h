@@ -1,4 +1,4 @@
-// `fathom merge --plan`: the units of a plan become its frames, one after the other.
+// `fathom merge --plan`: merges the units of a plan into its frames, one frame after the other.
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
 
@@ -14,18 +14,18 @@ namespace fathom::cli {
 
 struct MergeRequest {
   std::vector<std::string> inputs;
-  std::optional<std::string> plan;  // in place of inputs
-  FrameOptions frames;              // of the plan: those to merge, all unless given
+  std::optional<std::string> plan;  // replaces `inputs`
+  FrameOptions frames;              // frames of the plan to merge; default: all
   PictureFiles pictures;
   std::optional<double> exposure;
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int bits = 0;   // an index into 8, 16
   bool denoise = false, quiet = false;
-  int format = -1;  // of -o -, see put_formats()
+  int format = -1;  // format of -o -, see put_formats()
   compiler::Limits limits;
 };
 
-// What the request says of the pictures' brightness, over what the films say.
+// Overrides the exposure and tone curve of the films with those of the request.
 void put_tone(const MergeRequest& request, runtime::Attributes& attributes);
 
 ExitCode merge_plan(const MergeRequest& request, const Streams& streams);

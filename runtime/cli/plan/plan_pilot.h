@@ -1,5 +1,5 @@
-// What the units of a plan will cost: a few frames are rendered small, with few samples, and what each pixel cost is
-// added up over the tiles.
+// Estimates the cost of a plan's units: renders a few frames small and with few samples, and adds the costs of their
+// pixels over the tiles.
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
 
@@ -13,12 +13,12 @@ namespace fathom::cli {
 
 class Pilot {
  public:
-  // Renders up to three frames: the first, the one in the middle and the last. An ExitCode after a message.
+  // Renders up to three frames: the first, the middle and the last. Returns an exit code after a message on failure.
   std::optional<ExitCode> run(PlannedPictures& pictures, const PlanGrid& grid, const Streams& streams);
 
-  double frame_seconds(const PlanGrid& grid) const;  // of all samples of a frame, on average
-  double start_seconds() const { return start_; }    // of compiling a frame, on average
-  double seconds() const { return seconds_; }        // that the pilot took
+  double frame_seconds(const PlanGrid& grid) const;  // mean over the frames, for all samples
+  double start_seconds() const { return start_; }    // mean seconds to compile a frame
+  double seconds() const { return seconds_; }        // duration of the pilot
   std::size_t frames() const { return costs_.size(); }
 
   struct UnitCost {

@@ -20,7 +20,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path, error);
 }
 
-// Why the unit's film is not whole; nothing when it is, "" when there is none.
+// Returns the fault of the unit's film: nullopt if the film is complete, "" if there is no film.
 std::optional<std::string> fault_in(const std::string& file, const PlanGrid& grid, const PlanUnit& unit, bool sums,
                                     const runtime::ReadLimits& limits) {
   if (!exists(file)) return "";

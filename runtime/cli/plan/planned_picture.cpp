@@ -35,7 +35,7 @@ std::optional<ExitCode> PlannedPictures::open(const std::vector<std::string>& ru
 
 std::variant<Picture*, ExitCode> PlannedPictures::at(int index, const std::optional<runtime::PixelRect>& area) {
   if (index == index_) return picture_.get();
-  picture_ = nullptr;  // scenes are large: one at a time
+  picture_ = nullptr;  // scenes are large, so only one is kept
   RenderRequest request = request_;
   request.options.crop = area;
   if (sequence_) {
@@ -47,7 +47,7 @@ std::variant<Picture*, ExitCode> PlannedPictures::at(int index, const std::optio
   auto prepared = prepare_picture(request, input_, kept_, streams_);
   if (const auto* code = std::get_if<ExitCode>(&prepared)) return fail_at(index, *code);
   picture_ = std::get<std::unique_ptr<Picture>>(std::move(prepared));
-  picture_->request.frame.reset();  // its units are what is counted
+  picture_->request.frame.reset();  // progress is reported per unit, not per frame
   if (const auto code = check(*picture_, index)) return *code;
   index_ = index;
   return picture_.get();
@@ -58,9 +58,9 @@ ExitCode PlannedPictures::fail_at(int index, ExitCode code) const {
   return fail(streams_, code, fmt::format("{} cannot be rendered", sequence_->describe(sequence_->frames.at(index))));
 }
 
-// Whether this program makes of the scene what the one made that made the plan.
+// Checks that this program would render the same as the program that made the plan.
 std::optional<ExitCode> PlannedPictures::check(const Picture& picture, int index) const {
-  if (plan_.identity.empty()) return std::nullopt;  // it is being made
+  if (plan_.identity.empty()) return std::nullopt;  // the plan is being made
   const runtime::RenderOptions& options = picture.request.options;
   runtime::Identity there = plan_.identity,
                     here = render_identity(picture.scene, resolve(picture.scene, options), options);

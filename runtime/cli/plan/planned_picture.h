@@ -1,4 +1,4 @@
-// The frames of a plan, compiled: what its units are rendered of.
+// The compiled frames of a plan, from which its units are rendered.
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
 
@@ -16,15 +16,15 @@ namespace fathom::cli {
 
 class PlannedPictures {
  public:
-  // The plan may be one that is still being made: with a scene and arguments alone.
+  // The plan may be incomplete while it is being made, with only a scene and arguments.
   PlannedPictures(const RenderPlan& plan, const Streams& streams)
       : plan_(plan), streams_(streams), input_{plan.source, {}} {}
 
-  // `running` are arguments beside the plan's. The background's picture is in the file `background`, where there is
-  // one. An ExitCode after a message.
+  // Parses the plan's arguments together with `running`, which the plan does not record. `background` is the file of
+  // the environment map, empty if there is none. Returns an exit code after a message on failure.
   std::optional<ExitCode> open(const std::vector<std::string>& running, const std::string& background);
-  // The frame with that index, until another is asked for. `area` is what is going to be rendered of it and has to
-  // fit into memory: where nothing is said, the frame.
+  // Returns the frame with an index, valid until another frame is requested. `area` is the part that will be rendered
+  // and must fit into memory, by default the whole frame.
   std::variant<Picture*, ExitCode> at(int index, const std::optional<runtime::PixelRect>& area = {});
 
  private:

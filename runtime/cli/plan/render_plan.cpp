@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kPlanFormat = 1;
 constexpr std::string_view kPlanEnding = ".json";
 constexpr std::uint64_t kUnitsPerFolder = 1000;
-constexpr const char* kClaimName = "plan";  // the file in the folder of units that has the plan's digest
+constexpr const char* kClaimName = "plan";  // file in the units' folder with the plan's digest
 
 Json to_json(const compiler::Source& source) {
   Json imports = Json::array();
@@ -55,7 +55,7 @@ std::string digest_of(const Json& json) {
   return vm::digest({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}).text();
 }
 
-// Throws what nlohmann's library throws of a value that is not there or of another kind.
+// Throws the exceptions of nlohmann::json if a value is missing or has the wrong type.
 RenderPlan from_json(const Json& json) {
   RenderPlan plan;
   PlanGrid& grid = plan.grid;
@@ -174,7 +174,7 @@ std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan
   if (error) return fail(streams, kIo, fmt::format("cannot make the folder `{}`: {}", folder, error.message()));
   if (const auto problem = write_text(plan.digest + "\n", folder + "/" + kClaimName))
     return fail(streams, kIo, *problem);
-  // Another plan's worker may have been as fast.
+  // A worker of another plan may have claimed the folder at the same moment.
   const auto claimed = find_folder(folder, plan, streams);
   if (const auto* code = std::get_if<ExitCode>(&claimed)) return *code;
   return std::nullopt;

@@ -1,9 +1,10 @@
-// A plan: one render, of a still or of frames, cut into units that machines render without each other. A unit is a
-// rectangle of a frame's pixels and a range of their samples; its number says which. The plan has all that a worker
-// needs: the scene's text with what it imports, the options, the background's picture. It is a JSON file
-// (docs/FARM.md); its size does not depend on the number of units.
+// A plan: one render, of a still or of frames, cut into units that machines render independently. A unit is a
+// rectangle of a frame's pixels and a range of their samples, identified by its number. The plan contains everything
+// that a worker needs: the scene's text with its imports, the options, and the environment map. The plan is a JSON
+// file (docs/FARM.md) whose size does not depend on the number of units.
 //
-// Units are films in a folder beside the plan, frame.json -> frame.units/000/000007.film, by thousands.
+// Units are films in a folder next to the plan, frame.json -> frame.units/000/000007.film, in subfolders of a
+// thousand.
 //
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
@@ -23,33 +24,35 @@
 namespace fathom::cli {
 
 struct RenderPlan {
-  compiler::Source source;             // with its imports
-  std::vector<std::string> arguments;  // of `fathom render`, but for the scene
+  compiler::Source source;             // includes the imports
+  std::vector<std::string> arguments;  // arguments of `fathom render`, except the scene
   PlanGrid grid;
-  std::string background_name, background;  // of the picture that the scene's background names: its bytes
-  runtime::Identity identity;               // of the still, or the first frame
-  std::string digest;                       // of all the others, in hexadecimal
+  std::string background_name, background;  // name and bytes of the environment map
+  runtime::Identity identity;               // of the still, or of the first frame
+  std::string digest;                       // of all other members, in hexadecimal
 };
 
-// The text of the plan's file; sets the digest. The reason when the scene cannot be written as JSON.
+// Returns the text of the plan's file and sets the digest. Returns the reason if the scene cannot be written as JSON.
 std::variant<std::string, Unreadable> write_plan(RenderPlan& plan);
-// An ExitCode, after a message, when it cannot be read or is no plan.
+// Reads a plan. Prints a message and returns an exit code if the file cannot be read or is not a plan.
 std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const compiler::Limits& limits,
                                              const Streams& streams);
 
-// What renders of two frames of a plan may differ in; other rows of their identities say how the plan was made.
+// True for rows of the identity that may differ between frames of a plan. The other rows describe the whole plan.
 bool is_of_frame(std::string_view row);
 
-// "frame.json" -> "frame.units".
+// Returns the folder of the units: "frame.json" -> "frame.units".
 std::string units_folder(const std::string& plan);
 std::string unit_file(const std::string& folder, std::uint64_t number);
 
-// Makes the folder, or sees that what is there is of this plan. An ExitCode, after a message, when it is not.
+// Creates the folder or checks that it belongs to this plan. Otherwise prints a message and returns an exit code.
 std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams);
-// The same without making it; true when there is one.
+// The same without creating the folder. Returns true if the folder belongs to this plan, false if no plan has claimed
+// the folder.
 std::variant<bool, ExitCode> find_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams);
 
-// Why the file is not the unit's film, whole; nothing when it is. `header` is that of the file.
+// Returns nullopt if the film is complete and belongs to the unit, else the reason. `header` is the film file, for
+// which the header suffices.
 std::optional<std::string> fault_of(const runtime::FilmFile& header, const PlanGrid& grid, const PlanUnit& unit);
 
 }  // namespace fathom::cli

@@ -13,7 +13,8 @@
 namespace fathom::cli {
 namespace {
 
-// Units are short, and thousands of machines may write to one disk; a signal makes a checkpoint at any time.
+// Long, because units are short and thousands of machines may write to one disk. A signal still triggers a checkpoint
+// at any time.
 constexpr double kUnitCheckpointInterval = 600;  // seconds
 
 class UnitRun {
@@ -66,7 +67,7 @@ class UnitRun {
     return code;
   }
 
-  // Nothing is read of a plan whose units are all there.
+  // Prepares the rendering on first use, so that nothing is compiled if all units exist already.
   std::optional<ExitCode> open() {
     if (opened_) return std::nullopt;
     opened_ = true;

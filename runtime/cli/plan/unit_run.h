@@ -1,5 +1,5 @@
-// `fathom render --plan`: units of a plan, one after the other, each to a film of its own that appears whole or not
-// at all. A unit that is there and whole is left as it is.
+// `fathom render --plan`: renders units of a plan one after the other, each to a film of its own that is written
+// atomically. A unit whose film is complete is skipped.
 // Tested by: tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
 
