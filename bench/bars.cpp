@@ -1,5 +1,6 @@
-// Do the bars hold? Each is measured against an independent truth: closed forms in long double, an interval solver
-// with the scene written by hand, other instruction sets. Exit status 1 when one is missed.
+// Checks the acceptance bars of hits, normals and the machine. Each bar is measured against an independent truth:
+// closed forms in long double, an interval solver with the scene written by hand, other instruction sets. Exit status
+// 1 when a bar is missed.
 //
 //     build/release/bench_bars           two minutes
 //     build/release/bench_bars --full    as many rays, normals and samples as the bars ask for: ten minutes

@@ -1,5 +1,5 @@
-// The bars: what must hold of hits, normals and the machine, measured and printed as one table. Numbers of bars, B4
-// to B16, and their limits are in one place each: where the row is made.
+// The acceptance bars of hits, normals and the machine, measured and printed as one table. The number of each bar, B4
+// to B16, and its limit stand where its row is made.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 namespace fathom::bench {
 
-// Rows are printed as they are known.
+// Prints each row as soon as it is measured.
 class BarTable {
  public:
   BarTable() { print("bar", "what", "bar value", "measured", "verdict"); }
@@ -21,14 +21,15 @@ class BarTable {
     missed_ += !holds;
     print(bar, what, limit, measured, holds ? "holds" : "misses");
   }
-  // Not a number misses.
+  // NaN misses the bar.
   void at_most(std::string_view bar, std::string_view what, double limit, double measured,
                std::string_view unit = "") {
     row(bar, what, fmt::format("<= {:.3g}{}", limit, unit), fmt::format("{:.3g}{}", measured, unit),
         measured <= limit);
   }
-  // `count` of `tried` went wrong, none may; the upper limit is that of 95 % confidence, 3 / n (Hanley and
-  // Lippman-Hand, "If Nothing Goes Wrong, Is Everything All Right?", 1983). Nothing tried proves nothing.
+  // The bar: none of the `tried` cases failed. `count` is the number of failures. The printed upper limit of the
+  // failure rate has 95 % confidence, 3 / n (Hanley and Lippman-Hand, "If Nothing Goes Wrong, Is Everything All
+  // Right?", 1983). Zero cases tried miss the bar.
   void none(std::string_view bar, std::string_view what, std::size_t count, std::size_t tried) {
     const double most = 3e6 / static_cast<double>(tried);
     row(bar, what, "0",
@@ -46,7 +47,7 @@ class BarTable {
   int missed_ = 0;
 };
 
-// How much is tried. Full is what the bars ask for; the default is what a few minutes allow.
+// Numbers of cases. kFull is what the bars ask for, the default is what a few minutes allow.
 struct Counts {
   std::size_t sphere_rays = 40000, composite_rays = 500000, secondary_rays = 1000000;
   std::size_t normals = 100000, samples = 10000000;
@@ -64,7 +65,7 @@ void random_normal_bars(BarTable& table, const Counts& counts);  // B11
 void machine_bars(BarTable& table, const Counts& counts);        // B14
 void range_bars(BarTable& table, const Counts& counts);          // B16
 
-// The k-th of a thousand of sorted values; NaN of none.
+// Returns the value at k thousandths of the sorted values, or NaN when there are no values.
 double permille(const std::vector<double>& sorted, std::size_t k);
 
 }  // namespace fathom::bench

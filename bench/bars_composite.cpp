@@ -1,4 +1,4 @@
-// B6 to B9: benchmark scene H, camera rays and bounce rays, against the independent solver.
+// B6 to B9: camera rays and bounce rays in benchmark scene H, against the independent solver.
 #include <optional>
 
 #include "bench/bars.h"
@@ -15,16 +15,16 @@ using runtime::Marching, runtime::Method;
 
 constexpr double kFar = 30;
 
-// Rays whose true distances are known.
+// A class of rays whose true distances are known.
 struct RayClass {
   const char* name;
-  double evaluation_bar;  // B8: share of plain sphere tracing's evaluations
+  double evaluation_bar;  // B8: max ratio of evaluations to those of plain sphere tracing
   std::vector<runtime::Ray> rays;
-  std::vector<double> truth;  // negative: a miss
-  std::size_t undecided = 0;  // drawn, but left out: the solver could not say
+  std::vector<double> truth;  // per ray; negative for a miss
+  std::size_t undecided = 0;  // rays left out because the solver could not decide them
 };
 
-// Takes up the ray if the solver can say what becomes of it.
+// Adds the ray if the solver can decide whether the ray hits.
 void add(RayClass& rays, const runtime::Ray& ray) {
   const Solution solution = solve_composite({ray.origin, ray.direction}, kFar);
   if (solution.status == Solution::Status::Undecided) {
@@ -47,7 +47,7 @@ RayClass camera_rays(std::size_t count) {
   return camera;
 }
 
-// From 2e-3 above what the camera sees, with what the renderer knows of such a ray: its side and first slope.
+// Rays that start 2e-3 above the camera rays' hits, with the side and the first slope that the renderer would know.
 RayClass bounce_rays(std::size_t count) {
   RayClass bounce{"bounce", 0.70, {}, {}};
   Engine random(2);
@@ -57,7 +57,7 @@ RayClass bounce_rays(std::size_t count) {
     if (hit.status != Solution::Status::Hit) continue;
     const glm::dvec3 place = seen.origin + hit.t * seen.direction, normal = composite_normal(place);
     runtime::Ray ray{to_float(place + 2e-3 * normal), to_float(random_hemisphere(random, normal))};
-    if (composite_distance(ray.origin) < 1e-6) continue;  // into a neighbour it touches
+    if (composite_distance(ray.origin) < 1e-6) continue;  // the ray starts inside a touching neighbour
     ray.side = 1;
     ray.slope = static_cast<float>(glm::dot(normal, ray.direction));
     add(bounce, ray);
@@ -87,7 +87,7 @@ void tiers(BarTable& table, const runtime::Field& field, const RayClass& rays) {
 }
 
 void reference(BarTable& table, const runtime::Field& field, const std::vector<RayClass>& classes) {
-  constexpr double kSame = 1e-6;  // scene units; two searches in double agree to much less
+  constexpr double kSame = 1e-6;  // scene units; two searches in double agree much more closely
   std::size_t wrong = 0, rays = 0, undecided = 0;
   for (const RayClass& one : classes) {
     const Judgement judged = judge_class(field, one, {Method::Certified});
@@ -119,8 +119,8 @@ void evaluations(BarTable& table, const runtime::Field& field, const RayClass& r
 void times(BarTable& table, const runtime::Field& field, const RayClass& rays) {
   constexpr std::size_t kRays = 20000;
   constexpr int kRounds = 51;
-  // A thousand steps: with fewer it is a few per cent faster and gives more rays up (2000 per million at a thousand,
-  // where the default gives up none).
+  // Max 1000 steps. Fewer steps make sphere tracing a few per cent faster, but give up more rays (2000 per million at
+  // 1000 steps, where the default gives up none).
   const Marching plain{Method::Sphere, runtime::Precision::Single, 1e-6, 1000};
   const std::span<const runtime::Ray> some(rays.rays.data(), std::min(kRays, rays.rays.size()));
   const auto seconds = runtime::time_interleaved(

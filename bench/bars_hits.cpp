@@ -1,4 +1,4 @@
-// B4: hits of solids of unit scale. B5: rays that graze a sphere, and rays that barely miss it.
+// B4: hits of unit-scale solids. B5: rays that graze a sphere, and rays that barely miss the sphere.
 #include <cstdlib>
 
 #include "bench/bars.h"
@@ -8,8 +8,8 @@
 namespace fathom::bench {
 namespace {
 
-constexpr double kFar = 10;  // scene units; beyond it a plane under a flat ray is not at unit scale
-constexpr double kAway = 5;  // from where rays start to the origin
+constexpr double kFar = 10;  // scene units; a flat ray's hit of the plane beyond this is no longer unit scale
+constexpr double kAway = 5;  // distance from the rays' origins to the scene's origin
 constexpr const char* kUnitSphere = R"({"type": "sphere", "radius": 1})";
 
 Judgement judge_rays(const compiler::CompiledScene& scene, const std::vector<runtime::Ray>& rays, Truth truth) {
@@ -24,8 +24,8 @@ struct Solid {
   const char* name;
   const char* node;
   Truth truth;
-  double reach;       // rays are spread over a disc of this radius across the line of sight
-  std::size_t share;  // of the rays: one in so many; the torus' truth is dear
+  double reach;       // rays are spread over a disc of this radius, perpendicular to the ray
+  std::size_t share;  // one in `share` rays is traced; the torus' truth is expensive
 };
 
 constexpr Solid kSolids[] = {
@@ -52,7 +52,7 @@ void distances(BarTable& table, const Solid& solid, std::size_t count) {
   table.none("B4", fmt::format("{}: false hits and misses", solid.name), judged.wrong(), judged.rays);
 }
 
-// Past a unit sphere's centre at 1 + side * gap, gaps of every size from 1e-6 to 1e-2 equally likely.
+// Rays past a unit sphere, at distance 1 + side * gap from its centre. The gaps are log-uniform from 1e-6 to 1e-2.
 std::vector<runtime::Ray> rays_beside(double side, std::size_t count) {
   Engine random(11);
   std::vector<runtime::Ray> rays;
@@ -63,7 +63,7 @@ std::vector<runtime::Ray> rays_beside(double side, std::size_t count) {
   return rays;
 }
 
-// How far the ray's line passes from the unit sphere.
+// Returns the distance from the unit sphere to the ray's line.
 Real gap(const runtime::Ray& ray) {
   Real a = 0, b = 0, c = 0;
   for (int i = 0; i < 3; ++i) {
@@ -80,7 +80,7 @@ void grazing(BarTable& table, std::size_t count) {
   table.at_most("B5", "grazing hits: p99 of |t - true t|", 2e-4, permille(hits.errors, 990));
   table.at_most("B5", "grazing hits: evaluations a ray", 100, hits.evaluations());
 
-  constexpr Real kClose = 4e-7L;  // nearer than this float cannot tell
+  constexpr Real kClose = 4e-7L;  // float cannot resolve a smaller gap
   const std::vector<runtime::Ray> rays = rays_beside(1, count);
   const runtime::MarchResult misses = runtime::march(runtime::make_field(scene, kFar), rays);
   std::size_t false_hits = 0;

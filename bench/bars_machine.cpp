@@ -1,4 +1,4 @@
-// B14: every instruction set gives the same bits.
+// B14: every instruction set computes the same bits.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -13,12 +13,13 @@
 namespace fathom::bench {
 namespace {
 
-// IEEE 754 leaves the sign and payload of a NaN to the processor; they count as one.
+// IEEE 754 leaves the sign and payload of a NaN to the processor, so all NaNs count as equal.
 std::uint32_t bits_of(float a) {
   return std::bit_cast<std::uint32_t>(std::isnan(a) ? std::numeric_limits<float>::quiet_NaN() : a);
 }
 
-// Points in and around the scenes, and every third with a coordinate that formulas trip over.
+// Random points in and around the scenes. Every third point may have coordinates that break formulas: zeros,
+// subnormals, huge numbers, infinities and NaN.
 Cloud nasty_cloud(std::size_t count) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   constexpr float kNasty[] = {0.0f,  -0.0f, 1e-40f, -1e-45f, 1e-20f, 1e5f, -1e5f,
@@ -37,7 +38,7 @@ Cloud nasty_cloud(std::size_t count) {
   return cloud;
 }
 
-// Of distances, gradients and surfaces.
+// Returns the bits of the distances, gradients and surface ids at the cloud's points.
 std::vector<std::uint32_t> all_bits(const compiler::CompiledScene& scene, const Cloud& cloud) {
   const std::size_t n = cloud.x.size();
   vm::Workspace workspace;
@@ -58,7 +59,8 @@ std::size_t differences(const std::vector<std::uint32_t>& a, const std::vector<s
   return count;
 }
 
-// Calls `measure` with each instruction set in use, the scalar one first; the numbers that differ from its.
+// Calls `measure` with each available instruction set, the scalar one first. Returns how many numbers differ from the
+// scalar ones.
 template <class Measure>
 std::size_t differences_from_scalar(const Measure& measure, std::size_t& compared) {
   const std::string before(vm::isa_name());
@@ -90,7 +92,8 @@ void evaluation(BarTable& table, std::size_t samples) {
     for (const auto& entry : fs::directory_iterator(std::string(FATHOM_SOURCE_DIR) + "/" + folder)) {
       if (entry.path().extension() != ".json") continue;
       const auto scene = compile_file(folder + ("/" + entry.path().filename().string()));
-      // About as long for each scene: some have ten thousand instructions.
+      // Fewer points for longer programs, so that each scene takes about equally long. Some have ten thousand
+      // instructions.
       const std::size_t points =
           std::clamp<std::size_t>(samples / (1 + scene.distance.instructions() / 10), 67, 65536);
       const Cloud cloud = nasty_cloud(points);

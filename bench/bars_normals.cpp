@@ -1,4 +1,4 @@
-// B10, B12, B13: normals of hits, and rays that leave them.
+// B10, B12, B13: normals at hits, and rays that leave hits.
 #include <cmath>
 #include <numeric>
 
@@ -13,18 +13,18 @@ namespace {
 using glm::dvec3;
 using Vec = glm::vec<3, Real>;
 
-// Angle between two directions of any length, radians; accurate where it is small.
+// Returns the angle between two vectors of any length, in radians. Accurate for small angles.
 Real angle(const Vec& a, const Vec& b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
 // A primitive that is smooth where |y| < `smooth`, with the exact direction of its gradient there.
 struct Smooth {
   const char* name;
-  const char* node;  // a format string that takes where it stands
+  const char* node;  // JSON, a format string for the translation
   double smooth;
   Vec (*gradient)(const Vec& p);
 };
 
-constexpr Real kBottom = 0.8L, kTop = 0.3L, kHalf = 0.7L;  // the cone's
+constexpr Real kBottom = 0.8L, kTop = 0.3L, kHalf = 0.7L;  // cone: bottom radius, top radius, half height
 
 constexpr Smooth kSmooth[] = {
     {"sphere", R"({{"type": "sphere", "radius": 1, "translate": [{}, {}, {}]}})", 2, [](const Vec& p) { return p; }},
@@ -46,7 +46,7 @@ constexpr Smooth kSmooth[] = {
      }},
 };
 
-// A stand-in at zero, so that no other origin suits the scene better.
+// A second solid at zero, so that the compiler does not move the origin to the primitive.
 constexpr const char* kAtZero = R"({"type": "sphere", "radius": 0.25}, )";
 
 struct SurfaceHits {
@@ -54,7 +54,7 @@ struct SurfaceHits {
   std::vector<runtime::Hit> hits;
 };
 
-// Hits of rays past `centre`, both in the program's coordinates.
+// Hits of rays that pass within 1 of `centre`. Rays and `centre` are in the program's coordinates.
 SurfaceHits hits_about(const runtime::Field& field, Engine& random, dvec3 centre, std::size_t count) {
   std::vector<runtime::Ray> rays;
   for (std::size_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ std::vector<runtime::SurfacePoint> surfaces_of(const compiler::CompiledScene& sc
   return points;
 }
 
-// The largest angle between normals and exact gradients at the same place, which is a float's.
+// Returns the largest angle between normals and exact gradients, both at the same position rounded to float.
 double largest_angle(const Smooth& shape, double offset, bool alone, std::size_t count, std::size_t& compared) {
   const dvec3 at(offset, offset / 2, -offset);
   const std::string node = fmt::format(fmt::runtime(shape.node), at.x, at.y, at.z);
@@ -99,7 +99,8 @@ double largest_angle(const Smooth& shape, double offset, bool alone, std::size_t
     const Vec p = Vec(hit.position) + Vec(scene.origin) - Vec(at);
     if (std::abs(p.y) > static_cast<Real>(shape.smooth)) continue;
     exact.push_back(shape.gradient(p));
-    hit.wo = glm::vec3(glm::normalize(exact.back()));  // so that no grazing ray turns the normal
+    // Parallel to the normal, so that no normal is turned towards the viewer.
+    hit.wo = glm::vec3(glm::normalize(exact.back()));
     hits.push_back(hit);
   }
   const std::vector<runtime::SurfacePoint> points = surfaces_of(scene, field, hits);
@@ -116,7 +117,7 @@ void smooth_normals(BarTable& table, std::size_t count) {
       double most = 0;
       std::size_t compared = 0;
       for (const double offset : kOffsets) {
-        if (!alone && offset < 10) continue;  // into the stand-in
+        if (!alone && offset < 10) continue;  // the two solids would overlap
         most = std::max(most, largest_angle(shape, offset, alone, count / 25, compared));
       }
       table.at_most("B10",
@@ -156,7 +157,8 @@ constexpr const char* kConvex[][2] = {
     {"icosahedron", R"({"type": "icosahedron", "radius": 1})"},
 };
 
-// Rays that leave a hit over its hemisphere, as the renderer sends them; those that meet the body again.
+// Returns how many rays hit the same body again after leaving a hit, out of rays over the hemisphere that start as
+// the renderer's do.
 std::size_t self_hits(const char* node, std::size_t count, std::size_t& tried) {
   const compiler::CompiledScene scene = compile_objects(node);
   const runtime::Field field = runtime::make_field(scene);

@@ -1,4 +1,4 @@
-// B11: gradients on the surfaces of random primitives, and normals at the places where gradients are not defined.
+// B11: gradients on the surfaces of random primitives, and normals at points where the gradient is undefined.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -16,7 +16,7 @@ namespace {
 using compiler::Kind;
 using glm::dvec3;
 
-// Outlines are drawn out or turned.
+// Adds a random primitive. Outlines (2-D shapes) are extruded or revolved.
 compiler::NodeId add_primitive(compiler::NodeMaker& maker, test::Random& random, Kind kind,
                                const std::vector<double>& params) {
   const compiler::NodeId shape = maker.make(kind, params, {});
@@ -40,8 +40,8 @@ compiler::CompiledScene scene_of(test::Random& random, Kind kind, const std::vec
   return scene;
 }
 
-// In, around and off a shape of size 1; many on an axis, a coordinate plane, a diagonal, or a corner or an edge of
-// what has these sizes for half sides.
+// Returns a random point in or around a shape of size 1. Many points lie on an axis, a coordinate plane, a diagonal,
+// or at a corner or edge of the box whose half size is the first three parameters.
 dvec3 random_place(test::Random& random, const std::vector<double>& params) {
   const double half[] = {0.5, 1, 2, 2};
   dvec3 p = random.in_box(half[random.below(4)]);
@@ -55,8 +55,8 @@ dvec3 random_place(test::Random& random, const std::vector<double>& params) {
   return p;
 }
 
-// Where the segment from a to b meets the surface, as a float renderer has it; nothing when both ends are on one
-// side.
+// Returns the point, rounded to float, where the segment from a to b crosses the surface. Empty when both ends are on
+// the same side.
 std::optional<dvec3> surface_between(const vm::VerifiedProgram& program, dvec3 a, dvec3 b, vm::Workspace& workspace) {
   const bool inside = vm::evaluate_distance(program, a, workspace) < 0;
   if (inside == (vm::evaluate_distance(program, b, workspace) < 0)) return std::nullopt;
@@ -67,8 +67,8 @@ std::optional<dvec3> surface_between(const vm::VerifiedProgram& program, dvec3 a
   return dvec3(glm::vec3(a));
 }
 
-// Whether the field, in double, rises along `gradient` at p or somewhere as near as float may mistake for it: where
-// faces meet, any of theirs will do.
+// True if the field, in double, rises along `gradient` at p or at a point that float cannot distinguish from p. At an
+// edge between faces, the gradient of any of these faces is accepted.
 bool rises_along(const vm::VerifiedProgram& program, dvec3 p, dvec3 gradient, test::Random& random,
                  vm::Workspace& workspace) {
   constexpr double kStep = 1e-8, kNear = 8 * vm::kFloatError;
@@ -81,8 +81,8 @@ bool rises_along(const vm::VerifiedProgram& program, dvec3 p, dvec3 gradient, te
   return false;
 }
 
-// Whether the field, in double, has a first derivative at p along some axis. At the centre of a torus without a hole,
-// where two tips of the solid meet, it has none, and no direction is the normal.
+// True if the field, in double, has a first derivative at p along some axis. At the centre of a torus without a hole,
+// two tips of the solid meet: no axis has a derivative there, and no direction is the normal.
 bool changes_at(const vm::VerifiedProgram& program, dvec3 p, vm::Workspace& workspace) {
   constexpr double kStep = 1e-7;
   for (int axis = 0; axis < 3; ++axis) {
@@ -98,10 +98,10 @@ bool changes_at(const vm::VerifiedProgram& program, dvec3 p, vm::Workspace& work
 struct Tally {
   std::size_t on_surface = 0, anywhere = 0;
   std::size_t reversed = 0, zero = 0, not_numbers = 0;  // gradients on the surface
-  std::size_t unfit = 0;                                // normals: not of unit length, or not towards the ray
+  std::size_t unfit = 0;  // normals that are not of unit length or point away from the ray
 };
 
-// Tries places of one primitive.
+// Tries random points of one primitive.
 class Trial {
  public:
   Trial(test::Random& random, Kind kind, vm::Workspace& workspace, Tally& tally)
@@ -159,7 +159,7 @@ class Trial {
 }  // namespace
 
 void random_normal_bars(BarTable& table, const Counts& counts) {
-  constexpr int kPlaces = 64;  // of a primitive
+  constexpr int kPlaces = 64;  // per primitive
   std::vector<Kind> kinds = test::primitive_kinds(compiler::Sort::Solid, false);
   const std::vector<Kind> outlines = test::primitive_kinds(compiler::Sort::Outline, false);
   kinds.insert(kinds.end(), outlines.begin(), outlines.end());

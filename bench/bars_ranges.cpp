@@ -1,4 +1,4 @@
-// B16: what intervals say of random scenes contains what happens there.
+// B16: interval bounds of random scenes contain the sampled values.
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -17,14 +17,15 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double kSides[] = {0, 1e-9, 1e-6, 1e-3, 0.05, 0.3, 1, 4};  // of boxes and stretches, scene units
-constexpr int kBoxes = 24, kSamples = 64;                            // of a scene, of a box
-// Values in double, of which differences are taken, are off by less than this.
+// Sides of boxes and lengths of segments, scene units.
+constexpr double kSides[] = {0, 1e-9, 1e-6, 1e-3, 0.05, 0.3, 1, 4};
+constexpr int kBoxes = 24, kSamples = 64;  // boxes per scene, samples per box
+// Bound of the relative rounding error of values in double, whose differences are taken.
 constexpr double kRounding = 1e-12;
 
 struct Tally {
   std::size_t tried = 0, outside = 0;
-  // A bound that excludes nothing is not tried.
+  // An unbounded range excludes nothing and is not counted.
   void inside(double value, vm::Range range) {
     if (!std::isfinite(range.lo) && !std::isfinite(range.hi)) return;
     ++tried, outside += !(value >= range.lo && value <= range.hi);
@@ -34,7 +35,7 @@ struct Tally {
   }
 };
 
-// Tries boxes and stretches of one program.
+// Tries boxes and segments of one program.
 class Trial {
  public:
   Trial(const vm::VerifiedProgram& program, test::Random& random, vm::Workspace& workspace)
@@ -92,7 +93,7 @@ class Trial {
     const dvec3 lo = random_.in_box(2), sides(side(), side(), side());
     return {lo, lo + sides};
   }
-  // In [lo, hi], the ends often.
+  // Returns a random number in [lo, hi], the ends themselves in one of five cases.
   double place(double lo, double hi) {
     const double share = random_.chance(0.2) ? random_.below(2) : random_.uniform(0, 1);
     return std::clamp(lo + share * (hi - lo), lo, hi);

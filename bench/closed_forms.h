@@ -1,4 +1,4 @@
-// Rays whose numbers are exact in float, and where they meet solids of closed form, in long double.
+// Rays with coordinates exact in float, and their hits of solids in closed form, in long double.
 #pragma once
 
 #include <algorithm>
@@ -19,28 +19,30 @@ inline glm::dvec3 to_float(glm::dvec3 v) { return glm::dvec3(glm::vec3(v)); }
 inline double uniform(Engine& random, double lo, double hi) {
   return lo + (hi - lo) * std::uniform_real_distribution<double>()(random);
 }
-// Uniform on the unit sphere.
+// Returns a direction, uniform on the unit sphere.
 inline glm::dvec3 random_direction(Engine& random) {
   const double y = uniform(random, -1, 1), angle = uniform(random, 0, 2 * M_PI), r = std::sqrt(1 - y * y);
   return {r * std::cos(angle), y, r * std::sin(angle)};
 }
-// Uniform over the hemisphere about a unit vector.
+// Returns a direction, uniform over the hemisphere about a unit vector.
 inline glm::dvec3 random_hemisphere(Engine& random, glm::dvec3 normal) {
   const glm::dvec3 d = random_direction(random);
   return glm::dot(d, normal) < 0 ? -d : d;
 }
 
-// From `away` before the origin, past it at distance `miss`: what a float renderer is given.
+// Returns a ray, rounded to float, that starts `away` before the origin's nearest point and passes the origin at
+// distance `miss`.
 inline runtime::Ray ray_past(Engine& random, double miss, double away) {
   const glm::dvec3 direction = random_direction(random);
   const glm::dvec3 aside = glm::normalize(glm::cross(direction, random_direction(random)));
   return {to_float(miss * aside - away * direction), to_float(direction)};
 }
 
-// Where a ray meets the solid first, in units of |direction|; nothing when it does not. The ray starts outside.
+// Returns the parameter of a ray's first hit of a solid, in units of |direction|; empty for a miss. The ray starts
+// outside.
 using Truth = std::optional<Real> (*)(const runtime::Ray&);
 
-// Of radius 1.
+// The unit sphere at the origin.
 inline std::optional<Real> meet_sphere(const runtime::Ray& ray) {
   Real a = 0, b = 0, c = -1;
   for (int i = 0; i < 3; ++i) {
@@ -52,13 +54,13 @@ inline std::optional<Real> meet_sphere(const runtime::Ray& ray) {
   return c / (-b + std::sqrt(discriminant));
 }
 
-// y < 0.
+// The half-space y < 0.
 inline std::optional<Real> meet_plane(const runtime::Ray& ray) {
   if (ray.direction.y >= 0) return std::nullopt;
   return -static_cast<Real>(ray.origin.y) / ray.direction.y;
 }
 
-// Half size 0.75, 0.5, 1.
+// The box of half size 0.75, 0.5, 1.
 inline std::optional<Real> meet_box(const runtime::Ray& ray) {
   const Real half[] = {0.75L, 0.5L, 1.0L};
   Real begin = 0, end = 1e9L;
@@ -71,7 +73,8 @@ inline std::optional<Real> meet_box(const runtime::Ray& ray) {
   return begin;
 }
 
-// Radii 0.75 and 0.25, from about 5 away: bisection in the first of 20000 cells that holds a change of sign.
+// The torus of radii 0.75 and 0.25, for rays from about 5 away. Bisects the first of 20000 cells in which the sign
+// changes.
 inline std::optional<Real> meet_torus(const runtime::Ray& ray) {
   const auto field = [&](Real t) {
     const Real x = ray.origin.x + t * ray.direction.x, y = ray.origin.y + t * ray.direction.y,

@@ -1,4 +1,4 @@
-// What benches of the machine have in common: points to evaluate and scenes to read.
+// Points to evaluate and scenes to read, for the benches of the machine.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,8 @@ struct Cloud {
   vm::Points points() const { return {x.data(), y.data(), z.data()}; }
 };
 
-// In the box, or where the things stand on a ground without end: [-5,5] x [0,2] x [-5,5].
+// Random points in `box`, or in [-5,5] x [0,2] x [-5,5], the objects' surroundings, when the ground makes the box
+// infinite.
 inline Cloud make_cloud(std::size_t count, const compiler::Box& box = compiler::Box::everything()) {
   std::mt19937 random(1);
   const bool bounded = box.finite() && !box.empty();
@@ -37,7 +38,7 @@ inline Cloud make_cloud(std::size_t count, const compiler::Box& box = compiler::
   return cloud;
 }
 
-// `path`: absolute, or from the root of the project. Ends the program when the scene has errors.
+// `path`: absolute, or from the repository's root. Ends the program when the scene has errors.
 inline compiler::CompiledScene compile_file(const std::string& path, const compiler::CompileOptions& options = {}) {
   std::ifstream in(std::filesystem::path(FATHOM_SOURCE_DIR) / path);
   std::stringstream text;

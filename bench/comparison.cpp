@@ -15,7 +15,7 @@
 namespace fathom::bench {
 namespace {
 
-constexpr std::string_view kNote = "; ";  // in a label, between the unit and the note
+constexpr std::string_view kNote = "; ";  // separates the unit from the note in a label
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -49,7 +49,7 @@ void time_rounds(benchmark::State& state, const Comparison& row) {
   if (row.least > 0) state.counters["bar_least"] = row.least;
 }
 
-// One line a benchmark.
+// Prints one line per benchmark.
 class Table : public benchmark::BenchmarkReporter {
  public:
   explicit Table(std::string header) : header_(std::move(header)) {}

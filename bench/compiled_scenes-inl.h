@@ -1,4 +1,4 @@
-// The table of compiled_scenes.h, for one instruction set. The headers scene_*.h are made by `fathom emit cpp`.
+// The table of compiled_scenes.h, for one instruction set. `fathom emit cpp` makes the headers scene_*.h.
 #if defined(FATHOM_BENCH_COMPILED_SCENES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_COMPILED_SCENES_INL
 #undef FATHOM_BENCH_COMPILED_SCENES_INL
@@ -28,7 +28,8 @@ namespace {
 #include "scene_e.h"
 #include "scene_f.h"
 
-// kLevel: what the scene file takes off the distance, so that its surface is where classic tracing has its hits.
+// kLevel: the constant that the scene file subtracts from the distance, so that its surface is where classic sphere
+// tracing has its hits.
 #define FATHOM_SCENE(Name, scene, level, inlining)                                                 \
   struct Name {                                                                                    \
     static constexpr double kLevel = level;                                                        \
@@ -39,10 +40,10 @@ FATHOM_SCENE(Csg, scene_b, 0, HWY_INLINE)
 FATHOM_SCENE(Bulb, scene_c, 5e-4, HWY_INLINE)
 FATHOM_SCENE(Gyroid, scene_e, 1e-3, HWY_INLINE)
 FATHOM_SCENE(Formula, scene_f, 0, HWY_INLINE)
-FATHOM_SCENE(Thousand, scene_d1000, 2e-4, HWY_NOINLINE)  // a thousand lines, in a dozen places
+FATHOM_SCENE(Thousand, scene_d1000, 2e-4, HWY_NOINLINE)  // a thousand lines, used in a dozen places
 #undef FATHOM_SCENE
 
-// Of ten thousand objects no one writes a line each.
+// A loop over the objects: nobody would write ten thousand lines, one per object.
 template <int count>
 struct Scattered {
   static constexpr double kLevel = 0;

@@ -1,6 +1,6 @@
-// What do regions save? The marcher with regions (runtime/field/regions.h) against the same marcher that evaluates
-// the whole program for every sample, with all lanes full: scattered objects, and objects that are all blended into
-// one.
+// Measures how much regions (runtime/field/regions.h) save: the marcher with regions against the same marcher
+// evaluating the whole program for every sample, with all lanes full. The scenes are scattered objects, and objects
+// that are all blended into one.
 //
 //     build/release/bench_culling
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using namespace fathom;
 using namespace fathom::bench;
 
-// Scene D, but for its margin, as a scene file.
+// Scene D as a scene file, except for its margin.
 std::string scattered(int count) {
   const ManyObjects objects = make_many_objects(count);
   std::string text;
@@ -34,7 +34,8 @@ std::string scattered(int count) {
   return "{\"type\": \"union\", \"of\": [" + text + "]}";
 }
 
-// As many spheres, boxes and tori as scene B has, or more and smaller, all blended one after the other.
+// Spheres, boxes and tori in a row, each blended with the one before: as many as in scene B, or more and smaller
+// ones.
 std::string blended(int count) {
   std::uint32_t state = 12345;
   const auto u = [&] {
@@ -56,8 +57,8 @@ std::string blended(int count) {
   return fmt::format("{{\"type\": \"smooth_union\", \"k\": {:.4f}, \"of\": [{}]}}", 0.2 * size, text);
 }
 
-// A scene with and without regions, and rays to follow through it. The whole program takes a share of them: enough to
-// fill its lanes, in seconds rather than minutes.
+// A scene with and without regions, and the rays to trace. The whole program traces only every `share`-th ray: enough
+// to fill its lanes, in seconds rather than minutes.
 class Scene {
  public:
   Scene(const std::string& object, const std::string& camera, std::size_t share)

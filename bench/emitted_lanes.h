@@ -1,6 +1,6 @@
-// vm::Batch as the lane type of emitted C++ (the contract is at the head of every emitted header): all it lacks are
-// the two halves of split_power_of_two apart. Compiled once for each instruction set, like the file it is included
-// in:
+// vm::Batch as the lane type of emitted C++ (the contract is at the head of every emitted header). Batch lacks only
+// the two halves of split_power_of_two as separate functions. Compiled once per instruction set, like the file that
+// includes this header:
 //
 //     HWY_BEFORE_NAMESPACE();
 //     namespace fathom::bench::HWY_NAMESPACE {
@@ -8,7 +8,7 @@
 //     #include "scene_a.h"              // fathom emit cpp ... --namespace scene_a
 //     scene_a::distance(x, y, z)        // of three Batches
 //
-// with the headers that it includes included before. Tested by: tests/compiler/emit/emitted_lanes_test.cpp
+// The headers that scene_a.h includes must be included before. Tested by: tests/compiler/emit/emitted_lanes_test.cpp
 #if defined(FATHOM_BENCH_EMITTED_LANES) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_EMITTED_LANES
 #undef FATHOM_BENCH_EMITTED_LANES

@@ -1,5 +1,5 @@
-// What does it cost to enclose a program over boxes? Time per instruction for sixteen boxes, and beside it that of
-// sixteen points of a full block; boxes of three sizes, since what has decided itself costs the same.
+// Measures the cost of enclosing a program over boxes: time per instruction for sixteen boxes, next to the time for
+// sixteen points of a full block. Boxes of two sizes, since choices that a box has decided still cost the same.
 //
 //     build/release/bench_enclosing [rounds]
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ using namespace fathom;
 
 constexpr std::size_t kPoints = 4096;
 
-// Cubes about the first points of the cloud.
+// Cubes around the first points of the cloud.
 struct Cubes {
   float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
 

@@ -1,15 +1,16 @@
-// A farm of ten thousand machines, simulated: what size of units is done first, and what it costs to merge them.
+// Simulates a farm of ten thousand machines: which size of units finishes first, and the cost of merging their films.
 //
 //     build/release/bench_farm [SCENE]
 //
-// Units' costs are those of a real picture's pixels (runtime/cli/plan/pixel_costs.h), merging's are measured on films that
-// are written and read; machines, queue and disk are numbers, kFarms. Machines take units in order from
-// one queue, which starts so many a second. They differ in speed, one in a hundred is four times slower, and they are
-// lost at random: that is noticed after a while, and the unit goes on from its checkpoint elsewhere. All write to one
-// disk, which serves one after the other. The time to the last film is given over that of the same machines without
-// any of this, so 1 is all that can be had; the shares say where the machines' time went. What `fathom plan` chooses
-// with --workers is the last row of each table. Rows are the middle one of three farms drawn at
-// random. The films are merged by one process on one thread.
+// The cost of a unit is that of a real image's pixels (runtime/cli/plan/pixel_costs.h). The cost of merging is
+// measured on films written and read. Machines, queue and disk are numbers, kFarms. Machines take units in order from
+// one queue, which starts a limited number of units per second. Machines differ in speed, and one in a hundred is
+// four times slower. Machines are lost at random. The queue notices a loss after a while, and the unit continues from
+// its checkpoint on another machine. All machines write to one disk, which serves one request at a time. The ratio is
+// the time to the last film over the time of the same machines without any of these delays, so 1 is the optimum. The
+// percentages say where the machines' time went. The last row of each table has the unit size that `fathom plan`
+// chooses with --workers. Each row is the median of three farms drawn at random. One process on one thread merges the
+// films.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -32,18 +33,18 @@
 namespace fathom::bench {
 namespace {
 
-constexpr double kSpread = 0.15;                              // of the logarithm of machines' speeds
-constexpr double kSlow = 0.01, kSlowness = 4;                 // share of machines, and how many times slower they are
-constexpr double kReplaced = 600;                             // seconds until a lost machine is back
-constexpr double kUnitOperations = 20, kMergeOperations = 3;  // of the disk per unit (strace)
+constexpr double kSpread = 0.15;               // standard deviation of the logarithm of machines' speeds
+constexpr double kSlow = 0.01, kSlowness = 4;  // fraction of slow machines, and their slowdown factor
+constexpr double kReplaced = 600;              // seconds until a lost machine is replaced
+constexpr double kUnitOperations = 20, kMergeOperations = 3;  // disk operations per unit (strace)
 
 struct Farm {
   const char* name;
-  double start;                  // seconds of a unit before its first sample: the queue's, and to load and compile
+  double start;                  // seconds per unit before its first sample: queue, loading and compiling
   double starts_per_second;      // by the queue
-  double lost_after, noticed;    // mean hours until a machine is lost; seconds until the queue sees it
-  double operations, bandwidth;  // of the disk per second; bytes
-  double checkpoint;             // seconds between those of a unit
+  double lost_after, noticed;    // mean hours until a machine is lost; seconds until the queue notices
+  double operations, bandwidth;  // disk operations per second; bytes per second
+  double checkpoint;             // seconds between checkpoints of a unit
 };
 constexpr Farm kFarms[] = {{"cluster", 1, 200, 24 * 30, 300, 20'000, 5e9, 600},
                            {"spot machines", 10, 200, 6, 300, 20'000, 5e9, 600},
@@ -51,19 +52,20 @@ constexpr Farm kFarms[] = {{"cluster", 1, 200, 24 * 30, 300, 20'000, 5e9, 600},
                            {"cluster, a checkpoint each minute", 1, 200, 24 * 30, 300, 20'000, 5e9, 60}};
 
 constexpr double kUnitSeconds[] = {15, 30, 60, 120, 300, 600, 1800};
-constexpr double kMinutes[] = {10, 60, 480};  // that each machine has to do
+constexpr double kMinutes[] = {10, 60, 480};  // of work per machine
 constexpr int kMachines[] = {10'000, 100};
-constexpr std::uint64_t kMostUnits = 20'000'000;  // that are simulated
+constexpr std::uint64_t kMostUnits = 20'000'000;  // max number of simulated units
 
 struct Tally {
-  double end = 0;                                           // seconds
-  double started = 0, lost = 0, waited = 0, disk_busy = 0;  // seconds of machines; of the disk
+  double end = 0;  // seconds
+  // Machine-seconds, except `disk_busy`: seconds of the disk.
+  double started = 0, lost = 0, waited = 0, disk_busy = 0;
 };
 
 // One render on one farm.
 class Simulation {
  public:
-  // `costs` are seconds of each unit of a frame on a machine of speed 1; `bytes` are those of a film.
+  // `costs`: seconds per unit of a frame on a machine of speed 1. `bytes`: size of a film.
   Simulation(const Farm& farm, int machines, std::vector<double> costs, std::uint64_t units, double bytes,
              unsigned seed)
       : farm_(farm),
@@ -115,7 +117,7 @@ class Simulation {
     double time;
     enum Kind { Free, Computed, Written, Noticed } kind;
     int machine;
-    double left;  // seconds at speed 1 that the unit still takes
+    double left;  // remaining seconds of the unit at speed 1
     bool operator>(const Event& other) const { return time > other.time; }
   };
 
@@ -158,7 +160,7 @@ class Simulation {
     events_.push({begin + lost + kReplaced, Event::Free, machine, 0});
   }
 
-  // Checkpoints are written beside the work; the disk has them to do.
+  // Charges the disk for the unit's checkpoints. The machine writes them while rendering and does not wait.
   void checkpoint(double computing) {
     disk_free_ = std::max(disk_free_, now_);
     for (double at = farm_.checkpoint; at < computing; at += farm_.checkpoint) disk_free_ += busy();
@@ -178,7 +180,7 @@ class Simulation {
   const Farm& farm_;
   const std::vector<double> costs_;
   const std::uint64_t units_;
-  const double service_;  // seconds of the disk for a film
+  const double service_;  // disk seconds per film
   std::mt19937_64 random_;
   std::vector<double> speeds_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -191,10 +193,10 @@ class Simulation {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Processor time to read a unit's film and to add it to a frame's: per unit, and per pixel of it.
+// Processor time to read a unit's film and add it to the frame's: per unit, plus per pixel of the unit.
 struct MergeCost {
   double unit, pixel;  // seconds
-  double bytes;        // of a pixel, in a file
+  double bytes;        // per pixel, in a film file
 };
 
 MergeCost measure_merging(const compiler::CompiledScene& scene) {
@@ -231,7 +233,7 @@ MergeCost measure_merging(const compiler::CompiledScene& scene) {
   return {std::max(0.0, seconds[0] - pixel * kSides[0] * kSides[0]), pixel, bytes};
 }
 
-// A render on so many machines, and what is known of its costs.
+// A render on a number of machines, with its known costs.
 struct Job {
   const cli::PixelCosts& costs;
   const MergeCost& merging;
@@ -254,7 +256,7 @@ void simulate(const Farm& farm, const Job& job, double unit_seconds, const char*
   const double longest = *std::ranges::max_element(costs);
   const double pixels = static_cast<double>(grid.width) * grid.height / grid.columns / grid.rows;
   const double units = static_cast<double>(grid.units()), bytes = pixels * job.merging.bytes;
-  // The middle one of three farms by the ratio.
+  // The median by ratio of three farms.
   std::vector<std::pair<double, Tally>> runs;
   for (unsigned seed = 1; seed <= 3; ++seed) {
     Simulation simulation(farm, job.machines, costs, grid.units(), bytes, seed);

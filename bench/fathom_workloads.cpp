@@ -15,8 +15,8 @@ namespace {
 
 using namespace fathom::runtime;
 
-// Workload S, with as many rays under way as the marcher takes. Each has a slot, whose number is its id; a pixel's
-// shadow ray takes its camera ray's over.
+// Workload S with as many rays in flight as the marcher takes. Each ray has a slot, and the slot's number is the
+// ray's id. A pixel's shadow ray takes over the slot of its camera ray.
 class ShadowRenderer {
  public:
   ShadowRenderer(const compiler::CompiledScene& scene, const Frame& frame)
@@ -86,7 +86,8 @@ class ShadowRenderer {
     shade(count);
   }
 
-  // What the pixel shows unless its shadow ray hits.
+  // Writes the unoccluded value of each hit's pixel and starts the shadow ray. A hit of the shadow ray overwrites
+  // that value later.
   void shade(std::size_t count) {
     picture_.camera_hits += count;
     find_surfaces(scene_, field_, std::span(hits_).first(count), points_, marcher_->workspace());
@@ -113,8 +114,8 @@ class ShadowRenderer {
   Field field_;
   const glm::dvec3 light_ = glm::normalize(kToLight);
   std::unique_ptr<Marcher> marcher_;
-  std::size_t next_ = 0;  // pixel
-  int x_ = 0, y_ = 0;     // where it is
+  std::size_t next_ = 0;  // next pixel to start
+  int x_ = 0, y_ = 0;     // coordinates of that pixel
   std::array<Slot, Marcher::kMostRays> slots_;
   std::vector<std::uint32_t> free_;
   std::vector<Arrival> arrivals_;

@@ -1,4 +1,4 @@
-// The workloads as Fathom does them: the same pictures at its own accuracy, on one thread.
+// Fathom's version of the workloads: the same images at Fathom's own accuracy, on one thread.
 #pragma once
 
 #include "bench/workload.h"
@@ -6,9 +6,9 @@
 
 namespace fathom::bench {
 
-// A marcher and find_surfaces(), as the integrator uses them, with shadow rays.
+// Uses a marcher and find_surfaces() as the integrator does, with shadow rays.
 Picture fathom_shadow(const compiler::CompiledScene& scene, const Frame& frame);
-// render(): the whole renderer with its materials, auxiliary channels and exact sums.
+// Uses render(): the whole renderer with its materials, auxiliary channels and exact sums.
 Picture fathom_paths(const compiler::CompiledScene& scene, const Frame& frame);
 
 }  // namespace fathom::bench

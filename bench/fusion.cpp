@@ -1,4 +1,4 @@
-// What do fused instructions save? Time per point of scenes' programs as compiled and without the pass fuse.
+// Measures what fused instructions save: time per point of scenes' programs as compiled, and without the pass `fuse`.
 //
 //     build/release/bench_fusion [rounds]
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
-// What does interpretation cost? Time per point of the block machine against the same scene as C++ compiled ahead of
-// time with the same lanes and floating-point flags (`fathom emit cpp`), against that with -O3 -march=native
-// -ffast-math, and against the machine's own scalar interpreter: the same loop over registers of one float, a point
-// at a time.
+// Measures the cost of interpretation: time per point of the block machine against three others. The first is the
+// same scene as C++, compiled ahead of time with the same lanes and floating-point flags (`fathom emit cpp`). The
+// second is that C++ with -O3 -march=native -ffast-math. The third is the machine's own scalar interpreter: the same
+// loop over registers of one float, one point at a time.
 //
 //     build/release/bench_interpreter
 #include <cmath>
@@ -21,7 +21,7 @@ using namespace fathom::bench;
 constexpr std::size_t kPoints = 4096;
 constexpr int kRounds = 41;
 
-// A scene's programs and a cloud of points, kept for as long as the benches run.
+// A scene's programs and a cloud of points, alive while the benches run.
 class Scene {
  public:
   explicit Scene(const CompiledAhead& ahead)
@@ -30,7 +30,7 @@ class Scene {
         out_(kPoints),
         convex_(kPoints) {}
 
-  // A round of a millisecond or more.
+  // Number of repeats per round, so that a round takes a millisecond or more.
   int repeats() const { return std::max(1, 4000 / static_cast<int>(scene_.distance.instructions() + 50)); }
 
   void interpret(int repeats) {
@@ -63,7 +63,7 @@ class Scene {
   vm::Workspace workspace_;
 };
 
-// A function's instructions alone: one value at each point of a cloud that is 8 units wide.
+// A program of one function's instructions: one value at each point of a cloud 8 units wide.
 class Function {
  public:
   explicit Function(std::initializer_list<vm::Opcode> opcodes)
@@ -90,7 +90,7 @@ class Function {
 
 struct Bars {
   const char* scene;
-  double ahead, scalar;  // the ratio at most
+  double ahead, scalar;  // max ratios to the C++ compiled ahead of time and to the scalar interpreter
 };
 constexpr Bars kBars[] = {{"A", 1.15, 0.1},     {"B", 1.15, 0.1}, {"D1000", 1.15, 0.1},
                           {"C", 1.25, 1 / 7.0}, {"E", 1.25, 0.1}, {"F", 4, 0.1}};

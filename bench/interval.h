@@ -1,6 +1,6 @@
-// Numbers for the independent solver: intervals in double, and intervals with the interval of a derivative. Every
-// bound moves outwards by a float64 neighbour after every operation, so exact results lie inside. Shares no code with
-// vm/, which it is there to judge. Source: Moore, "Interval Analysis", 1966.
+// Number types of the independent solver: intervals in double, and intervals with the interval of a derivative. Every
+// bound moves outwards by one float64 neighbour after every operation, so exact results lie inside. Shares no code
+// with vm/, which the solver judges. Source: Moore, "Interval Analysis", 1966.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +16,14 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Interval {
   double lo, hi;
 
-  Interval(double a) : lo(a), hi(a) {}  // a number is the interval that holds it alone
+  Interval(double a) : lo(a), hi(a) {}  // implicit: a number is the interval that holds only itself
   Interval(double a, double b) : lo(a), hi(b) {}
 
   double middle() const { return lo + (hi - lo) / 2; }
   double width() const { return hi - lo; }
 };
 
-// std::nextafter(a, infinity), without the call.
+// std::nextafter(a, infinity), without the function call.
 inline double next_up(double a) {
   if (!(a < kInfinity)) return a;
   if (a == 0) return std::numeric_limits<double>::denorm_min();
@@ -32,7 +32,7 @@ inline double next_up(double a) {
 }
 inline double next_down(double a) { return -next_up(-a); }
 
-// Both ends a neighbour further out; the whole line when an end is not a number.
+// Moves both ends outwards by one float64 neighbour. The whole real line when an end is NaN.
 inline Interval outward(double lo, double hi) {
   if (!(lo <= hi)) return {-kInfinity, kInfinity};
   return {next_down(lo), next_up(hi)};
@@ -69,8 +69,9 @@ inline Interval sqrt(Interval a) {
 inline double lower(Interval a) { return a.lo; }
 inline double upper(Interval a) { return a.hi; }
 
-// A value and its derivative by the parameter of a line, where it exists; where two expressions meet, what either
-// has. Source: Mitchell, "Robust Ray Intersection with Interval Arithmetic", 1990.
+// A value and its derivative with respect to the parameter of a line. If the intervals do not decide a minimum of two
+// expressions, its derivative is the hull of both derivatives. Source: Mitchell, "Robust Ray Intersection with
+// Interval Arithmetic", 1990.
 struct Jet {
   Interval v, d;
 

@@ -14,7 +14,7 @@ double square(double a) { return a * a; }
 double lower(double a) { return a; }
 double upper(double a) { return a; }
 
-// Scene H over any of the number types.
+// Scene H over any of the number types double, Interval and Jet.
 template <class T>
 struct Point {
   T x, y, z;
@@ -40,8 +40,8 @@ T torus(const Point<T>& p, glm::dvec3 centre, double major, double minor) {
   return length<T>(ring, p.y - T(centre.y)) - T(minor);
 }
 
-// length(max(q, 0)) + min(max(q.x, q.y, q.z), 0), of which one term is 0. Where no two of q can be positive it is the
-// largest of them: said so, the derivative stays sharp.
+// length(max(q, 0)) + min(max(q.x, q.y, q.z), 0), one term of which is 0. If at most one component of q can be
+// positive, the distance is the largest component. Returning that component keeps the derivative sharp.
 template <class T>
 T box(const Point<T>& p, glm::dvec3 centre, glm::dvec3 half) {
   const T x = abs(p.x - T(centre.x)) - T(half.x), y = abs(p.y - T(centre.y)) - T(half.y),
@@ -69,12 +69,12 @@ Interval along(double origin, double direction, Interval t) { return Interval(or
 
 struct Part {
   double begin, end;
-  int sign_at_begin, sign_at_end;  // of side * f; 0 when rounding hides it
+  int sign_at_begin, sign_at_end;  // signs of side * f; 0 when rounding hides the sign
 };
 
 struct Sample {
   double t;
-  Interval f;  // side * f there
+  Interval f;  // side * f at t
 };
 
 class Search {
@@ -102,7 +102,7 @@ class Search {
     return {t, side_ > 0 ? f : -f};
   }
 
-  // side * f and its derivative over [begin, end].
+  // Returns side * f and its derivative over [begin, end].
   Jet over(const Part& part) const {
     const Interval t(part.begin, part.end);
     const auto coordinate = [&](int i) {
@@ -112,7 +112,8 @@ class Search {
     return side_ > 0 ? f : -f;
   }
 
-  // The root, if the part's first is found; otherwise the part is dropped, left open, or cut in two.
+  // Returns the first root of the part when the part can be decided. Otherwise drops the part, leaves it open, or
+  // splits it in two.
   std::optional<Solution> settle(const Part& part) {
     const Jet f = over(part);
     const bool changes = part.sign_at_begin > 0 && part.sign_at_end < 0;
@@ -124,7 +125,7 @@ class Search {
     if (part.end - part.begin <= kFinest * max(1.0, part.end) || !(middle > part.begin && middle < part.end)) {
       if (changes && !open_) return Solution{Solution::Status::Hit, middle};
       open_ = true;
-      // Beyond a change of sign all is behind the surface.
+      // Everything beyond a change of sign is behind the surface.
       return changes ? std::optional(Solution{Solution::Status::Undecided}) : std::nullopt;
     }
     const Interval centred = at_middle + f.d * (Interval(part.begin, part.end) - Interval(middle));
@@ -135,7 +136,7 @@ class Search {
     return std::nullopt;
   }
 
-  // About half way, where the sign can be told.
+  // Returns a sample near the middle at which the sign can be decided.
   Sample split(const Part& part) const {
     for (const double share : {0.5, 0.4375, 0.5625}) {
       const Sample s = sample(part.begin + share * (part.end - part.begin));
@@ -151,7 +152,7 @@ class Search {
       if (s == 0 || !(middle > part.begin && middle < part.end)) break;
       (s > 0 ? part.begin : part.end) = middle;
     }
-    // An earlier part that stayed open may hold a root, too.
+    // An earlier part that stayed open may also hold a root.
     if (open_) return Solution{Solution::Status::Undecided};
     return Solution{Solution::Status::Hit, part.begin + (part.end - part.begin) / 2};
   }

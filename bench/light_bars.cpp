@@ -1,8 +1,8 @@
-// Do the bars of light hold? Exit status 1 when one is missed.
+// Checks the acceptance bars of light. Exit status 1 when a bar is missed.
 //
 //     build/release/bench_light_bars           a few minutes on two cores
-//     build/release/bench_light_bars --full    half the errors, many more cases and pictures
-//     build/release/bench_light_bars B20 B21   these alone
+//     build/release/bench_light_bars --full    half the errors, many more cases and images
+//     build/release/bench_light_bars B20 B21   only these bars
 #include "bench/light_bars.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// The bars of light: pictures against closed forms, what materials do to light, densities of everything that is
-// sampled, ways to find light against each other, how fast errors fall. B17 to B22; limits stand where rows are made.
+// The acceptance bars of light, B17 to B22: images against closed forms, energy and reciprocity of materials,
+// densities of everything that is sampled, light sampling strategies against each other, convergence rates. The
+// limits stand where the rows are made.
 #pragma once
 
 #include <atomic>
@@ -13,13 +14,13 @@
 
 namespace fathom::bench {
 
-// How much is tried. The default is what the bars ask for, but for how many pictures are compared.
+// Numbers of cases. The default is what the bars ask for, except for the number of compared images.
 struct LightCounts {
-  double relative_sigma = 1e-3;  // of a picture's mean against a closed form
-  int reciprocal_pairs = 20000;  // of directions, for each material
+  double relative_sigma = 1e-3;  // of an image's mean against a closed form
+  int reciprocal_pairs = 20000;  // pairs of directions per material
   int random_materials = 300;
   int chi_square_samples = 1000000;
-  int pictures = 256;  // of each way and scene
+  int pictures = 256;  // images per strategy and scene
   int slope_repeats = 400;
 };
 inline constexpr LightCounts kFullLight{.relative_sigma = 5e-4,
@@ -35,10 +36,10 @@ void density_bars(BarTable& table, const LightCounts& counts);   // B20
 void picture_bars(BarTable& table, const LightCounts& counts);   // B21
 void slope_bars(BarTable& table, const LightCounts& counts);     // B22
 
-// What `json` says, "version" supplied. Ends the program when it has errors.
+// Compiles the scene `json`, to which "version" is added. Ends the program when the scene has errors.
 compiler::CompiledScene compile_scene(const std::string& json);
 
-// f(0) to f(n - 1), on all processors.
+// Calls f(0) to f(n - 1), on all processors.
 inline void for_each_index(std::size_t n, const std::function<void(std::size_t)>& f) {
   std::atomic<std::size_t> next = 0;
   std::vector<std::jthread> threads;

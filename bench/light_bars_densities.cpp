@@ -1,5 +1,5 @@
-// B20: whatever is sampled falls as its density says. Pearson's test of a million samples each, all together at level
-// .01 (Sidak).
+// B20: samples follow their density. Pearson's chi-square test with a million samples per case, at level .01 for all
+// cases together (Sidak).
 #include <cmath>
 #include <numeric>
 
@@ -113,7 +113,8 @@ struct Beyond {
 
 Group environments(int samples) {
   const std::string ball = R"(, "objects": [{"type": "sphere", "radius": 1}])";
-  // About its own middle, rows of 5 degrees: the disc's rim is a side of cells, not a step in them.
+  // The pole points at the disc's centre and the rows span 5 degrees: the disc's rim is a cell border, not a step
+  // inside cells.
   const glm::vec3 to_disc = glm::normalize(glm::vec3(1, 2, 1));
   const Beyond cases[] = {{"disc", R"("lights": {"far": {"type": "directional", "direction": [-1, -2, -1],
                                "irradiance": [2, 2, 2], "angle": 10}})",
@@ -127,7 +128,7 @@ Group environments(int samples) {
     const auto environment =
         std::make_shared<runtime::Environment>(compile_scene(c.json + ball), test::random_image(12, 6));
     for (const runtime::LightQuery& query : queries) {
-      if (!(environment->estimate(query) > 0)) continue;  // the disc is behind
+      if (!(environment->estimate(query) > 0)) continue;  // the disc is behind the surface
       test::ChiSquareSetup setup = setup_of(samples, c.pole, 3000 + group.pairs.size());
       setup.rows = c.rows;
       setup.columns = 2 * c.rows;
@@ -166,7 +167,7 @@ std::vector<double> filter_shares(runtime::FilterKind kind, int bins) {
   return shares;
 }
 
-// Counts of samples over cells, of which each is drawn by `cell`.
+// Draws samples with `cell`, which returns the index of a sample's cell, and tests the counts per cell.
 ChiSquare test_cells(std::vector<double> expected, int samples, std::uint64_t seed,
                      const std::function<std::size_t(glm::vec2 u)>& cell) {
   std::vector<double> counts(expected.size());
@@ -203,7 +204,7 @@ Group filters(int samples) {
   return group;
 }
 
-// The round lens by rings and sectors of equal area, one with blades by shells and sectors.
+// The round lens is divided into rings and sectors of equal area, a lens with blades into shells and sectors.
 Group lenses(int samples) {
   Group group{"places on the lens, round and with blades", {}};
   for (const int blades : {0, 3, 5, 6, 9}) {
@@ -221,8 +222,7 @@ Group lenses(int samples) {
              const glm::dvec2 p = camera.lens_point(u);
              const double turn = std::atan2(-p.x, p.y) / (2 * M_PI), around = turn < 0 ? turn + 1 : turn;
              if (blades == 0) return bin(glm::dot(p, p), kShells) * kPieces + bin(around, kPieces);
-             // Within a sector between two corners, places are those of a triangle: by its height
-             // and along its base.
+             // A sector between two corners is a triangle: its cells divide its height and its base.
              const double within = (around * blades - std::floor(around * blades) - 0.5) * 2 * M_PI / blades;
              const double height = glm::length(p) * std::cos(within) / std::cos(M_PI / blades);
              const double along =

@@ -1,9 +1,10 @@
-// B17 and the closed forms P1 to P10: the mean of a picture is the known radiance, to three standard errors, which
-// are at most a thousandth of it.
+// B17 and the closed forms P1 to P10: the mean of an image is the known radiance, within three standard errors. The
+// standard error is at most a thousandth of the radiance.
 //
-// Samples are independent, so the variances that the film keeps add up. A first small picture tells how many samples
-// that takes. Of fifty right rows one in eight tables would have one beyond three standard errors: such a row is
-// measured once more, with four times the samples and another seed, and only that counts.
+// Samples are independent, so the variances that the film accumulates add up. A first small image estimates the
+// number of samples needed. Among fifty correct rows, one in eight tables would have a row beyond three standard
+// errors. A row beyond them is therefore measured once more, with four times the samples and another seed, and only
+// the second result counts.
 #include <cmath>
 
 #include "bench/light_bars.h"
@@ -16,13 +17,12 @@ namespace {
 using runtime::RenderOptions;
 using tests::LightScene;
 
-constexpr int kSide = 32;  // pixels
-constexpr double kRound =
-    2e-5;  // of the radiance: what float and the film's fixed point leave where nothing is random
+constexpr int kSide = 32;        // pixels
+constexpr double kRound = 2e-5;  // relative error from float and from the film's fixed point when nothing is random
 
 struct Measured {
-  double mean = 0, sigma = 0;  // of the mean
-  bool clean = true;           // every ray and sample was told
+  double mean = 0, sigma = 0;  // sigma: standard error of the mean
+  bool clean = true;           // true when no ray was invalid, no sample dropped and no sum saturated
 };
 
 Measured measure(const compiler::CompiledScene& scene, RenderOptions options) {
@@ -53,7 +53,7 @@ class Furnaces {
     const compiler::CompiledScene scene = compile_scene(known.json);
     options.spp = 64;
     const Measured pilot = measure(scene, options);
-    // A tenth more than that asks for: the pilot's own error.
+    // 20 % more samples than needed (10 % in sigma), for the error of the pilot's own sigma.
     const double wanted = 64 * 1.2 * std::pow(pilot.sigma / (relative_sigma_ * known.radiance), 2);
     options.spp = static_cast<int>(std::clamp(std::ceil(wanted), 64.0, 65536.0));
     options.seed = 1;
@@ -151,8 +151,8 @@ void furnace_bars(BarTable& table, const LightCounts& counts) {
   for (const double albedo : {0.5, 0.9}) {
     for (const double degrees : {20.0, 40.0}) {
       RenderOptions options;
-      options.bounces =
-          2;  // few get out: by far the most is told with paths that end by chance, not after 40 bounces
+      // Starts Russian roulette early: few paths get out, so 40 bounces before it would cost far more.
+      options.bounces = 2;
       furnaces.row("P6", fmt::format("P6: cavity of albedo {} with a hole of half angle {}", albedo, degrees),
                    tests::cavity(albedo, degrees), options);
     }

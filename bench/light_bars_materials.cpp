@@ -1,4 +1,4 @@
-// B18: what rough mirrors reflect. B19: light goes either way alike, and nothing gives more than it gets.
+// B18: albedo of rough mirrors. B19: reciprocity and energy conservation.
 #include <cmath>
 
 #include "bench/light_bars.h"
@@ -11,7 +11,7 @@ namespace {
 
 using test::MaterialCase;
 
-// Numbers of two quadratures that agree to 2e-5, of GGX with height-correlated masking where facets reflect all.
+// Albedo of GGX with height-correlated masking and fully reflecting facets: two quadratures agree to 2e-5.
 struct GgxRow {
   float alpha;
   double albedo[4];
@@ -23,8 +23,9 @@ constexpr GgxRow kGgx[] = {{0.1f, {0.98830, 0.98456, 0.96921, 0.9046}},
                            {0.75f, {0.46392, 0.49232, 0.56462, 0.71553}},
                            {1, {0.30685, 0.35126, 0.45069, 0.64165}}};
 
-// What comes back and through of light from everywhere, at most: the greatest channel of f at each direction,
-// integrated, and that of what mirrors and clear panes give.
+// Returns an upper bound of the light that the material reflects and transmits under uniform illumination: the
+// integral over directions of the largest channel of f, plus the largest channels of specular reflection and
+// transmission.
 double albedo(const MaterialCase& c, float cos, int rows) {
   const runtime::Bsdf bsdf = c.bsdf(test::towards(cos, 0.2f));
   const double index = static_cast<double>(c.bending());
@@ -42,7 +43,8 @@ double albedo(const MaterialCase& c, float cos, int rows) {
   const auto f = [&](glm::vec3 wi) {
     return greatest(bsdf.evaluate(wi).f) * (glm::dot(wi, test::kNormal) < 0 ? index * index : 1);
   };
-  // Facets that refract lie beyond the horizon from where wo + eta wi does, and GGX has some that lie at it.
+  // f has a step where the normal of refracting facets, wo + eta wi, crosses the horizon: GGX has facets at the
+  // horizon.
   const double step = std::acos(-std::min(static_cast<double>(cos) / index, 1.0));
   return sum + test::sphere_integral(f, {test::kNormal, rows, 1e-6, step, guides});
 }
@@ -65,14 +67,14 @@ void ggx_table(BarTable& table) {
   table.at_most("B18", "P9: with what is lost given back, |E - 1| of the 20 places of the table", 2e-3, compensated);
 }
 
-// Every number of a layered material at random.
+// A layered material whose parameters are all random.
 MaterialCase random_material(std::uint64_t number) {
   runtime::Sampler s(17, static_cast<std::uint32_t>(number), 0, 0);
   const auto color = [&] {
     const glm::vec2 rg = s.next2();
     return glm::vec3(rg, s.next());
   };
-  // A part that is there is all there as often as not.
+  // Returns 0 or 1 in a quarter of the cases each, otherwise a number in between.
   const auto part = [&] { return std::clamp(2 * s.next() - 0.5f, 0.0f, 1.0f); };
   runtime::MaterialPoint m = test::principled(s.next());
   m.base_color = color();
@@ -113,7 +115,7 @@ void energy(BarTable& table, const LightCounts& counts) {
   for (const MaterialCase& c : test::white_materials()) cases.push_back(c);
   for (int i = 0; i < counts.random_materials / 10; ++i) {
     MaterialCase c = random_material(static_cast<std::uint64_t>(i));
-    // As much as there can be.
+    // White: the most light that the material can return.
     c.material.base_color = c.material.specular_color = c.material.transmission_color = c.material.coat_color =
         glm::vec3(1);
     cases.push_back(c);

@@ -1,10 +1,9 @@
-// B21: pictures as they are drawn by default against those of paths that find lights by chance, with independent
-// samples.
+// B21: images with the default light sampling against images of paths that find lights only by hits (BSDF sampling),
+// with independent samples.
 //
-// Many pictures of each with seeds of their own; cells of a few pixels are compared by Welch's test over the seeds,
-// as in Jung, Hanika, Dachsbacher, "Detecting Bias in Monte Carlo Renderers using Welch's t-test", JCGT 9(2) 2020.
-// Where both have the same mean the p-values of the cells lie evenly in [0,1], and none is below Sidak's level for
-// all.
+// Both are rendered many times with different seeds. Welch's test over the seeds compares cells of a few pixels, as
+// in Jung, Hanika, Dachsbacher, "Detecting Bias in Monte Carlo Renderers using Welch's t-test", JCGT 9(2) 2020. When
+// both have the same mean, the cells' p-values are uniform in [0,1], and none is below Sidak's level for all cells.
 #include <cmath>
 
 #include "bench/light_bars.h"
@@ -18,7 +17,8 @@ namespace {
 constexpr int kWidth = 48, kHeight = 32, kCell = 2;  // pixels
 constexpr int kCells = kWidth * kHeight / (kCell * kCell);
 
-// A box of white, red and green walls, a rough and a glossy block in it, and a lamp a tenth as wide.
+// A box with white, red and green walls, a rough block and a glossy ball inside, and a square lamp a fifth as wide as
+// the box.
 const char* const kBox = R"("camera": {"position": [0, 1, 3.4], "target": [0, 1, 0], "fov": 50},
     "render": {"bounces": 3},
     "materials": {"white": {"type": "diffuse", "color": [0.75, 0.75, 0.75]},
@@ -34,7 +34,7 @@ const char* const kBox = R"("camera": {"position": [0, 1, 3.4], "target": [0, 1,
       {"type": "box", "half_size": [0.3, 0.6, 0.3], "rotate": [0, 20, 0], "translate": [-0.4, 0.6, -0.3], "material": "white"},
       {"type": "sphere", "radius": 0.35, "translate": [0.4, 0.35, 0.2], "material": "gloss"}])";
 
-// An evening sky and a wide sun, of which hits find both.
+// An evening sky and a wide sun; BSDF samples can hit both.
 const char* const kOutside = R"("camera": {"position": [0, 1.6, 4.5], "target": [0, 0.6, 0], "fov": 45},
     "background": {"type": "sky", "elevation": 25, "azimuth": 60, "turbidity": 3, "sun_disc": false},
     "lights": {"sun": {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": [3, 2.6, 2], "angle": 12}},
@@ -48,7 +48,7 @@ const char* const kOutside = R"("camera": {"position": [0, 1.6, 4.5], "target": 
       {"type": "sphere", "radius": 0.3, "translate": [0, 0.3, 0.9], "material": "clay"}])";
 
 struct Cell {
-  double sum = 0, squares = 0;  // of the pictures' means
+  double sum = 0, squares = 0;  // sums over the images' means
   void add(double value) { sum += value, squares += value * value; }
 };
 
@@ -94,22 +94,22 @@ double beta_share(double a, double b, double x) {
          a;
 }
 
-// That two samples of n and m numbers with equal means differ so much or more: Welch, "The Generalization of
-// 'Student's' Problem when Several Different Population Variances are Involved", 1947.
+// Returns the probability that two samples of n and m numbers with equal means differ at least as much as a and b:
+// Welch, "The Generalization of 'Student's' Problem when Several Different Population Variances are Involved", 1947.
 double welch_p(const Cell& a, int n, const Cell& b, int m) {
   const double mean_a = a.sum / n, mean_b = b.sum / m;
   const double va = std::max(0.0, a.squares / n - mean_a * mean_a) / (n - 1);
   const double vb = std::max(0.0, b.squares / m - mean_b * mean_b) / (m - 1);
-  // What sees one constant lamp is equal but for rounding.
+  // Cells that see only one constant lamp differ by rounding alone.
   const double v = va + vb + 1e-14 * (mean_a * mean_a + 1e-14);
   const double t2 = (mean_a - mean_b) * (mean_a - mean_b) / v;
   const double freedom = v * v / (va * va / (n - 1) + vb * vb / (m - 1) + 1e-300);
   return beta_share(std::min(freedom, 1e6) / 2, 0.5, std::min(freedom, 1e6) / (std::min(freedom, 1e6) + t2));
 }
 
-// That numbers evenly in [0,1] lie so unevenly or more: Kolmogorov and Smirnov's test with the correction of Stephens
-// for their number, "Use of the Kolmogorov-Smirnov, Cramer-von Mises and Related Statistics Without Extensive
-// Tables", 1970.
+// Returns the probability that uniform numbers in [0,1] are at least as uneven as `values`: the Kolmogorov-Smirnov
+// test with Stephens' correction for the number of values, "Use of the Kolmogorov-Smirnov, Cramer-von Mises and
+// Related Statistics Without Extensive Tables", 1970.
 double evenness_p(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double n = static_cast<double>(values.size());
@@ -142,7 +142,7 @@ void compare(BarTable& table, const Comparison& comparison, int pictures) {
   double difference = 0, mean = 0, variance = 0;
   for (std::size_t c = 0; c < kCells; ++c) {
     p.push_back(welch_p(a[c], pictures, b[c], pictures));
-    // A cell that sees nothing but one lamp is the same in every picture and has no p-value to speak of.
+    // A cell that sees only one lamp is the same in every image and has no meaningful p-value.
     const double mean_b = b[c].sum / pictures, variance_b = b[c].squares / pictures - mean_b * mean_b;
     if (variance_b > 1e-10 * mean_b * mean_b) random.push_back(p.back());
     difference += (a[c].sum - b[c].sum) / pictures / kCells;

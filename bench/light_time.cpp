@@ -1,13 +1,15 @@
-// What light sampling and well spread samples are worth: relMSE after equal time, and the time to a relMSE of 1e-3.
+// Measures the gain from light sampling and from well-distributed samples: relMSE at equal time, and time to a relMSE
+// of 1e-3.
 //
-//     build/release/bench_light_time [--spp N] [scene.json ...]     kScenes when none is named
+//     build/release/bench_light_time [--spp N] [scene.json ...]     kScenes when no scene is given
 //
-// As much time as the default takes for kSpp samples, or N of them. "before" is the path tracer without: light is
-// found by hits alone, samples are independent. One thread's processor time, eight seeds, against a mean of many
-// independent samples with another seed. The pictures are a fifth as wide as they are meant to be: smaller still,
-// most pixels hold an edge, which neither helps with. Light that reaches the eye from a lamp through glass or by a
-// mirror and a rough surface is found by hits in both: where little else is left, so is little of the gain. Trimmed:
-// without the worst 0.1 % of the channels, where such light is. Exit status 1 when a ratio is below 10.
+// The time is what the default needs for kSpp samples per pixel, or for N. "before" is the path tracer without both:
+// only hits find light, and samples are independent. Times are one thread's processor time. Both are compared, over
+// eight seeds, with the mean of many independent samples of another seed. The images are a fifth of their intended
+// width. In smaller images, most pixels would hold an edge, where neither method helps. In both, only hits find the
+// light of a lamp through glass, or by way of a mirror and a rough surface. The gain is small where this light
+// dominates the error. Trimmed: without the worst 0.1 % of the channels, which hold such light. Exit status 1 when a
+// ratio is below 10.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,20 +30,20 @@ namespace {
 
 using namespace runtime;
 
-// The lamp of scenes/cornell.json is a fifth of its ceiling, not 4.4 %, and its two balls make caustics.
+// The lamp of scenes/cornell.json is a fifth of its ceiling instead of 4.4 %, and its two balls make caustics.
 constexpr const char* kScenes[] = {FATHOM_SOURCE_DIR "/scenes/cornell-box.json",
                                    FATHOM_SOURCE_DIR "/scenes/gallery/still-life.json",
                                    FATHOM_SOURCE_DIR "/scenes/cornell.json"};
 
-constexpr double kBar = 10;     // relMSE of before over that of the default
+constexpr double kBar = 10;     // min ratio of relMSE, before over default
 constexpr double kGoal = 1e-3;  // relMSE
-constexpr int kPilotSpp = 8;    // to see how fast a scene is
-constexpr int kSpp = 32;        // of the default's longest picture
-constexpr int kReference = 48;  // times the samples of the longest picture
+constexpr int kPilotSpp = 8;    // samples per pixel to estimate a scene's speed
+constexpr int kSpp = 32;        // samples per pixel of the default's longest image
+constexpr int kReference = 48;  // times the samples of the longest image
 constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits};
 constexpr ImageWay kDefault{};
 
-// Seconds of a picture for each sample per pixel.
+// Returns seconds per image and sample per pixel.
 double seconds_per_sample(const compiler::CompiledScene& scene, const ImageWay& way, const ImagePlan& plan) {
   const Channels nothing(static_cast<std::size_t>(3 * plan.width * plan.height));
   const ImagePoint points[] = {{way, kPilotSpp}, {way, 5 * kPilotSpp}};
@@ -58,7 +60,7 @@ void print(const char* name, const ImageMeasurement& row, double goal) {
       goal);
 }
 
-// The ratio of relMSE at equal time.
+// Returns the ratio of relMSE at equal time.
 double compare(const std::string& path, int default_spp) {
   const compiler::CompiledScene scene = read_scene("bench_light_time", path);
   ImagePlan plan{.width = 192, .height = 108, .seeds = 8};
@@ -79,7 +81,7 @@ double compare(const std::string& path, int default_spp) {
              plan.reference_spp);
   print("before", rows[0], seconds_to(curves[0], kGoal));
   print("default", rows[3], seconds_to(curves[1], kGoal));
-  // The times differ by some hundredths: errors of independent samples fall with the time.
+  // Corrects for times that differ by a few hundredths: the error of independent samples is inverse to the time.
   const double times = rows[0].seconds_med / rows[3].seconds_med;
   const double ratio = times * rows[0].relmse_med / rows[3].relmse_med;
   fmt::print(

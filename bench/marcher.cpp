@@ -1,7 +1,8 @@
-// What does interpretation cost a ray? The whole marcher, with its clipping, steps, brackets and search in double,
-// against the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera rays
-// and on the diffuse rays that leave their hits. Compiled code does not tell what is convex (vm/number/convex-inl.h),
-// so neither is led by it; a second row has the marcher as it is where it would be.
+// Measures the cost of interpretation per ray. The whole marcher (clipping, steps, brackets, search in double) is
+// compared with the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera
+// rays and on the diffuse rays that leave their hits. Compiled code does not return the convexity radius
+// (vm/number/convex-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a second
+// row, with the unmodified marcher.
 //
 //     build/release/bench_marcher
 #include <glm/geometric.hpp>
@@ -24,7 +25,7 @@ using namespace fathom::bench;
 
 constexpr int kRounds = 21;
 
-// A scene and its rays, kept for as long as the benches run.
+// A scene and its rays, alive while the benches run.
 class Scene {
  public:
   explicit Scene(const CompiledAhead& ahead)
@@ -56,7 +57,7 @@ class Scene {
     }
   }
 
-  // As the integrator has them: by cosine, with what it knows of their beginning.
+  // Makes diffuse rays as the integrator does: cosine-distributed, with the known side, slope and clear distance.
   void bounce() {
     vm::Workspace workspace;
     for (const runtime::Arrival& arrival : runtime::march(field_, camera_).arrivals) {

@@ -1,4 +1,4 @@
-// Rays marched and held against the truth.
+// Marched rays compared with the truth.
 #pragma once
 
 #include <string_view>
@@ -9,14 +9,14 @@
 
 namespace fathom::bench {
 
-// The scene of nothing but `objects`, JSON. Ends the program when it has errors.
+// Compiles a scene that consists of `objects`, JSON. Ends the program when the scene has errors.
 compiler::CompiledScene compile_objects(std::string_view objects);
 
-// What became of rays whose true distances are known.
+// Results of rays whose true distances are known.
 struct Judgement {
   std::size_t rays = 0, false_hits = 0, false_misses = 0;
-  std::size_t gross = 0;       // hits further from the truth than kGross
-  std::vector<double> errors;  // |t - true t| of the other hits and these, scene units, sorted
+  std::size_t gross = 0;       // hits that are off by more than kGross
+  std::vector<double> errors;  // |t - true t| of all true hits, gross ones included, scene units, sorted
   runtime::MarchCounters counters;
 
   std::size_t wrong() const { return false_hits + false_misses; }
@@ -25,7 +25,7 @@ struct Judgement {
 
 inline constexpr double kGross = 0.02;  // scene units
 
-// `truth(i)` is the i-th ray's true distance, negative for a miss.
+// `truth(i)`: the i-th ray's true distance, negative for a miss.
 template <class TruthOf>
 Judgement judge(const runtime::MarchResult& result, const TruthOf& truth) {
   Judgement judged;

@@ -1,11 +1,11 @@
-// The usual hand-written renderer: the scene compiled into the program, rays in packets as wide as a register,
-// classic sphere tracing (a hit is where the field falls below epsilon, 256 steps at most), normals from four
-// evaluations at the corners of a tetrahedron, and for paths, which soon go their own ways, lanes that take up new
-// work when their ray has ended.
+// The usual hand-written renderer: the scene is compiled into the program, and rays form packets as wide as a
+// register. Sphere tracing is classic (a hit is where the field falls below epsilon, max 256 steps). Normals come
+// from four evaluations at the corners of a tetrahedron. For paths, which soon diverge, a lane takes a new ray when
+// its own has ended.
 //
-// Compiled once for each instruction set. A scene is a type with
+// Compiled once per instruction set. A scene is a type with
 //     static Batch distance(Batch x, Batch y, Batch z);
-//     static constexpr double kLevel;                    // to be added to it
+//     static constexpr double kLevel;                    // to be added to the distance
 #if defined(FATHOM_BENCH_PACKETS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_BENCH_PACKETS_INL
 #undef FATHOM_BENCH_PACKETS_INL
@@ -30,7 +30,7 @@ using Mask = BatchMask;
 
 HWY_INLINE B c(double value) { return Batch::broadcast(value); }
 HWY_INLINE std::size_t count(Mask m) { return hn::CountTrue(FloatLanes(), m.m); }
-HWY_INLINE Mask and_not(Mask a, Mask b) { return {hn::AndNot(a.m, b.m)}; }  // b without a
+HWY_INLINE Mask and_not(Mask a, Mask b) { return {hn::AndNot(a.m, b.m)}; }  // b and not a
 HWY_INLINE B fraction_of(Mask m) { return select(m, c(1), c(0)); }
 
 struct V {
@@ -58,7 +58,7 @@ HWY_INLINE V tetrahedron_normal(V p, B h) {
   return normalize({a - b - d + e, d - a - b + e, b - a - d + e});
 }
 
-// A pinhole. Places in pixels, the picture's top left corner at 0.
+// A pinhole camera. Positions are in pixels, with 0 at the image's top left corner.
 class Pinhole {
  public:
   Pinhole(const View& view, const Frame& frame) {
@@ -88,7 +88,7 @@ struct Met {
   B t;
 };
 
-// The rays of a packet, until the last has ended.
+// Marches the rays of a packet until the last has ended.
 template <class Scene>
 HWY_INLINE Met march(V origin, V direction, Mask active, const View& view) {
   const B epsilon = c(view.epsilon), t_max = c(view.t_max);
@@ -104,7 +104,7 @@ HWY_INLINE Met march(V origin, V direction, Mask active, const View& view) {
   return met;
 }
 
-// Workload S. Packets are blocks of pixels, four wide where that many lanes make a block.
+// Workload S. Packets are blocks of pixels, four wide when the register has enough lanes.
 template <class Scene>
 void render_shadow(const View& view, const Frame& frame, Picture& picture) {
   constexpr std::size_t kAcross = kLanes < 4 ? kLanes : 4, kDown = kLanes / kAcross;
@@ -140,7 +140,7 @@ void render_shadow(const View& view, const Frame& frame, Picture& picture) {
   }
 }
 
-// PCG-RXS-M-XS 32 (O'Neill, 2014), one generator a lane.
+// PCG-RXS-M-XS 32 (O'Neill, 2014), one generator per lane.
 class Random {
  public:
   using Ints = hn::RebindToUnsigned<FloatLanes>;
@@ -150,7 +150,7 @@ class Random {
   HWY_INLINE void seed(Mask where, Int seed) {
     state_ = hn::IfThenElse(hn::RebindMask(Ints(), where.m), output(step(seed)), state_);
   }
-  // In [0,1), a multiple of 2^-24. Draws only where asked to.
+  // Returns numbers in [0,1), multiples of 2^-24. Only the lanes of `where` advance their generator.
   HWY_INLINE B next(Mask where) {
     state_ = hn::IfThenElse(hn::RebindMask(Ints(), where.m), step(state_), state_);
     const hn::RebindToSigned<FloatLanes> ints;
@@ -168,13 +168,14 @@ class Random {
   Int state_;
 };
 
-// Ended lanes wait until so many share the price of four evaluations for their normals; the fastest of 1 to 16.
+// Number of ended lanes that wait for each other, to share the four evaluations for their normals. kLanes / 2 was the
+// fastest of 1 to 16.
 #ifndef FATHOM_SETTLE
 #define FATHOM_SETTLE (kLanes / 2)
 #endif
 constexpr std::size_t kSettle = FATHOM_SETTLE;
 
-// Workload P: a path in each lane.
+// Workload P: one path per lane.
 template <class Scene>
 class PathPackets {
  public:
@@ -214,7 +215,7 @@ class PathPackets {
     picture_.rays += count(hit | missed);
     const Mask bounces = hit & (bounces_ < c(kMostBounces)), ended = and_not(bounces, hit | missed);
     if (any(bounces)) bounce(bounces);
-    // Ended paths bring what they carry home, but for those whose last surface is black.
+    // Adds the throughput of ended paths to their pixels, except for paths whose last surface is black.
     alignas(64) float value[kLanes], which[kLanes];
     select(missed, throughput_, c(0)).store(value);
     fraction_of(ended).store(which);
@@ -236,7 +237,7 @@ class PathPackets {
     steps_ = select(where, c(0), steps_);
   }
 
-  // New camera paths for those lanes, in order, as long as there are any.
+  // Starts new camera paths in these lanes, in order, until none are left.
   HWY_INLINE void refill(Mask where) {
     alignas(64) float wanted[kLanes], x[kLanes], y[kLanes], taken[kLanes] = {};
     alignas(64) std::uint32_t seed[kLanes] = {};

@@ -1,5 +1,6 @@
-// Do whole renders scale? Two threads against one and four times the samples against four renders, for every
-// benchmark scene that takes a second; and what memory a large picture takes, whatever its samples.
+// Measures how whole renders scale, for every benchmark scene that takes a second: two threads against one, and four
+// times the samples against four renders. Also measures the memory of a large image, which must not depend on the
+// samples.
 //
 //     build/release/bench_renders
 #include <sys/resource.h>
@@ -19,7 +20,7 @@ using namespace fathom::bench;
 
 struct Row {
   const char* scene;
-  int spp;  // so that one thread takes more than a second
+  int spp;  // enough that one thread takes more than a second
 };
 constexpr Row kRows[] = {{"a-primitives", 16}, {"b-csg", 8},     {"c-mandelbulb", 3}, {"d1000", 12},
                          {"e-gyroid", 12},     {"f-formula", 8}, {"h-composite", 24}};
@@ -33,7 +34,7 @@ void render(const compiler::CompiledScene& scene, int threads, int spp) {
   runtime::render(scene, options);
 }
 
-// Megabytes that `fathom render` held at most.
+// Returns the peak memory of `fathom render`, in megabytes.
 double peak_memory(const std::string& scene, int spp) {
   const std::string path = std::string(FATHOM_SOURCE_DIR) + "/scenes/bench/" + scene + ".json";
   const std::string samples = std::to_string(spp);

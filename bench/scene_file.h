@@ -1,4 +1,4 @@
-// A scene that a bench is named on its command line.
+// Reads a scene named on a bench's command line.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace fathom::bench {
 
-// Ends the program, after a message, with 74 when the file cannot be read and 65 when it is no scene.
+// Ends the program after a message, with status 74 when the file cannot be read and 65 when it is not a valid scene.
 inline compiler::CompiledScene read_scene(const char* program, const std::string& path) {
   std::ifstream file(path);
   if (!file) {

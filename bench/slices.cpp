@@ -1,6 +1,6 @@
-// How long does a slice of a text model of thousands of lines take? 1024x1024 pixels over [-1, 1]^2 on one processor:
-// compiling the model, its signs or its values at the pixels' centres (runtime/slice/quadtree.h), and the first two
-// together.
+// Measures the time of a slice of a text model with thousands of lines: 1024x1024 pixels over [-1, 1]^2 on one
+// processor. The rows are compiling the model, the signs at the pixels' centres (runtime/slice/quadtree.h), the
+// values there, and compiling and signs together.
 //
 //     build/release/bench_slices
 #include "bench/clouds.h"
@@ -24,7 +24,7 @@ std::vector<float> slice(const compiler::CompiledScene& scene, runtime::SliceVal
   return runtime::evaluate_slice(scene.distance, square, 1, wanted);
 }
 
-// What each may take at most, milliseconds; 0: nothing is asked.
+// Max milliseconds; 0: no bar.
 struct Bars {
   double signs, whole;
 };

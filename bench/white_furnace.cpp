@@ -1,8 +1,8 @@
-// How much light do white materials lose? A ball of each in an even light of 1: the least part that comes back, and
-// the mean, by what the materials are made of.
+// Measures the light that white materials lose: a ball of each material under uniform light of radiance 1. The table
+// has the smallest, mean and largest returned fraction, by kind of material.
 //
-//     build/release/bench_white_furnace                500 random materials of specular_weight 1, and some by name
-//     build/release/bench_white_furnace --count 50     fewer of them
+//     build/release/bench_white_furnace                500 random materials of specular_weight 1, and some named ones
+//     build/release/bench_white_furnace --count 50     fewer random materials
 //     build/release/bench_white_furnace --spp 256      less noise; 64 samples of 32 x 32 pixels err by some 1e-3
 #include "tests/support/white_furnace.h"
 
@@ -36,7 +36,7 @@ compiler::CompiledScene compile_furnace(const std::string& material) {
 
 struct Named {
   const char* name;
-  const char* rest;  // of the material
+  const char* rest;  // the material's other JSON members
 };
 constexpr Named kNamed[] = {
     {"metal of roughness 0.3 under a smooth coat", R"("metalness": 1, "roughness": 0.3, "coat": 1)"},

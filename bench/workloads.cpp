@@ -1,7 +1,6 @@
-// Is Fathom faster than what one would write by hand? Workloads S and P (workload.h): its whole march-and-shade time,
-// at its own accuracy, against the usual hand-written renderer around the scene compiled ahead of time
-// (packets-inl.h). Before they are timed both pictures are compared: their counts and means stand in the second
-// table.
+// Compares Fathom with a renderer written by hand, on workloads S and P (workload.h): Fathom's whole march-and-shade
+// time, at its own accuracy, against the usual hand-written renderer around the scene compiled ahead of time
+// (packets-inl.h). The note below each row has the ray counts and mean values of both images, for comparison.
 //
 //     build/release/bench_workloads
 #include <limits>
@@ -18,10 +17,10 @@ using namespace fathom::bench;
 
 struct Row {
   const char* scene;
-  double shadow_bar, path_bar;  // ratio at most
+  double shadow_bar, path_bar;  // max ratios
   int rounds;
-  // Where theirs would take minutes it renders fewer paths a pixel, and pictures so many times smaller either way;
-  // and its time counts as many times more.
+  // Limits of the hand-written renderer's work where it would take minutes: fewer paths per pixel, and an image
+  // `smaller` times smaller in each dimension. Its time is scaled up by the ratio of the samples.
   int their_spp = 64, smaller = 1;
 };
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -39,7 +38,7 @@ double samples(const Frame& frame) { return static_cast<double>(frame.width) * f
 
 struct Scene {
   explicit Scene(const CompiledAhead& compiled) : ahead(compiled), scene(compile_file(compiled.path)) {
-    scene.background.bottom = scene.background.top = glm::dvec3(1);  // of P; S has no use for it
+    scene.background.bottom = scene.background.top = glm::dvec3(1);  // for P; S does not use the background
   }
   const CompiledAhead& ahead;
   compiler::CompiledScene scene;

@@ -1,7 +1,7 @@
-// Writes tests/support/emitted_programs.h as source code, for the tests to be compiled with:
+// Writes tests/support/emitted_programs.h as source code that is compiled into the tests:
 //
 //     emit_programs cpp FILE     one header: namespaces, and a table kEmittedCpp of their functions
-//     emit_programs glsl FILE    the same of GLSL as C++ with GLM reads it, a table kEmittedGlsl
+//     emit_programs glsl FILE    the same from GLSL, compiled as C++ with GLM: a table kEmittedGlsl
 #include <fmt/format.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// The order of the source folders, read from every include: a folder includes only itself and folders before it, and
+// The order of the source folders, read from every include. A folder includes only itself and folders before it, and
 // no two units include each other.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every folder with sources, each after those that it includes.
+// Every folder with sources, each after the folders that it includes.
 const std::vector<std::string> kFolders = {
     "vm/program",
     "vm/encoding",
@@ -70,7 +70,7 @@ const std::vector<std::string> kFolders = {
     "runtime/cli",
 };
 
-// The most files of a folder that one still finds a file in.
+// Max number of files in a folder, so that a reader still finds a file.
 constexpr int kMaxFiles = 35;
 
 std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
@@ -99,7 +99,7 @@ const std::map<std::string, std::set<std::string>>& all_includes() {
   return result;
 }
 
-// A path of includes that leads from a unit back to it; empty when there is none.
+// Returns a path of includes from a unit back to itself, or an empty path when there is none.
 std::vector<std::string> find_circle() {
   std::map<std::string, std::set<std::string>> graph;
   for (const auto& [file, includes] : all_includes()) {

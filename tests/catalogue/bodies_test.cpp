@@ -1,5 +1,5 @@
-// The adversarial catalogue, rows I9 to I16: rays that leave bodies or start within them, wrong rays, and solids cut
-// out of each other. docs/ACCURACY.md lists all rows.
+// The adversarial catalogue, rows I9 to I16: rays that leave bodies or start inside them, invalid rays, and solids
+// cut out of each other. docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -18,7 +18,7 @@ void expect_right(const Judgement& found) {
   CHECK(found.exhausted == 0);
 }
 
-// From `away` in front of a point that is at random in a box, whatever the direction.
+// Rays in random directions that start `away` in front of a random point in a box.
 std::vector<Ray> rays_at_box(Random& random, glm::dvec3 half, double away, int count) {
   std::vector<Ray> rays;
   for (int i = 0; i < count; ++i) {
@@ -32,7 +32,7 @@ std::vector<Ray> rays_at_box(Random& random, glm::dvec3 half, double away, int c
 
 const glm::dvec3 kLeft(-0.5, 0, 0), kRight(0.5, 0, 0);
 
-// Of two balls of radius 1 that overlap, left and right.
+// Distance at which a ray leaves the union of two overlapping balls of radius 1, left and right.
 Real union_exit(const Ray& ray) {
   const Span left = sphere_span(ray, kLeft, 1), right = sphere_span(ray, kRight, 1);
   Real exit = 0;
@@ -44,7 +44,7 @@ Real union_exit(const Ray& ray) {
   return exit;
 }
 
-// How many of `count` rays or a few more that leave convex bodies meet them again.
+// Number of rays that leave a convex body and meet it again, out of `count` rays or slightly more.
 std::uint64_t met_again(std::size_t count) {
   const char* bodies[] = {R"({"type": "sphere", "radius": 1})",
                           R"({"type": "box", "half_size": [0.75, 0.5, 1]})",
@@ -77,13 +77,13 @@ const std::string kTwoBalls = R"("of": [{"type": "sphere", "radius": 1, "transla
 
 }  // namespace
 
-// As rays do that are refracted into a body. Evaluations: against rays that meet the same body from outside, without
-// the bound that would bring them to it.
+// Rays that start inside a body, as after refraction. The number of evaluations is compared with that of rays that
+// meet the same body from outside, without the bound that would bring them near the body.
 TEST_CASE("I9: a ray inside a body finds the way out", "[catalogue]") {
   struct Body {
     const char* name;
     std::string scene;
-    glm::dvec3 half;  // of a box that holds it
+    glm::dvec3 half;  // half size of a box that contains the body
     Truth truth;
   };
   const std::string both = R"("objects": [{"type": "union", )" + kTwoBalls + "]";
@@ -105,7 +105,7 @@ TEST_CASE("I9: a ray inside a body finds the way out", "[catalogue]") {
     }
     Field unbounded = field;
     unbounded.bound = field.bound.grown(10);
-    unbounded.convex = false;  // which leads rays to a solid, not out of it
+    unbounded.convex = false;  // convexity leads rays to a solid, not out of it
     const MarchResult exits = march(field, within), entries = march(unbounded, outside);
     const Judgement found = judge(exits, within, body.truth);
     INFO(body.name);
@@ -120,7 +120,7 @@ TEST_CASE("I9: a ray inside a body finds the way out", "[catalogue]") {
 
 TEST_CASE("I10: rays that leave a convex body never meet it again", "[catalogue][released]") {
   CHECK(met_again(100000) == 0);
-  // From the very place of the hit a small distance is found at once.
+  // Naive sphere tracing from exactly the hit's position finds a small distance at once.
   const auto scene = scene_of(kSphere);
   const Places found = places(scene, rays_at_sphere(1000, 5));
   Random random(1);
@@ -142,7 +142,7 @@ TEST_CASE("I11: what straddles the end of the ray", "[catalogue]") {
     limited.t_max = t_max;
     return march(make_field(scene), std::span(&limited, 1)).arrivals[0].status == Arrival::Status::Hit;
   };
-  // Distances and places that float holds exactly: the next float decides.
+  // Distances and positions that float holds exactly: the neighbouring float decides.
   const Ray straight{{0, 0, 5}, {0, 0, -1}}, down{{0.25, 4, 0}, {0, -1, 0}};
   for (const auto& [text, ray] : {std::pair{kSphere, straight}, {kBox, straight}, {kPlane, down}}) {
     INFO(text);
@@ -151,7 +151,7 @@ TEST_CASE("I11: what straddles the end of the ray", "[catalogue]") {
     for (const double t_max : {3.0, 3.9, 3.999}) CHECK_FALSE(ends(text, ray, t_max));
     for (const double t_max : {4.001, 4.5, 6.5}) CHECK(ends(text, ray, t_max));
   }
-  // Elsewhere the hit's own bracket.
+  // For other distances the hit's own bracket decides.
   const auto scene = scene_of(kTorus);
   Random random(8);
   std::vector<Ray> rays;
@@ -195,7 +195,7 @@ TEST_CASE("I12: rays without a direction or a place are invalid, and harm no nei
     }
   }
   CHECK(result.counters.invalid == 7);
-  // A NaN fails every comparison: it is neither a hit nor the end, and the steps run out.
+  // A NaN fails every comparison: naive tracing reports neither a hit nor a miss and runs out of steps.
   vm::Workspace workspace;
   CHECK(trace_naively(scene.distance, rays[5], {}, workspace).status != NaiveArrival::Status::Hit);
 }
@@ -216,7 +216,7 @@ TEST_CASE("I13: coplanar cuts leave no skin", "[catalogue]") {
     const Judgement naive = judge_naive(scene, rays, nothing, {.eps = 1e-3});
     CHECK(share(naive.false_hits, naive) > 0.2);
   }
-  // A hole right through, whose ends lie in the faces.
+  // A hole right through the box, whose ends lie in the faces.
   const auto scene = scene_of(R"("objects": [{"type": "subtraction", "of": [
       {"type": "box", "half_size": [1, 1, 1]}, {"type": "box", "half_size": [0.5, 1, 0.5]}]}])");
   const Truth walls = [](const Ray& ray) {
@@ -256,7 +256,7 @@ TEST_CASE("I13: where two boxes share a face, the first in the file shows", "[ca
   }
 }
 
-// Rays through the edge of the lens, within 1e-6 to 1e-2 of it on either side.
+// Rays past the edge of the lens, within 1e-6 to 1e-2 of the edge on either side.
 TEST_CASE("I14: the edge of a lens", "[catalogue]") {
   const auto scene = scene_of(R"("objects": [{"type": "intersection", )" + kTwoBalls + "]");
   Random random(15);
@@ -280,7 +280,8 @@ TEST_CASE("I14: the edge of a lens", "[catalogue]") {
 
 namespace {
 
-// The width of what rays straight down, spread evenly over radii of 1 - window to 1 + window, meet.
+// Width of the range of radii at which vertical rays hit. The rays point down at radii spread evenly from 1 - window
+// to 1 + window.
 template <class Hit>
 double measured_width(double window, const Hit& hit) {
   Random random(16);

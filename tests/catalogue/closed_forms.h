@@ -1,5 +1,5 @@
-// Where a line is within a solid, in closed form and long double: what tells whether rays are right at solids that
-// are cut out of each other.
+// Intervals of a line inside solids, in closed form and long double: the truth for rays at solids that are cut out of
+// each other.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace fathom::catalogue {
 using runtime::Ray;
 using runtime::Real;
 
-// A stretch of a line, as multiples of the ray's direction; empty when it ends before it begins.
+// Interval of a line, in multiples of the ray's direction. Empty unless begin < end.
 struct Span {
   Real begin, end;
   bool empty() const { return !(begin < end); }
@@ -53,13 +53,13 @@ inline Span box_span(const Ray& ray, glm::dvec3 centre, glm::dvec3 half) {
 
 inline Span intersection(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-// Where a ray from outside meets what the span is of; negative when it does not.
+// Distance at which a ray from outside enters the solid of `span`; negative for a miss.
 inline Real entry(Span span) { return span.empty() || span.begin < 0 ? -1 : span.begin; }
 
-// The nearer of two distances of which a negative one is none.
+// The smaller of two distances, where a negative distance means a miss.
 inline Real nearer(Real a, Real b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
-// Where a ray from outside meets what is in `whole` and not in `cut`.
+// Distance at which a ray from outside enters `whole` minus `cut`; negative for a miss.
 inline Real entry_beside(Span whole, Span cut) {
   if (whole.empty()) return -1;
   if (cut.empty() || whole.begin < cut.begin || whole.begin >= cut.end) return entry(whole);

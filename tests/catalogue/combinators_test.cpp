@@ -36,7 +36,7 @@ long double beam(const glm::dvec3& p) {
   return std::hypot(std::max(x, 0.0L), std::max(y, 0.0L), std::max(z, 0.0L)) + std::min(std::max({x, y, z}), 0.0L);
 }
 
-// Quilez's quadratic blend, which is what `k` is documented to be the width of.
+// Quilez's quadratic blend. The documentation defines `k` as the width of this blend.
 long double blended(long double a, long double b, long double k) {
   const long double h = std::max(k - std::abs(a - b), 0.0L) / k;
   return std::min(a, b) - h * h * k / 4;
@@ -44,7 +44,7 @@ long double blended(long double a, long double b, long double k) {
 
 }  // namespace
 
-// The machine's opcodes by themselves: tests/vm/number/operators_test.cpp.
+// Tests of the machine's opcodes alone: tests/vm/number/operators_test.cpp.
 TEST_CASE("F5: a blend of width 0 is the hard operator, bit for bit", "[catalogue]") {
   vm::Workspace workspace;
   const test::Cloud cloud = cloud_around(5000);
@@ -79,7 +79,7 @@ TEST_CASE("F5: blends of any width, the widest too, have the value that defines 
   }
 }
 
-// The same solid twice: its surface moves out by k/4 everywhere, and has the solid's gradient.
+// Two copies of one solid: the surface moves by k/4 everywhere, and the gradient is the solid's.
 TEST_CASE("F5: where the operands of a blend are equal", "[catalogue]") {
   const std::string twice = R"([{"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 1}])";
   vm::Workspace workspace;
@@ -98,8 +98,8 @@ TEST_CASE("F5: where the operands of a blend are equal", "[catalogue]") {
 
 namespace {
 
-// Rays from outside, from the middle of every wall and every gap between concentric balls of these radii, in
-// descending order: solid between the first and the second, the third and the fourth ...
+// Checks concentric shells with the given radii in descending order: solid between the first and the second, the
+// third and the fourth ... The rays start outside, and in the middle of every wall and every gap.
 void expect_shells(const std::string& node, const std::vector<double>& radii) {
   const auto scene = compiled_objects(node);
   Random random(4);
@@ -137,7 +137,7 @@ TEST_CASE("F6: a shell of a shell, and of what is hollow", "[catalogue]") {
       R"({"type": "subtraction", "of": [)" + solid + R"(, {"type": "sphere", "radius": 0.5}]})";
   expect_shells(shell("0.0625", shell("0.25", solid)), {1.3125, 1.1875, 0.8125, 0.6875});
   expect_shells(shell("0.0625", hollow), {1.0625, 0.9375, 0.5625, 0.4375});
-  // Thicker than the ball is deep: its inner side is gone.
+  // The shell is thicker than the ball is deep, so the inner surface vanishes.
   expect_shells(shell("0.25", shell("1", solid)), {2.25, 1.75, 0.25});
 }
 

@@ -1,4 +1,4 @@
-// The adversarial catalogue, row I16: a scene of everything, against closed forms.
+// The adversarial catalogue, row I16: a scene of many different parts, compared with closed forms.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@
 namespace fathom::catalogue::composite_test {
 namespace {
 
-// The ground, a torus, a box, two balls (one small) and a thin plate: accuracy's usual mixture.
+// The ground, a torus, a box, two balls (one small) and a thin plate: the usual mixture of the accuracy tests.
 const char* const kComposite = R"("objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
     {"type": "torus", "major_radius": 0.8, "minor_radius": 0.25, "translate": [-1.6, -0.2, 0]},
     {"type": "box", "half_size": [0.6, 0.6, 0.6], "translate": [1.3, -0.4, 0.2]},
@@ -20,9 +20,9 @@ const char* const kComposite = R"("objects": [{"type": "plane", "normal": [0, 1,
     {"type": "sphere", "radius": 0.07, "translate": [0.2, -0.93, 1.4]},
     {"type": "box", "half_size": [0.5, 0.7, 0.002], "translate": [0.2, 0, 0.6]}])";
 
-constexpr double kEnd = 30;  // of the rays, scene units
+constexpr double kEnd = 30;  // length of the rays, scene units
 
-// In the ring's own place; what rounding this adds is 1e-16.
+// Moves a ray into the ring's coordinates. The rounding adds an error of 1e-16.
 Ray to_ring(Ray ray) {
   ray.origin -= glm::dvec3(-1.6, -0.2, 0);
   return ray;
@@ -30,11 +30,11 @@ Ray to_ring(Ray ray) {
 
 Real ring_of_the_scene(const Ray& ray) {
   const Ray moved = to_ring(ray);
-  if (sphere_span(moved, {0, 0, 0}, 1.06L).end < 0) return -1;  // aside of it, or all of it behind
+  if (sphere_span(moved, {0, 0, 0}, 1.06L).end < 0) return -1;  // the ray misses the ring, or starts beyond it
   return ring_distance(moved, 0.8, 0.25, kEnd);
 }
 
-// All but the ring and the ground.
+// Spans of all parts except the ring and the ground.
 std::array<Span, 4> spans(const Ray& ray) {
   return {box_span(ray, {1.3, -0.4, 0.2}, glm::dvec3(0.6)), sphere_span(ray, {0, 0.3, -1.2}, 0.6),
           sphere_span(ray, {0.2, -0.93, 1.4}, 0.07), box_span(ray, {0.2, 0, 0.6}, {0.5, 0.7, 0.002})};
@@ -62,7 +62,7 @@ std::vector<Ray> camera_rays(Random& random, int count) {
   return rays;
 }
 
-// From 2e-3 above what those have met, unless that is within another part.
+// Rays that start 2e-3 above the hits in `met`. Rays that would start inside another part are left out.
 std::vector<Ray> bounce_rays(Random& random, const Places& met) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < met.hits.size(); ++i) {
@@ -78,7 +78,7 @@ std::vector<Ray> bounce_rays(Random& random, const Places& met) {
 
 struct Tally {
   Judgement judgement;
-  int gross = 0;  // hits that are off by more than 0.02: another surface's, or none
+  int gross = 0;  // hits that are off by more than 0.02: on another surface, or on none
   MarchCounters counters;
   double wrong_ppm() const { return 1e6 * (judgement.wrong() + gross) / judgement.rays; }
 };
@@ -92,7 +92,7 @@ void add(Tally& tally, const Judgement& part, const MarchCounters& counters) {
   tally.counters.merge(counters);
 }
 
-// `count` rays or a few less: half from the camera, half from what they meet.
+// Traces `count` rays or slightly fewer: half from the camera, half from the hits of those.
 Tally tally(int count, bool certified) {
   const auto scene = scene_of(kComposite);
   const Field field = make_field(scene);
@@ -135,7 +135,7 @@ TEST_CASE("I16: naive steps at the composite scene", "[catalogue]") {
   for (const std::vector<Ray>* rays : {&camera, &bounce}) {
     const Judgement naive = judge_naive(scene, *rays, composite_distance, {.eps = 1e-3, .t_max = kEnd});
     const auto gross = std::count_if(naive.errors.begin(), naive.errors.end(), [](double e) { return e > 0.02; });
-    CHECK(naive.false_hits + gross + naive.exhausted > naive.rays / 2000);  // ten times the bar
+    CHECK(naive.false_hits + gross + naive.exhausted > naive.rays / 2000);  // ten times the allowed rate
     CHECK(naive.p99() > 5e-3);
   }
 }

@@ -1,4 +1,5 @@
-// The adversarial catalogue, row F4: repeated balls against as many balls in a list. Jittered copies: warps_test.cpp.
+// The adversarial catalogue, row F4: repeated balls compared with the same balls in a list. Jittered copies:
+// warps_test.cpp.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -10,7 +11,7 @@
 namespace fathom::catalogue::copies_test {
 namespace {
 
-// Balls at every whole number from -reach to reach along each axis.
+// Balls at all integer points from -reach to reach along each axis.
 Truth balls(int reach, Real radius) {
   return [=](const Ray& ray) {
     Real first = -1;
@@ -52,14 +53,14 @@ TEST_CASE("F4: copies that end", "[catalogue]") {
   expect_copies(repeated("[3, 3, 3]", "0.25"), rays_at_the_middle(20000, 2, 6), balls(1, 0.25));
 }
 
-// The ball reaches across its cell.
+// The ball extends beyond its cell.
 TEST_CASE("F4: copies larger than their cells", "[catalogue]") {
   const std::vector<Ray> rays = rays_at_the_middle(20000, 2, 6);
   expect_copies(repeated("[3, 3, 3]", "0.75"), rays, balls(1, 0.75));
   expect_copies(repeated("[5, 5, 5]", "0.625"), rays_at_the_middle(10000, 3, 8), balls(2, 0.625));
 }
 
-// In the plane between two cells, in which copies on either side are equally near.
+// Rays in the plane between two cells, where the copies on both sides are equally near.
 TEST_CASE("F4: rays along the walls of cells", "[catalogue]") {
   Random random(5);
   std::vector<Ray> between, through;

@@ -1,4 +1,4 @@
-// Rays that go on from what other rays have met, as a renderer's do.
+// Rays that start where other rays hit, as a renderer's do.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace fathom::catalogue {
 
 using namespace runtime;
 
-// The places that rays have met, and what the renderer makes of each.
+// Hits of rays, and the surface points that the renderer computes from them.
 struct Places {
   std::vector<Hit> hits;
   std::vector<SurfacePoint> points;
@@ -41,7 +41,7 @@ inline Places places(const compiler::CompiledScene& scene, const std::vector<Ray
   return places;
 }
 
-// From a place, off the surface by as much as `spawn` says, into a direction on the normal's side.
+// Ray that leaves a hit in a direction on the normal's side. Its origin is offset from the surface by spawn().
 inline Ray departure(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction) {
   Ray ray{spawn(hit, point, false), direction};
   ray.side = hit.side;
@@ -49,7 +49,7 @@ inline Ray departure(const Hit& hit, const SurfacePoint& point, glm::dvec3 direc
   return ray;
 }
 
-// One ray for each place, evenly over the hemisphere.
+// One ray per hit, in directions uniform over the hemisphere.
 inline std::vector<Ray> departures(const Places& places, Random& random) {
   std::vector<Ray> rays;
   for (std::size_t i = 0; i < places.hits.size(); ++i) {

@@ -1,5 +1,5 @@
-// The adversarial catalogue, rows F7, F13 and F14: the Mandelbulb where its formula has no number, coordinates too
-// small for normal floats, and numbers that are none. docs/ACCURACY.md lists all rows.
+// The adversarial catalogue, rows F7, F13 and F14: the Mandelbulb where its formula is undefined, coordinates too
+// small for normal floats, and NaNs. docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -26,8 +26,8 @@ std::string mandelbulb(int power, int iterations, const char* detail) {
          std::to_string(iterations) + R"(, "detail": )" + detail + "}";
 }
 
-// After how many steps the orbit leaves the ball of radius 4; 200 when it does not. White and Nylander's formula, by
-// angles, about the y axis.
+// Number of steps after which the orbit leaves the ball of radius 4, or 200 if the orbit stays. White and Nylander's
+// formula, by angles, about the y axis.
 int escape_time(const Vec3& p, int power) {
   Vec3 w = p;
   for (int i = 0; i < 200; ++i) {
@@ -75,8 +75,11 @@ TEST_CASE("F7: the Mandelbulb at its centre, on its axis and within is a number"
 namespace {
 
 struct Orbits {
-  int stay = 0, leave = 0;  // for two hundred steps, within twelve; what leaves later is chaos, and others in double
-  int shown_outside = 0, shown_inside = 0;  // of those that stay, of those that leave
+  // Orbits that stay for two hundred steps, and orbits that leave within twelve. Later departures are chaotic and
+  // differ in double.
+  int stay = 0, leave = 0;
+  // Points with a positive value among those that stay, and with a negative value among those that leave.
+  int shown_outside = 0, shown_inside = 0;
 };
 
 Orbits orbits(int power) {
@@ -110,8 +113,8 @@ TEST_CASE("F7: what leaves is outside the Mandelbulb", "[catalogue]") {
   }
 }
 
-// Not so: where an orbit settles on a cycle whose last step is farther than 1 from the origin, the estimate's
-// logarithm is positive, and the derivative small.
+// Not met: if an orbit settles on a cycle whose last step is farther than 1 from the origin, the logarithm in the
+// estimate is positive and the derivative is small.
 TEST_CASE("F7: what stays is inside the Mandelbulb", "[unmet][.]") {
   for (const int power : {2, 8}) {
     const Orbits found = orbits(power);
@@ -142,7 +145,7 @@ const char* const kSmall[] = {
     R"({"type": "mandelbulb", "power": 8})",
     R"J({"type": "expression", "formula": "length(x, y, z) - 1 + 0.1*sin(5*x)"})J"};
 
-// As a worker of a render would have it that flushes denormal numbers to zero; as it was when this ends.
+// Makes the processor flush denormal numbers to zero, as a render's worker might. The destructor restores the state.
 class FlushToZero {
  public:
 #ifdef __SSE2__
@@ -169,7 +172,7 @@ float largest_difference(const std::vector<float>& a, const std::vector<float>& 
 
 }  // namespace
 
-// Denormal coordinates beside ones of size 1 count as nothing, whether the processor flushes them to zero or not.
+// Denormal coordinates next to coordinates of size 1 act as zeros, whether or not the processor flushes them to zero.
 TEST_CASE("F13: denormal coordinates change nothing", "[catalogue]") {
   vm::Workspace workspace;
   const float tiny[] = {0, 1e-45f, -3e-42f, 1e-39f, 1e-38f};
@@ -194,7 +197,7 @@ TEST_CASE("F13: denormal coordinates change nothing", "[catalogue]") {
 
 #ifdef __SSE2__
 TEST_CASE("F13: the floating-point state is left as it was", "[catalogue]") {
-  const unsigned before = _mm_getcsr() & ~0x3fu;  // but for the flags of what has happened
+  const unsigned before = _mm_getcsr() & ~0x3fu;  // without the flags of past exceptions
   const auto scene = compiled_objects(kSmall[0]);
   const std::vector<Ray> rays = rays_at_sphere(100, 5);
   march(make_field(scene), rays);
@@ -207,7 +210,8 @@ TEST_CASE("F13: the floating-point state is left as it was", "[catalogue]") {
 }
 #endif
 
-// One rule, in float on every instruction set and in double (vm/number/number-inl.h): min(a, b) is a < b ? a : b.
+// One rule for NaN operands: min(a, b) is a < b ? a : b, in float on every instruction set and in double
+// (vm/number/number-inl.h).
 TEST_CASE("F14: min and max of what is no number have one rule on every evaluator", "[catalogue]") {
   const test::IsaGuard guard;
   vm::Workspace workspace;
@@ -239,7 +243,7 @@ TEST_CASE("F14: min and max of what is no number have one rule on every evaluato
   }
 }
 
-// A formula without a value where rays pass: they are invalid, and counted, not misses.
+// A formula without a value along some rays: these rays are invalid and counted as invalid, not as misses.
 TEST_CASE("F14: rays through what has no value are invalid, their neighbours are not", "[catalogue]") {
   const auto scene = compiled_objects(R"J({"type": "expression", "formula": "length(x, y, z) - 1 + 0*sqrt(1.5 - x)",
       "half_size": [4, 4, 4]})J");

@@ -1,6 +1,6 @@
-// The adversarial catalogue, rows F1, F2 and F8 to F12: distances of solids by formulas that are often printed wrong,
-// and of parameters where formulas divide by zero. All primitives against brute force, and all constants against
-// random graphs: tests/compiler/shapes/shapes_test.cpp. docs/ACCURACY.md lists all rows.
+// The adversarial catalogue, rows F1, F2 and F8 to F12: distances of solids whose formulas are often printed wrong,
+// and of parameters for which formulas divide by zero. All primitives against brute force, and all Lipschitz
+// constants against random graphs: tests/compiler/shapes/shapes_test.cpp. docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -42,7 +42,8 @@ Value float_value(const compiler::CompiledScene& scene, glm::dvec3 p, vm::Worksp
   return {d, {gx, gy, gz}};
 }
 
-// In double and in float, at 10000 points within and around; gradients of length at most 1, never NaN.
+// Compares distances with the truth in double and in float, at 10000 points inside and around the solid. Gradients
+// must have length at most 1 and never be NaN.
 void expect_distance(const std::string& node, const Distance& truth) {
   const auto scene = compiled_objects(node);
   vm::Workspace workspace;
@@ -56,7 +57,7 @@ void expect_distance(const std::string& node, const Distance& truth) {
     wide = std::max(wide, std::abs(static_cast<double>(exact.distance - expected)) / scale_of(p));
     narrow = std::max(narrow, std::abs(static_cast<double>(coarse.distance - expected)) / scale_of(p) / kUnit);
     for (const double length : {glm::length(exact.gradient), glm::length(coarse.gradient)}) {
-      longest = length <= longest ? longest : length;  // a NaN stays
+      longest = length <= longest ? longest : length;  // keeps a NaN
     }
     if (!std::isfinite(exact.distance) || !std::isfinite(coarse.distance)) FAIL("no number at " << p.x << ' ' << p.y);
   }
@@ -66,13 +67,13 @@ void expect_distance(const std::string& node, const Distance& truth) {
   CHECK(longest <= 1 + 1e-6);
 }
 
-// A round box as it was printed in the renderer's first paper: p.y where it should be q.y.
+// Round box with the misprint of the renderer's first paper: p.y instead of q.y.
 double misprinted_round_box(glm::dvec3 p, glm::dvec3 half, double radius) {
   const glm::dvec3 q = glm::abs(p) - half;
   return glm::length(glm::max(q, 0.0)) + std::min(std::max(q.x, std::max(p.y, q.z)), 0.0) - radius;
 }
 
-// Largest change of a field over the way between two points, at 20000 pairs from 1e-4 to 1 apart.
+// Max of |change of the field| / distance over 20000 pairs of points that are 1e-4 to 1 apart.
 template <class Field>
 double steepest(const Field& field) {
   Random random(2);
@@ -108,7 +109,7 @@ TEST_CASE("F1: solids whose usual formulas are misprinted", "[catalogue]") {
       [](const Vec3& p) {
         return sheet_distance<3>(p, {Vec3(0), Vec3(1, 0.5, 0), Vec3(0.25, 1, 0.5)}) - 0.125L;
       });
-  // Where the misprint shows: below the box it bulges.
+  // The misprint shows below the box, where the field bulges.
   CHECK(misprinted_round_box({0, -1.3, 0}, {0.75, 0.5, 0.25}, 0.25) < 0.5);
   CHECK(box_distance(Vec3(0, -1.3L, 0), Vec3(0.75, 0.5, 0.25)) - 0.25L > 0.54L);
 }
@@ -135,7 +136,7 @@ TEST_CASE("F2: no field changes faster than the compiler says", "[catalogue]") {
           scene.lipschitz * (1 + 1e-6));
   }
   CHECK(steepest([](glm::dvec3 p) { return misprinted_round_box(p, {0.75, 0.5, 0.25}, 0.25); }) > 1.3);
-  CHECK(steepest([](glm::dvec3 p) { return 2 * p.y; }) > 1.9);  // of a plane with a normal of length 2
+  CHECK(steepest([](glm::dvec3 p) { return 2 * p.y; }) > 1.9);  // a plane with a normal of length 2
 }
 
 TEST_CASE("F8: a round cone whose one ball just holds the other", "[catalogue]") {
@@ -144,7 +145,7 @@ TEST_CASE("F8: a round cone whose one ball just holds the other", "[catalogue]")
   };
   const Distance ball = [](const Vec3& p) { return glm::length(p) - 1; };
   expect_distance(round_cone(0.75), ball);
-  // The cone between them is 1e-8 wide: it shows in double, below its square.
+  // The cone between the balls is 1e-8 wide. Its effect on distances in double is below the square of that width.
   expect_distance(round_cone(std::nextafter(0.75, 1)), ball);
   CHECK(codes_of(round_cone(std::nextafter(0.75, 0))) == "E0302");
   CHECK(codes_of(round_cone(0.5)) == "E0302");
@@ -174,8 +175,8 @@ TEST_CASE("F10: a ring thicker than it is wide", "[catalogue]") {
     const double truth = static_cast<double>(spindle_distance(Vec3(p), 0.5, 1));
     const double found = vm::evaluate_distance(scene.distance, p, workspace);
     if (truth > 0) outside = std::max(outside, std::abs(found - truth) / scale_of(p));
-    if (truth <= 0) depth = std::max(depth, truth - found);  // deeper than it is
-    if (truth <= 0) shortest = std::max(shortest, found);    // not inside at all
+    if (truth <= 0) depth = std::max(depth, truth - found);  // deeper than the truth
+    if (truth <= 0) shortest = std::max(shortest, found);    // positive although inside
     CHECK(std::isfinite(glm::length(float_value(scene, p, workspace).gradient)));
   }
   CHECK(outside <= 1e-14);
@@ -226,7 +227,7 @@ TEST_CASE("F12: normals of any length make the same plane, one of none makes non
     expect_distance(plane(normal), [](const Vec3& p) { return 0.6L * p.x - 0.8L * p.y - 0.25L; });
   }
   CHECK(codes_of(plane("[0, 0, 0]")) == "E0301");
-  CHECK(codes_of(plane("[0, 1e30, 0]")) == "E0301");  // larger than any number of a scene
+  CHECK(codes_of(plane("[0, 1e30, 0]")) == "E0301");  // larger than any number that a scene may contain
 }
 
 }  // namespace fathom::catalogue::fields_test

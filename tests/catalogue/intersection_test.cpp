@@ -1,6 +1,6 @@
-// The adversarial catalogue, rows I1 to I8: rays at one surface, where methods that call a small distance a hit, or
-// give up after so many steps, are known to fail. Truth is in closed form, in long double, of the very rays that are
-// marched; naive sphere tracing runs beside where its result says why the row exists. docs/ACCURACY.md lists all
+// The adversarial catalogue, rows I1 to I8: rays at one surface, for which methods fail that call a small distance a
+// hit or give up after a number of steps. The truth is a closed form in long double for exactly the rays that are
+// marched. Naive sphere tracing runs in addition if its result shows why the row exists. docs/ACCURACY.md lists all
 // rows.
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,7 +15,8 @@ namespace {
 
 const Naive kThousandth{.eps = 1e-3}, kTenThousandth{.eps = 1e-4}, kMillionth{.eps = 1e-6};
 
-// Rays that pass the unit sphere's edge by 1e-6 to 1e-2, log-uniform, inside of it (-1) or outside (+1).
+// Rays that pass the unit sphere's edge at distances of 1e-6 to 1e-2, log-uniform, inside the edge (-1) or outside
+// (+1).
 std::vector<Ray> rays_past_the_edge(int count, double side) {
   Random random(4);
   std::vector<Ray> rays;
@@ -23,7 +24,7 @@ std::vector<Ray> rays_past_the_edge(int count, double side) {
   return rays;
 }
 
-// How far a ray passes the unit sphere by.
+// Distance by which a ray passes the unit sphere.
 Real gap_of(const Ray& ray) {
   Real a = 0, b = 0, c = 0;
   for (int i = 0; i < 3; ++i) {
@@ -115,7 +116,7 @@ TEST_CASE("I4: planes at grazing angles", "[catalogue]") {
   }
 }
 
-// Heights above the floor, and half widths of a slit, from 1e-3 to 1e-2; 30 units to go.
+// Heights above the floor, and half widths of a slit, from 1e-3 to 1e-2. The rays are 30 units long.
 TEST_CASE("I5: a ray parallel to a plane or through a slit goes on to its end", "[catalogue]") {
   const auto floor = scene_of(kPlane);
   const auto slit = scene_of(R"("objects": [{"type": "box", "half_size": [40, 1, 40], "translate": [0, -1.005, 0]},
@@ -138,8 +139,8 @@ TEST_CASE("I5: a ray parallel to a plane or through a slit goes on to its end", 
   }
 }
 
-// Not so: bisection needs about ln(1 + s t / h) / 2s evaluations, h the height and s the slope, and gives up after a
-// million. Of a plane across an axis intervals are exact.
+// Not met: bisection needs about ln(1 + s t / h) / 2s evaluations, where h is the height and s the slope, and gives
+// up after a million. For a plane perpendicular to an axis intervals are exact.
 TEST_CASE("I5: a ray all but parallel to a plane that is not across an axis is decided", "[catalogue]") {
   const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0.6, 0.8, 0]}])");
   const glm::dvec3 normal(0.6, 0.8, 0), along = glm::normalize(glm::dvec3(0.8, -0.6, 1));
@@ -153,8 +154,8 @@ TEST_CASE("I5: a ray all but parallel to a plane that is not across an axis is d
   }
 }
 
-// The ball, moved away together with its rays: in exact arithmetic nothing changes. Rays at its edge, where an error
-// of the place is one of the distance many times over, are left to I2.
+// The ball and its rays move away together: in exact arithmetic nothing changes. I2 tests rays at the ball's edge,
+// where the distance's error is many times the error of the position.
 TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {
   for (const double offset : {0.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6}) {
     const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1, "translate": [)" +
@@ -167,7 +168,7 @@ TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {
     }
     const Truth truth = [&](const Ray& ray) {
       Ray back = ray;
-      back.origin.x -= offset;  // exact: the two are neighbours
+      back.origin.x -= offset;  // exact, because the two numbers are neighbours
       return sphere_distance(back);
     };
     std::vector<Ray> local = rays;  // in the programs' coordinates
@@ -179,7 +180,8 @@ TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {
       found.note(result.arrivals[i].status == Arrival::Status::Hit, result.arrivals[i].t, truth(rays[i]));
     }
     std::sort(found.errors.begin(), found.errors.end());
-    // What the solid's moving leaves of it: the origin is chosen so that none of these is more than 8 from zero.
+    // Spacing of floats at the coordinates that remain after the compiler moved the solid: the compiler's origin
+    // leaves none of these offsets more than 8 from zero.
     const float farthest = static_cast<float>(std::min(offset, 10.0) + 6);
     const double unit = static_cast<double>(std::nextafter(farthest, INFINITY) - farthest);
     INFO("offset " << offset << ", float's unit there " << unit);
@@ -187,7 +189,8 @@ TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {
     CHECK(found.exhausted == 0);
     CHECK(found.worst() <= 4 * unit);
     if (offset < 1e6) continue;
-    // A like ball on the other side of zero leaves the scene no better origin, and float coordinates what they are.
+    // With an equal ball on the other side of zero the compiler has no better origin, so float coordinates stay
+    // coarse.
     const auto unmoved = scene_of(R"("objects": [{"type": "sphere", "radius": 1, "translate": [1e6, 0, 0]},
                                                  {"type": "sphere", "radius": 1, "translate": [-1e6, 0, 0]}])");
     CHECK(judge_naive(unmoved, rays, truth, kTenThousandth).p50() > 5e-3);

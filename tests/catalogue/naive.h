@@ -1,5 +1,5 @@
-// What the rows of the catalogue share: plain sphere tracing, to show that each row bites, and the compiler's
-// refusals.
+// Helpers for the rows of the catalogue: plain sphere tracing, to show that each row catches its errors, and the
+// compiler's diagnostics.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace fathom::catalogue {
 
 using namespace runtime;
 
-// Sphere tracing as most programs have it (Hart, "Sphere Tracing", 1996): a hit is where the distance is below `eps`.
+// Sphere tracing as most programs implement it (Hart, "Sphere Tracing", 1996): a distance below `eps` is a hit.
 struct Naive {
   double eps = 1e-4;  // scene units
   int max_steps = 1000;
@@ -30,7 +30,7 @@ struct NaiveArrival {
   double t;
 };
 
-// In the precision of Number, float or double, all of it.
+// Traces a ray entirely in the precision of Number, float or double.
 template <class Number = float>
 NaiveArrival trace_naively(const vm::VerifiedProgram& program, const Ray& ray, const Naive& rule,
                            vm::Workspace& workspace) {
@@ -52,7 +52,8 @@ NaiveArrival trace_naively(const vm::VerifiedProgram& program, const Ray& ray, c
   return {NaiveArrival::Status::Exhausted, 0};
 }
 
-// Rays that ran out of steps count as exhausted alone: no program knows whether they hit.
+// Judges naive tracing. A ray that ran out of steps counts only as exhausted, because no program knows whether it
+// hits.
 template <class Number = float>
 Judgement judge_naive(const compiler::CompiledScene& scene, const std::vector<Ray>& rays, const Truth& truth,
                       const Naive& rule) {
@@ -73,7 +74,7 @@ Judgement judge_naive(const compiler::CompiledScene& scene, const std::vector<Ra
 
 inline double share(int part, const Judgement& of) { return static_cast<double>(part) / of.rays; }
 
-// What the compiler says of a scene of these objects: "E0301 W0506" and so on, in source order.
+// Codes of the compiler's diagnostics for a scene of these objects: "E0301 W0506" and so on, in source order.
 inline std::string codes_of(const std::string& objects, bool lint = false) {
   compiler::Diagnostics diagnostics;
   compiler::CompileOptions options;

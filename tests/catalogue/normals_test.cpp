@@ -1,6 +1,6 @@
-// The adversarial catalogue, rows N1 to N5: normals against exact gradients in long double; differences, and a cone's
-// usual formula, beside them. Random shapes and graphs: tests/compiler/shapes/normals_test.cpp. docs/ACCURACY.md lists all
-// rows.
+// The adversarial catalogue, rows N1 to N5: normals compared with exact gradients in long double. Differences and a
+// cone's usual formula are measured for comparison. Random shapes and graphs: tests/compiler/shapes/normals_test.cpp.
+// docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -16,14 +16,14 @@ namespace {
 
 using tests::compiled_objects;
 
-// A place on a solid's surface, in its own coordinates.
+// Point and normal on a solid's surface, in the solid's coordinates.
 struct Place {
   Vec3 position, normal;
 };
 
 struct Solid {
   const char* name;
-  std::string node;  // without its last brace
+  std::string node;  // JSON without the closing brace
   std::function<Place(Random&)> place;
 };
 
@@ -41,7 +41,7 @@ Place on_torus(Random& random) {
   return {out + 0.25L * n, n};
 }
 
-// The side of the cone of radius 1 at y = -0.75 and `top` at 0.75, off its rims.
+// Point on the side of the cone with radius 1 at y = -0.75 and `top` at 0.75, away from the rims.
 Place on_cone(Random& random, long double top) {
   const long double turn = kTau * random.uniform(0, 1), share = random.uniform(0.01, 0.99);
   const Vec3 out(std::cos(turn), 0, std::sin(turn));
@@ -68,7 +68,7 @@ glm::dvec3 float_gradient(const vm::VerifiedProgram& program, glm::dvec3 p, vm::
   return {gx, gy, gz};
 }
 
-// As renderers do that have no derivatives, in float.
+// Central differences in float, as in renderers without derivatives.
 glm::dvec3 central_difference(const vm::VerifiedProgram& program, glm::dvec3 p, float h, vm::Workspace& workspace) {
   glm::dvec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +84,7 @@ glm::dvec3 central_difference(const vm::VerifiedProgram& program, glm::dvec3 p, 
   return slope;
 }
 
-// Radians; of opposite or missing vectors more than 1.
+// Sine of the angle between a vector and a unit vector; 2 for opposite, zero and NaN vectors.
 double angle(glm::dvec3 a, const Vec3& unit) {
   const Vec3 n(a);
   const long double length = glm::length(n);
@@ -92,7 +92,7 @@ double angle(glm::dvec3 a, const Vec3& unit) {
   return static_cast<double>(glm::length(glm::cross(n / length, unit)));
 }
 
-// The place's own exact normal where rounding to float, far from the origin, has moved it: of the nearest place.
+// Exact normal at the surface point nearest to `moved`, which is `place` after rounding to float far from the origin.
 Vec3 normal_at(const Solid& solid, const Place& place, const Vec3& moved) {
   if (solid.name == std::string("sphere")) return glm::normalize(moved);
   if (solid.name == std::string("torus")) {
@@ -104,8 +104,8 @@ Vec3 normal_at(const Solid& solid, const Place& place, const Vec3& moved) {
   return glm::dot(place.normal, flat) * out + place.normal.y * Vec3(0, 1, 0);
 }
 
-// Largest angle of the machine's float gradients at `count` places, and the 99th percentile of differences with step
-// h.
+// Max angle error of the machine's float gradients at `count` points, and the 99th percentile for differences with
+// step h.
 struct Angles {
   double worst = 0;
   std::vector<double> of_differences;  // sorted
@@ -113,7 +113,7 @@ struct Angles {
 };
 
 Angles angles(const Solid& solid, double offset, int count, float h) {
-  // Two, one on each side of zero, so that the scene has no better origin.
+  // Two copies on opposite sides of zero, so that the compiler has no better origin for the scene.
   const auto moved_by = [](double x, double z) {
     return R"(, "translate": [)" + std::to_string(x) + ", 0, " + std::to_string(z) + "]}";
   };
@@ -157,8 +157,8 @@ TEST_CASE("N2: normals of curved surfaces far from the origin", "[catalogue]") {
 
 namespace {
 
-// The gradient of a capped cone's usual formula (the sign of the side times the square root of the lesser of two
-// squared distances) by automatic differentiation in float: half the squares' gradient over the root.
+// Gradient of a capped cone's usual formula (sign of the side times the square root of the smaller of two squared
+// distances), as automatic differentiation in float gives it: half the gradient of the square, divided by the root.
 glm::vec3 usual_cone_gradient(glm::vec3 p, float r1, float r2, float h) {
   const float rho = std::sqrt(p.x * p.x + p.z * p.z);
   const glm::vec2 q(rho, p.y), k1(r2, h), k2(r2 - r1, 2 * h);
@@ -179,10 +179,10 @@ glm::vec3 usual_cone_gradient(glm::vec3 p, float r1, float r2, float h) {
   return {slope.x * p.x / rho, slope.y, slope.x * p.z / rho};
 }
 
-// Of `count` places within two floats of a cone's side: how many normals are reversed, zero or no numbers.
+// Number of reversed, zero or NaN normals at `count` points within two floats of a cone's side.
 struct Lost {
   int of_the_machine = 0, of_the_usual_formula = 0;
-  double worst = 0;  // radians, of the machine's
+  double worst = 0;  // radians, of the machine's normals
 };
 
 Lost lost_normals(int count) {
@@ -204,7 +204,8 @@ Lost lost_normals(int count) {
   return lost;
 }
 
-// Of rays at every solid: normals of hits as the renderer makes them of the gradient.
+// Number of wrong normals at the hits of `count` rays per solid. The normals are those that the renderer computes
+// from the gradient.
 int lost_at_hits(int count) {
   int lost = 0;
   for (const Solid& solid : solids()) {
@@ -241,7 +242,7 @@ TEST_CASE("N3: ten million normals, none reversed, zero or no number", "[nightly
 
 namespace {
 
-// Whether g is a convex combination of the unit vectors of `faces`, along distinct axes.
+// True if g is a convex combination of the unit vectors in `faces`, which lie along distinct axes.
 bool in_normal_cone(glm::dvec3 g, const std::vector<glm::dvec3>& faces) {
   glm::dvec3 rest = g;
   double sum = 0;

@@ -1,5 +1,5 @@
-// The adversarial catalogue, rows S1 to S4: shadow acne, leaks, contact shadows, grooves: rays that start on a
-// surface and whole pictures, against closed forms. docs/ACCURACY.md lists all rows.
+// The adversarial catalogue, rows S1 to S4: shadow acne, leaks, contact shadows, grooves. Rays that start on a
+// surface and whole images are compared with closed forms. docs/ACCURACY.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -20,21 +20,22 @@ RenderResult picture(const std::string& scene_text, int width, int height, int s
   options.width = width;
   options.height = height;
   options.spp = spp;
-  options.sampler = compiler::SamplerKind::Independent;  // the pixels' spread tells the error
+  // The spread of the pixels gives the error.
+  options.sampler = compiler::SamplerKind::Independent;
   RenderResult result = render(scene_of(scene_text), options);
   CHECK(result.stats.dropped_samples == 0);
   return result;
 }
 
-// Towards a light at `degrees` from the normal, on a side at random.
+// Direction to a light at `degrees` from the normal, at a random azimuth.
 glm::dvec3 lit_from(Random& random, glm::dvec3 normal, double degrees) {
   const double angle = degrees * M_PI / 180;
   const glm::dvec3 along = glm::normalize(glm::cross(normal, random.direction()));
   return std::cos(angle) * normal + std::sin(angle) * along;
 }
 
-// Of `count` rays from each of three solids to a light at 89 degrees, how many go wrong: meet a convex solid again,
-// or are free or shadowed in spite of the ring itself.
+// Number of wrong shadow rays, out of `count` rays from each of three solids to a light at 89 degrees: a ray meets a
+// convex solid again, or differs from the truth for the ring's own shadow.
 int wrong_shadows(int count) {
   constexpr std::size_t kAtOnce = 3750;
   const Truth none = [](const Ray&) { return Real(-1); };
@@ -50,7 +51,7 @@ int wrong_shadows(int count) {
         for (std::size_t i = 0; i < kAtOnce; ++i) rays.push_back(aimed(random, random.uniform(0, 1), 5));
         const Places met = places(scene, rays);
         for (std::size_t i = 0; i < met.hits.size() && lit.size() < kAtOnce; ++i) {
-          if (met.hits[i].side < 0) continue;  // the plane from below
+          if (met.hits[i].side < 0) continue;  // the plane seen from below
           lit.push_back(
               departure(met.hits[i], met.points[i], lit_from(random, glm::dvec3(met.points[i].normal), 89)));
         }
@@ -73,7 +74,7 @@ TEST_CASE("S1: a million rays to a light at 89 degrees, from each of three surfa
   CHECK(wrong_shadows(1000000) == 0);
 }
 
-// A floor within a round wall that is bright up to 2 degrees above it. E = pi L sin^2(2 degrees).
+// A floor inside a round wall that emits up to 2 degrees above the floor: E = pi L sin^2(2 degrees).
 TEST_CASE("S1: a floor under light from 88 to 90 degrees is as bright as it should", "[catalogue][heavy]") {
   const double height = 10 * std::tan(2 * M_PI / 180);
   const RenderResult result = picture(
@@ -94,7 +95,7 @@ TEST_CASE("S1: a floor under light from 88 to 90 degrees is as bright as it shou
   CHECK(found.sigma <= 0.02 * radiance);
 }
 
-// Walls from 2 to 100 times as thick as the offset at which new rays start; light outside, everywhere.
+// Walls from 2 to 100 times as thick as the offset at which new rays start, with light everywhere outside.
 TEST_CASE("S2: no light leaks into a closed box", "[catalogue][heavy]") {
   const double offset = 16 * static_cast<double>(kDistanceError);
   for (const double offsets : {2, 5, 20, 100}) {
@@ -126,8 +127,8 @@ TEST_CASE("S2: no light leaks into a closed box", "[catalogue][heavy]") {
 
 namespace {
 
-// A black ball 1e-5 above a white floor under an even sky: at z from the point below it the ball takes R^2 h / d^3 of
-// the floor's light, with h = R + gap and d^2 = z^2 + h^2.
+// A black ball 1e-5 above a white floor under a uniform sky. At distance z from the point below the ball, the ball
+// blocks the fraction R^2 h / d^3 of the floor's light, with h = R + gap and d^2 = z^2 + h^2.
 constexpr double kRadius = 0.5, kGap = 1e-5;
 const char* const kBallOnFloor = R"("background": [1, 1, 1],
     "materials": {"white": {"type": "diffuse", "color": [1, 1, 1]}, "black": {"type": "diffuse", "color": [0, 0, 0]}},
@@ -141,7 +142,7 @@ double light_beside_the_ball(double x, double z) {
 
 }  // namespace
 
-// The camera looks down at 2 degrees, under the ball: the first row of floor is 0.01 from the touch.
+// The camera looks down at 2 degrees, under the ball. The first row of the floor is 0.01 from the contact.
 TEST_CASE("S3: the shadow beside a ball that all but touches a floor", "[catalogue]") {
   constexpr int kWidth = 48, kHeight = 12;
   const int samples = test::few(128);
@@ -171,7 +172,8 @@ TEST_CASE("S3: the shadow beside a ball that all but touches a floor", "[catalog
   CHECK(too_dark == 0);
 }
 
-// From the floor, 1e-4 to 0.3 from the touch: where the ball is no farther from it than new rays start.
+// Rays from the floor, 1e-4 to 0.3 from the contact. At the nearest points the ball is no farther from the floor than
+// the offset at which new rays start.
 TEST_CASE("S3: rays from the floor under a ball that all but touches it", "[catalogue][heavy]") {
   const auto scene = scene_of(kBallOnFloor);
   const Field field = make_field(scene);
@@ -200,12 +202,12 @@ TEST_CASE("S3: rays from the floor under a ball that all but touches it", "[cata
 
 namespace {
 
-// The light of a strip of a groove's floor, half of `width` from the edge, under the other wall, which rises at
-// `degrees` from the floor, and the sky.
+// Radiance of a strip of a groove's floor, half of `width` from the edge. The light comes from the other wall, which
+// rises at `degrees` from the floor, and from the sky.
 Estimate groove(double degrees, double width, const char* wall, const char* sky, int spp) {
   const double angle = degrees * M_PI / 180;
   char text[400];
-  // The camera is within the groove and looks down along it.
+  // The camera is inside the groove and looks down along it.
   std::snprintf(text, sizeof text,
                 R"("camera": {"type": "orthographic", "width": %.17g, "position": [%.17g, %.17g, %.17g],
                               "target": [%.17g, 0, 0]}, "objects": [{"type": "plane", "normal": [%.17g, %.17g, 0],
@@ -222,8 +224,9 @@ Estimate groove(double degrees, double width, const char* wall, const char* sky,
 
 }  // namespace
 
-// Infinite walls: (1 + cos angle) / 2 to the other wall, the rest to the sky, wherever on the floor. A few rays in a
-// million, along the wall that is not across an axis, are given up (I5, unmet): too few to be seen here.
+// Infinite walls: the view factor of the other wall is (1 + cos angle) / 2 everywhere on the floor, and the sky's is
+// the rest. A few rays in a million, along the wall that is not perpendicular to an axis, are given up (I5, not met):
+// too few to show here.
 TEST_CASE("S4: the view factors of grooves of 90 and 10 degrees", "[catalogue][heavy]") {
   const char* lamp = R"({"type": "emissive", "emission": [1, 1, 1]})";
   const char* black = R"({"type": "diffuse", "color": [0, 0, 0]})";

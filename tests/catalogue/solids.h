@@ -1,5 +1,5 @@
 // Distances in closed form, in long double, of the solids whose usual formulas are wrong or fail: the truth of rows
-// F1, F8 to F11 and of the normals. All centred and about y, as the scene format has them.
+// F1, F8 to F11 and of the normals. All solids are centred, with y as their axis, as in the scene format.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using Vec2 = glm::vec<2, long double>;
 using Vec3 = glm::vec<3, long double>;
 using Distance = std::function<long double(const Vec3&)>;
 
-// Of corners [0,x] x [-y,y] in the half-plane (distance from the axis, y), mirrored at the axis: negative within.
+// Signed distance to the rectangle [-x,x] x [-y,y] in the half-plane (distance from the axis, y).
 inline long double rectangle_distance(Vec2 p, Vec2 half) {
   const long double x = std::abs(p.x) - half.x, y = std::abs(p.y) - half.y;
   return std::hypot(std::max(x, 0.0L), std::max(y, 0.0L)) + std::min(std::max(x, y), 0.0L);
@@ -35,7 +35,7 @@ long double segment_distance(const Vec& p, const Vec& a, const Vec& b) {
   return glm::length(p - a - std::clamp(along, 0.0L, 1.0L) * (b - a));
 }
 
-// Radius `bottom` at y = -h and `top` at y = h.
+// Signed distance to the cone with radius `bottom` at y = -h and `top` at y = h.
 inline long double cone_distance(const Vec3& p, long double bottom, long double top, long double h) {
   const Vec2 q = half_plane(p), low(bottom, -h), high(top, h);
   long double nearest = segment_distance(q, low, high);
@@ -45,7 +45,7 @@ inline long double cone_distance(const Vec3& p, long double bottom, long double 
   return within ? -nearest : nearest;
 }
 
-// To the flat polygon of these corners, convex and in order, not thickened.
+// Distance to a flat convex polygon of thickness 0, corners in order.
 template <std::size_t n>
 long double sheet_distance(const Vec3& p, const std::array<Vec3, n>& corners) {
   const Vec3 normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
@@ -59,14 +59,15 @@ long double sheet_distance(const Vec3& p, const std::array<Vec3, n>& corners) {
   return over ? std::abs(glm::dot(p - corners[0], normal)) : nearest;
 }
 
-// A ring thicker than it is wide, major < minor: its surface is the part of the circle beyond the axis, which ends in
-// two tips on the axis.
+// Signed distance to a spindle torus, major < minor. Its surface is the part of the circle beyond the axis, which
+// ends in two tips on the axis.
 inline long double spindle_distance(const Vec3& p, long double major, long double minor) {
   const Vec2 q = half_plane(p);
   const long double from_centre = std::hypot(q.x - major, q.y);
   if (from_centre >= minor) return from_centre - minor;
   const long double tip = std::sqrt(minor * minor - major * major);
-  // Outwards from the circle's centre; beyond the axis there is no surface, and a tip is nearest.
+  // The nearest point lies outwards from the circle's centre. If that point is beyond the axis, it is not on the
+  // surface, and a tip is nearest.
   const bool faces = major + minor * (q.x - major) / from_centre >= 0;
   return faces ? from_centre - minor : -std::hypot(q.x, std::abs(q.y) - tip);
 }

@@ -1,8 +1,8 @@
-// The adversarial catalogue, row F3 and the jittered copies of F4: rays at what bends, scales, repeats and displaces
-// space, against a search of its own: fields written here in plain doubles, their true Lipschitz constants, and
-// bisection that leaves out a stretch only when its ends' distances cover it. Sphere tracing with steps as long as
-// the raw value, as most programs do, is wrong for the share that the heavy test prints; the compiled scenes must be
-// right for every ray.
+// The adversarial catalogue, row F3 and the jittered copies of F4: rays at nodes that bend, scale, repeat and
+// displace space. The truth comes from an independent search: fields written here in plain doubles, their true
+// Lipschitz constants, and bisection that skips an interval only if the distances at its ends cover the interval.
+// Sphere tracing with the raw value as the step, as in most programs, is wrong for the fraction of rays that the
+// heavy test prints. The compiled scenes must be right for every ray.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -30,23 +30,23 @@ double box(dvec3 p, dvec3 half) {
 }
 
 struct Case {
-  const char* row;  // of the catalogue
+  const char* row;  // row of the catalogue
   const char* name;
   std::string node;
-  Field field;       // whose zeros are the solid's
-  double lipschitz;  // of it, within `radius` of the origin
-  double radius;     // holds the solid
-  Field naive;       // the value a naive program steps by
+  Field field;       // its zeros are the solid's surface
+  double lipschitz;  // of `field`, within `radius` of the origin
+  double radius;     // of a ball that contains the solid
+  Field naive;       // step of a naive sphere tracer
 };
 
-// Turned by -k y to be straight again.
+// Twisted blade: the point is rotated by -k y, which makes the blade straight.
 double blade(dvec3 p) {
   const double angle = -5 * p.y, c = std::cos(angle), s = std::sin(angle);
   return box({p.x * c + p.z * s, p.y, p.z * c - p.x * s}, {0.5, 1, 0.05});
 }
 
-// The x axis becomes an arc of 45 degrees a unit towards +y: back onto it by the angle and the radius (Barr, "Global
-// and Local Deformations of Solid Primitives", 1984).
+// Beam whose x axis is bent into an arc of 45 degrees per unit towards +y. The angle and the radius map a point back
+// to the straight beam (Barr, "Global and Local Deformations of Solid Primitives", 1984).
 constexpr double kArc = M_PI / 4;
 double arched_beam(dvec3 p) {
   const double down = 1 / kArc - p.y;
@@ -92,7 +92,7 @@ double rough_ball(dvec3 p) {
 }
 
 const std::vector<Case>& cases() {
-  // Largest stretch of [[1, kR], [0, 1]], R the radius of the ball the rays are searched in.
+  // Largest singular value of [[1, kR], [0, 1]], where R is the radius of the ball in which rays are searched.
   const double kr = 5 * 1.13;
   static const std::vector<Case> all = {
       {"F3", "twist, k = 5",
@@ -123,7 +123,7 @@ struct Line {
   dvec3 at(double t) const { return origin + t * direction; }
 };
 
-// From a sphere around the solid towards points spread evenly over a disc that covers it.
+// Line from a sphere around the solid towards a random point of a disc that covers the solid.
 Line random_line(const Case& c, Random& random) {
   const dvec3 from = 3 * c.radius * random.direction();
   const dvec3 side = glm::normalize(glm::cross(from, random.direction()));
@@ -137,8 +137,8 @@ struct Truth {
   double t;
 };
 
-// The first zero of the field along the line within the ball that holds the solid. A touch that ten digits cannot
-// tell from a miss is a contact.
+// First zero of the field along the line inside the ball that contains the solid. The outcome is a contact if nine
+// digits cannot tell a touch from a miss.
 Truth search(const Case& c, const Line& line) {
   constexpr double kResolution = 1e-9;
   const double middle = -glm::dot(line.origin, line.direction) / glm::dot(line.direction, line.direction);
@@ -168,7 +168,7 @@ Truth search(const Case& c, const Line& line) {
   return {contact ? Outcome::Contact : Outcome::Miss, 0};
 }
 
-constexpr double kGross = 0.02;  // scene units: a hit this far off is another surface
+constexpr double kGross = 0.02;  // scene units: a hit that is this far off is on another surface
 
 // Sphere tracing with the raw value as the step.
 Truth naive(const Case& c, const Line& line) {
@@ -183,7 +183,7 @@ Truth naive(const Case& c, const Line& line) {
 
 struct Tally {
   int rays = 0, hits = 0, contacts = 0, wrong = 0, naive_wrong = 0;
-  double worst = 0;  // largest error of a hit, scene units
+  double worst = 0;  // max error of a hit, scene units
   double evaluations = 0;
 };
 
@@ -219,7 +219,7 @@ Tally tally(const Case& c, int count) {
   return result;
 }
 
-// Of `count` rays at each case of the row.
+// Traces `count` rays at each case of the row and expects all to be right.
 void expect_right(const std::string& row, int count) {
   for (const Case& c : cases()) {
     if (row != c.row) continue;

@@ -14,7 +14,7 @@ namespace {
 using namespace fathom::compiler;
 using nlohmann::json;
 
-// A ball used twice, once cut out of a box; a name that needs escaping everywhere.
+// A ball that is used twice, once cut out of a box; a plane; and a name that needs escaping in every format.
 const char* const kText = R"({"version": 1,
   "nodes": {"ball": {"type": "sphere", "radius": 0.5}},
   "objects": [
@@ -51,7 +51,7 @@ TEST_CASE("graph as JSON: each node once, with what is known of it", "[export]")
   std::set<std::string> types;
   for (const json& node : out["nodes"]) {
     CHECK(node["id"] == id);
-    for (const json& child : node["children"]) CHECK(child < id);  // children first
+    for (const json& child : node["children"]) CHECK(child < id);  // children come first
     types.insert(node["type"].get<std::string>());
     ++id;
   }
@@ -65,7 +65,7 @@ TEST_CASE("graph as JSON: each node once, with what is known of it", "[export]")
   const json& all = out["nodes"][4];
   CHECK(all["type"] == "union");
   CHECK(all["source"] == nullptr);
-  CHECK(all["box"]["lo"][0] == nullptr);  // a plane has no end
+  CHECK(all["box"]["lo"][0] == nullptr);  // a plane is unbounded
   CHECK(all["children"].size() == 3);
 }
 

@@ -1,5 +1,5 @@
-// Listings of compiled scenes and of programs, as `fathom asm` reads them: refused with a message and its place, or a
-// scene that is written as itself and can be run.
+// Fuzz target for listings of compiled scenes and of programs, as `fathom asm` reads them. The assembler refuses a
+// listing with a message and its position, or returns a scene that writes as the same listing and can run.
 #include "compiler/artefact/listing.h"
 #include "compiler/compile.h"
 #include "tests/fuzz/check_scene.h"

@@ -24,10 +24,10 @@ using glm::dvec3;
 using test::Cloud;
 using test::Random;
 
-constexpr std::size_t kCheckedPoints = 37;  // fills no register
+constexpr std::size_t kCheckedPoints = 37;  // not a multiple of any register's lanes
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Points near the origin with, now and then, a coordinate from the edge of what floats can say.
+// Points near the origin. Now and then a coordinate is an extreme float.
 Cloud random_cloud(Random& random, double reach) {
   static const float kSpice[] = {0.f, -0.f, 1e-45f, 1e-20f, 1e19f, -1e30f, 3.4e38f, kInfinity, -kInfinity};
   Cloud cloud;
@@ -46,7 +46,7 @@ std::string place(const Cloud& cloud, std::size_t i) {
   return fmt::format("at {} {} {}", cloud.x[i], cloud.y[i], cloud.z[i]);
 }
 
-// Everything that the evaluators of batches say of the points: distance, gradient, convexity, surface. [point][7]
+// All results of the batch evaluators at the points: distance, gradient, convexity, surface. [point][7]
 std::vector<std::uint64_t> batch_bits(const vm::Code& program, const Cloud& cloud, std::size_t first,
                                       std::size_t count, vm::Workspace& workspace) {
   std::vector<float> d(count), gx(count), gy(count), gz(count), convex(count), alone(count);
@@ -70,7 +70,7 @@ std::vector<std::uint64_t> batch_bits(const vm::Code& program, const Cloud& clou
   return bits;
 }
 
-// One point at a time as scalars, then many on every instruction set.
+// Compares evaluation of one point at a time on the scalar instruction set with batches on every instruction set.
 void check_bits(const vm::VerifiedProgram& program, const Cloud& cloud, vm::Workspace& workspace) {
   static const std::vector<std::string_view> isas = vm::available_isas();
   const test::IsaGuard guard;
@@ -142,7 +142,7 @@ struct Enclosed {
   std::vector<vm::ChoiceBounds> choices;
 };
 
-// Bit for bit, of the whole and of all that choices choose from.
+// True if the bounds of the result and of all operands of choices are equal bit for bit.
 bool same_bits(const Enclosed& a, const Enclosed& b) {
   const auto same = [](const float* x, const float* y) {
     return std::equal(x, x + vm::kEnclosedBoxes, y,
@@ -156,7 +156,7 @@ bool same_bits(const Enclosed& a, const Enclosed& b) {
                     });
 }
 
-// The same on every instruction set.
+// Computes enclosures, which must be equal on every instruction set.
 Enclosed enclosed(const vm::VerifiedProgram& program, const BoxSet& boxes, vm::Workspace& workspace) {
   static const std::vector<std::string_view> isas = vm::available_isas();
   const test::IsaGuard guard;
@@ -171,7 +171,8 @@ Enclosed enclosed(const vm::VerifiedProgram& program, const BoxSet& boxes, vm::W
   return first;
 }
 
-// What the f32 machine computes is within its enclosure, and where that says nothing is NaN, nothing is.
+// Checks that every value of the f32 machine lies in its enclosure. A value may be NaN only if the enclosure is
+// unbounded on both sides.
 void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random,
                       vm::Workspace& workspace) {
   const Enclosed whole = enclosed(program, boxes, workspace);
@@ -187,8 +188,9 @@ void check_enclosures(const vm::VerifiedProgram& program, const BoxSet& boxes, R
   }
 }
 
-// Whether an operation has no value there (the root of a negative number), though a min or max may hide it: the whole
-// in double, whose value is `value`, or any in f32, which also has none where infinities of too large numbers meet.
+// True if an operation is undefined at the point (e.g. the root of a negative number), even if a min or max hides it:
+// the program's value in double, `value`, is NaN, or any f32 value is. The f32 machine also computes NaN from
+// infinities of numbers that overflow.
 bool is_undefined_at(const vm::Code& program, dvec3 point, double value) {
   bool undefined = std::isnan(value);
   vm::trace(program, point, [&](const vm::TraceStep& step) {
@@ -197,7 +199,8 @@ bool is_undefined_at(const vm::Code& program, dvec3 point, double value) {
   return undefined;
 }
 
-// Ranges hold the values in double where every operation has one; of other points they say nothing.
+// Checks that ranges contain the values in double. Ranges say nothing about points at which an operation is
+// undefined.
 void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
     const vm::Range range = vm::evaluate_range(program, boxes.least(box), boxes.most(box), workspace);
@@ -213,10 +216,11 @@ void check_ranges(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
 
 bool says_nothing(double bound) { return std::isinf(bound); }
 
-// Infinities of one sign do not differ.
+// Distance between two numbers; 0 for infinities of one sign.
 double apart(double a, double b) { return a == b ? 0 : std::abs(a - b); }
 
-// No two values differ by more than the constant says, and none in f32 from the one in double by more than the error.
+// Checks that two values never differ by more than the Lipschitz constant allows, and that f32 and double values
+// never differ by more than the error bound.
 void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
   for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 7) {
     const vm::SlopeBound bound = vm::evaluate_slope(program, boxes.least(box), boxes.most(box), workspace);
@@ -240,7 +244,8 @@ void check_slopes(const vm::VerifiedProgram& program, const BoxSet& boxes, Rando
   }
 }
 
-// A part's value may stand for the whole one's: the same, but for the sign of a zero, or beyond the same limit.
+// True if a part's value may replace the whole program's: equal (ignoring the sign of zero), or beyond the same
+// limit.
 bool agrees(float whole, float part, float least, float most) {
   if (whole < least) return part < least;
   if (whole > most) return part > most;

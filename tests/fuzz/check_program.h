@@ -1,4 +1,4 @@
-// What must hold of every program that the machine runs, whatever scene it is of.
+// Promises that hold for every program that the machine runs, whatever scene it comes from.
 #pragma once
 
 #include "tests/support/random/random_scene.h"
@@ -6,16 +6,17 @@
 
 namespace fathom::fuzz {
 
-// Programs that take longer than a fuzz run has time for say nothing new.
-inline constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds a point
+// Programs above this cost take longer than a fuzz run allows, and reveal nothing new.
+inline constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds per point
 
-// At random points and in random boxes near `middle`, of about the size `reach`: the same bits one point at a time
-// and many at once, on every instruction set, in float and in double; the surface's distance is the distance; ranges
-// and enclosures hold the values; parts cut for boxes give the whole program's bits there. Throws BrokenPromise.
+// Checks a program at random points and in random boxes within about `reach` of the origin. The bits are equal for
+// one point at a time and for many, on every instruction set, in float and in double. The surface's distance is the
+// distance. Ranges and enclosures contain the values. Parts specialised for boxes give the whole program's bits in
+// them. Throws BrokenPromise.
 void check_program(const vm::VerifiedProgram& program, test::Random& random, double reach = 2);
 
-// The bits alone: what ranges and parts rely on, that a plane's normal has length 1 and the like, a stranger's
-// program need not keep.
+// Checks the bits only. Ranges and parts rely on properties (e.g. unit normals of planes) that a program from a file
+// of unknown origin need not have.
 void check_evaluation(const vm::VerifiedProgram& program, test::Random& random, double reach = 2);
 
 }  // namespace fathom::fuzz

@@ -23,7 +23,7 @@ void check_cheap(const vm::VerifiedProgram& program, test::Random& random, doubl
   if (program.cost() <= kMostCost) check_program(program, random, reach);
 }
 
-// A file that was written reads as what was written.
+// Checks that a written file reads back as the same scene.
 void check_round_trip(const compiler::ReadScene& scene) {
   const std::string written = compiler::write_json(scene.file);
   const Source source("written.json", written);
@@ -40,7 +40,7 @@ void check_scene(const std::string& text) {
   Diagnostics diagnostics;
   compiler::CompileOptions options;
   options.lint = true;
-  // Small, so that a run is short.
+  // Small limits keep a run short.
   options.limits.instructions = 20'000;
   options.limits.nodes = 20'000;
   bool is_text = false;
@@ -56,7 +56,8 @@ void check_scene(const std::string& text) {
   }
   promise(scene.has_value() != diagnostics.has_errors(), "there is a scene exactly when there is no error");
   if (!scene) return;
-  // An expression's value may be infinite, which JSON has no word for, until the rules refuse it.
+  // Texts are checked only now: an expression's value may be infinite until the compiler refuses it, and JSON cannot
+  // express infinity.
   if (is_text) check_round_trip(*compiler::read_scene(source, diagnostics));
   test::Random random(text.size());
   const compiler::Box box = scene->contents;

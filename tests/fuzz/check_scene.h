@@ -1,4 +1,4 @@
-// What must hold of every text that the compiler is given, in whatever format.
+// Promises that hold for every text that the compiler reads, in any format.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace fathom::fuzz {
 
-// Compiles the text with all that can be asked for; every message prints in every format; there is a scene exactly
-// when there is no error; what was read can be written as a scene file, and read again as the same; of a text when it
-// is a scene. Of a scene, every program is checked. Throws BrokenPromise.
+// Compiles the text with all options. Every message prints in every format. There is a scene if and only if there is
+// no error. A scene that was read writes as a scene file and reads back as the same scene (for texts: if they
+// compile). Checks every program of the scene. Throws BrokenPromise.
 void check_scene(const std::string& text);
 
-// Of a scene that came compiled, from anyone: every program gives the same bits wherever it runs, can be read as an
-// expression or not, and the scene can be drawn. Throws BrokenPromise.
+// Checks a compiled scene of unknown origin: every program gives the same bits on every instruction set, is read as
+// an expression or refused, and the scene renders. Throws BrokenPromise.
 void check_stored(const compiler::CompiledScene& scene);
 
 }  // namespace fathom::fuzz

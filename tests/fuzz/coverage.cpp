@@ -1,7 +1,7 @@
-// What libFuzzer steers by where g++ compiles: g++ calls __sanitizer_cov_trace_pc at every branch (the option
-// -fsanitize-coverage=trace-pc), which libFuzzer no longer listens to itself. The linker sends these calls here
-// (--wrap), and here they are counted, by where they come from, in counters that libFuzzer reads beside its own: the
-// section's name is libFuzzer's. A fuzz run prints what it finds as features, "ft:"; "cov:" stays 0.
+// Coverage counters for libFuzzer in code that g++ compiles. g++ calls __sanitizer_cov_trace_pc at every branch
+// (option -fsanitize-coverage=trace-pc), which libFuzzer itself no longer handles. The linker redirects these calls
+// to this file (--wrap), which counts them per call site in counters that libFuzzer reads in addition to its own
+// (libFuzzer defines the section's name). A fuzz run prints these counts as features, "ft:", while "cov:" stays 0.
 #include <cstdint>
 
 namespace {
@@ -16,6 +16,6 @@ extern "C" void __wrap___sanitizer_cov_trace_pc() {
   ++counters[(from * 0x9E3779B97F4A7C15u) >> (64 - kBits)];
 }
 
-// Which floats are compared is nothing that libFuzzer asks.
+// g++ also calls these hooks for comparisons of floats, which libFuzzer does not use.
 extern "C" void __sanitizer_cov_trace_cmpf(float, float) {}
 extern "C" void __sanitizer_cov_trace_cmpd(double, double) {}

@@ -1,6 +1,7 @@
-// The bytes are the draws of a random graph. Its distance is asked of everything that can tell it, and all must
-// agree: the judge, the plain lowering, each pass before and after, the compiler's lowering, the fused program, each
-// instruction set, ranges, enclosures and parts (check_program.h), derivatives against differences, regions.
+// Differential fuzz target: the input bytes are the draws of a random graph. Everything that computes the graph's
+// distance must agree: the judge, the plain lowering, each pass before and after, the compiler's lowering, the fused
+// program, each instruction set, ranges, enclosures and parts (check_program.h), derivatives and differences,
+// regions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ struct Sampled {
   std::vector<double> values;
 };
 
-// `allowed` is relative to the value, or to 1 where that is smaller.
+// `allowed` is relative to max(1, |value|).
 void check_same(const Sampled& expected, const vm::VerifiedProgram& program, double allowed, std::string_view what,
                 vm::Workspace& workspace) {
   for (std::size_t i = 0; i < expected.points.size(); ++i) {
@@ -51,7 +52,7 @@ void check_same(const Sampled& expected, const vm::VerifiedProgram& program, dou
   }
 }
 
-// A pass that keeps signs alone may change any distance but not the side.
+// A pass that preserves only signs may change any distance, but not its sign.
 void check_signs(const Sampled& expected, const vm::VerifiedProgram& program, std::string_view what,
                  vm::Workspace& workspace) {
   for (std::size_t i = 0; i < expected.points.size(); ++i) {
@@ -77,7 +78,7 @@ void check_passes(const Scene& scene, const Sampled& expected, vm::Workspace& wo
   check_same(expected, lowered(together), 1e-11, "all passes", workspace);
 }
 
-// Fused instructions give the same bits.
+// Checks that the fused program gives the same bits.
 void check_fused(const vm::VerifiedProgram& plain, const vm::VerifiedProgram& fused, const Sampled& expected,
                  vm::Workspace& workspace) {
   check_same(expected, fused, 0, "fused", workspace);
@@ -90,7 +91,7 @@ void check_fused(const vm::VerifiedProgram& plain, const vm::VerifiedProgram& fu
   }
 }
 
-// Where four differences agree that the field is smooth, its derivative is theirs.
+// If four differences agree that the field is smooth, the derivative must match them.
 void check_derivatives(const vm::VerifiedProgram& program, const Sampled& at, vm::Workspace& workspace) {
   for (std::size_t i = 0; i < at.points.size(); ++i) {
     const dvec3 p = at.points[i];
@@ -112,7 +113,7 @@ void check_derivatives(const vm::VerifiedProgram& program, const Sampled& at, vm
   }
 }
 
-// Regions give the whole program's rounded distances, bit for bit.
+// Checks that regions give the whole program's rounded distances, bit for bit.
 void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Random& random, vm::Workspace& workspace) {
   const auto known = compiler::analyse(scene.graph);
   const compiler::Box contents = compiler::contents(scene.graph, scene.root, known);

@@ -1,5 +1,5 @@
-// libFuzzer's way into the target that the build names: a broken promise ends the process, which libFuzzer reports as
-// a crash and keeps the input of.
+// libFuzzer's entry point for the target that the build names. A broken promise ends the process. libFuzzer then
+// reports a crash and keeps the input.
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace fathom::fuzz;
   static const Target& target = *find_target(FATHOM_FUZZ_TARGET);
-  if (size > target.longest) return -1;  // libFuzzer forgets it
+  if (size > target.longest) return -1;  // libFuzzer discards the input
   try {
     target.run({data, size});
   } catch (const BrokenPromise& broken) {

@@ -1,6 +1,6 @@
-// Bytes as film files: u32 size of the head, the head, and sums, of which those that are missing are 0. They are put
-// together here with the digests that belong to them, for no run would find those. A film is refused with a reason,
-// or written again as the bytes it was read from.
+// Fuzz target for film files. The input is a u32 size of the header, the header, and the sums; missing sums are 0.
+// The target adds the correct digests, because a fuzz run would never find them. The reader refuses a film with a
+// reason, or the film writes as the bytes that were read.
 #include <algorithm>
 
 #include "runtime/base/tiles.h"
@@ -14,7 +14,7 @@ namespace fathom::fuzz {
 namespace {
 
 constexpr runtime::ReadLimits kFilmLimits{64e6};
-constexpr std::size_t kMostSums = 1 << 20;  // bytes; a head that asks for more gets what is there
+constexpr std::size_t kMostSums = 1 << 20;  // bytes; a header that asks for more gets the sums in the input
 
 void put_checked(vm::ByteWriter& out, Bytes bytes) {
   const vm::Digest digest = vm::digest(bytes);
@@ -60,7 +60,7 @@ void run_file(const Input& bytes) {
   }
   const auto& film = std::get<runtime::FilmFile>(read);
   for (const runtime::Coverage& covered : film.render.covered) {
-    if (covered.blocks().size() >= 100) continue;  // tidy() takes the square of their number
+    if (covered.blocks().size() >= 100) continue;  // tidy() is quadratic in their number
     runtime::Coverage form = covered;
     form.tidy();
     promise(form == covered, "what is covered is in its one form");

@@ -1,6 +1,6 @@
-// Formulas: the text between quotes, as the parser gets it, a line of the input for each of the formula's. With a
-// point it is read for the machine, whose value must be the one that the front end's own evaluation in double gives;
-// without one it is a number.
+// Fuzz target for formulas. The input is the text between quotes, as the parser reads it, one line of input per line
+// of the formula. A formula of the point is read for the machine, whose value must equal the front end's own
+// evaluation in double. A formula without a point is a number.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// As it would stand in a scene's text, so that spans have somewhere to point.
+// The text as a value of a scene file, so that its spans are valid positions.
 compiler::syntax::Value as_value(const std::string& text) {
   const std::vector<std::string> lines = lines_of(text);
   if (lines.size() == 1) return {{0, static_cast<std::uint32_t>(text.size() + 2)}, text};
@@ -63,7 +63,7 @@ void print_all(const Diagnostics& diagnostics, const std::string& text) {
   diagnostics.print(Source("formula", "\"" + text + "\"" + "\n"), compiler::ErrorFormat::Text);
 }
 
-// A number is what a formula without a point evaluates to, both ways.
+// Reads the formula as a number, without a point. There is a number if and only if there is no error.
 void check_number(const compiler::syntax::Value& value, const std::string& text, const compiler::Scope& scope) {
   if (!std::holds_alternative<std::string>(value.data)) return;
   Diagnostics diagnostics;
@@ -78,7 +78,7 @@ void check_program_of(const Formula& formula, std::size_t size) {
   auto code = compiler::lower(scene.graph, scene.root, Source("formula", ""), 2000);
   if (!code) return;
   auto verified = vm::verify(std::move(*code));
-  // A constant beyond float is refused before (holds_in_float), a value beyond it is the machine's business.
+  // The front end has refused constants beyond float (holds_in_float). Values beyond float are the machine's concern.
   const auto* program = std::get_if<vm::VerifiedProgram>(&verified);
   if (program == nullptr) throw BrokenPromise(std::get<vm::VerifyError>(verified).reason);
   test::Random random(size);

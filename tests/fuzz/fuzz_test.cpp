@@ -1,5 +1,5 @@
-// Every fuzz target over its seeds and over what once broke it (tests/fuzz/found/NAME): what `scripts/fuzz` goes on
-// from.
+// Runs every fuzz target on its seeds and on the inputs that once broke it (tests/fuzz/found/NAME). `scripts/fuzz`
+// continues from the same inputs.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -10,7 +10,7 @@
 namespace fathom::fuzz::fuzz_test {
 namespace {
 
-// Each in turn.
+// Returns each target in turn.
 const Target& any_target() {
   return targets()[static_cast<std::size_t>(GENERATE(range(0, static_cast<int>(targets().size()))))];
 }
@@ -22,10 +22,11 @@ void run_all(const Target& target, const std::vector<Input>& inputs) {
   }
 }
 
-// A number below n, n > 0.
+// Random number below n, n > 0.
 std::ptrdiff_t pick(test::Random& random, std::size_t n) { return random.below(static_cast<int>(n)); }
 
-// One of the ways in which files go wrong: another byte, a stretch left out, said twice or taken from another file.
+// Damages an input as files get damaged: another byte, or a run of bytes that is left out, repeated or taken from
+// another file.
 void damage(Input& input, const Input& other, test::Random& random) {
   constexpr std::size_t kLongest = 16;
   const auto stretch_from = [&](const Input& of, std::ptrdiff_t at) {
@@ -53,7 +54,7 @@ TEST_CASE("fuzz targets keep their promises on their seeds", "[fuzz]") {
   run_all(target, seeds);
 }
 
-// A short run of what `scripts/fuzz` does for long, without coverage to lead it: seeds with a few bytes changed.
+// A short version of `scripts/fuzz` without coverage guidance: seeds with a few bytes changed.
 TEST_CASE("fuzz targets keep their promises on seeds that were damaged", "[fuzz]") {
   constexpr int kRuns = 100;
   const Target& target = any_target();

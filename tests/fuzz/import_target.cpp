@@ -1,5 +1,6 @@
-// Formats from elsewhere: expression lists and trees of nested nodes (compiler/frontend/formats/expression_list.h,
-// nested_nodes.h). What they are read as must be a scene that compiles, or else there is an error.
+// Fuzz target for foreign formats: expression lists and trees of nested nodes
+// (compiler/frontend/formats/expression_list.h, nested_nodes.h). The result must be a scene that compiles, or an
+// error.
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/target.h"
 

@@ -1,5 +1,5 @@
-// Pictures from elsewhere: the first byte says which ending the file's name has, the others are the file. A picture
-// that is read has as many numbers as its size says; as a background of light they are finite and not negative.
+// Fuzz target for image files. The first byte selects the file name's extension, and all other bytes are the file. An
+// image that is read has as many values as its size says. An environment map has finite, non-negative values.
 #include <fmt/format.h>
 
 #include <cmath>

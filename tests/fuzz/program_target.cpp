@@ -1,7 +1,8 @@
-// Bytes as programs. What begins like a compiled file is one. Otherwise the first byte tells: even, and one program
-// follows as vm/encoding/binary.h lays it out; odd, and sections of a compiled file follow, which are sealed with the right
-// digests here, for no run would find those: u32 size of the code, u32 size of the tables, u32 size of the debug
-// section, then these and the text. All is refused with a reason, or written as it was read, and can be run.
+// Fuzz target for programs and compiled files. An input that begins like a compiled file is one. Otherwise the first
+// byte decides. If the byte is even, one program follows in the layout of vm/encoding/binary.h. If the byte is odd,
+// sections of a compiled file follow: u32 size of the code, u32 size of the tables, u32 size of the debug section,
+// then these sections and the text. The target adds the correct digests, because a fuzz run would never find them.
+// The reader refuses an input with a reason, or the result writes as the same bytes and can run.
 #include <algorithm>
 
 #include "compiler/artefact/load.h"

@@ -1,4 +1,4 @@
-// Scene files as JSON, through the whole compiler: tests/fuzz/check_scene.h says what must hold.
+// Fuzz target for JSON scene files, through the whole compiler. tests/fuzz/check_scene.h lists the promises.
 #include "tests/fuzz/check_scene.h"
 #include "tests/fuzz/target.h"
 

@@ -1,4 +1,4 @@
-// Programs of random graphs and compiled scenes, for the seeds of what reads such.
+// Programs of random graphs, and compiled scenes, as seeds for targets that read programs or scenes.
 #pragma once
 
 #include <utility>
@@ -12,7 +12,7 @@
 
 namespace fathom::fuzz {
 
-// A dozen, of a few to some dozens of instructions, fused and not.
+// Returns a dozen programs of a few to some dozens of instructions, fused and not fused.
 inline std::vector<vm::VerifiedProgram> seed_programs() {
   std::vector<vm::VerifiedProgram> programs;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
@@ -25,7 +25,7 @@ inline std::vector<vm::VerifiedProgram> seed_programs() {
   return programs;
 }
 
-// The small ones of those that come with the program, and one whose tables hold something of everything.
+// Returns the small scenes that come with Fathom, and one scene that puts an entry into every table.
 inline std::vector<compiler::CompiledScene> seed_scenes() {
   constexpr const char* kEverything = R"scene({"version": 1, "params": {"r": {"default": 0.5, "min": 0.1}},
     "camera": {"fov_y": 40, "f_stop": 2, "focus_distance": 5, "blades": 6}, "film": {"width": 16, "height": 8},

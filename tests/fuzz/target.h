@@ -1,9 +1,9 @@
-// Fuzz targets: functions that any bytes may be given to. One file each, tests/fuzz/NAME_target.cpp, and a row in
-// target.cpp; each has seeds, inputs to begin with. A target throws BrokenPromise where what holds of every input
-// does not; the sanitizers and CHECK see the rest.
+// Fuzz targets: functions that accept any bytes. Each target has a file tests/fuzz/NAME_target.cpp, a row in
+// target.cpp, and seeds, the inputs to begin with. A target throws BrokenPromise if a property that holds for every
+// input is violated. The sanitizers and CHECK detect other errors.
 //
-// `scripts/fuzz NAME SECONDS` runs libFuzzer on one. fuzz_test.cpp gives each its seeds, and the inputs that once
-// broke something, tests/fuzz/found/NAME/*, as ordinary tests.
+// `scripts/fuzz NAME SECONDS` runs libFuzzer on a target. fuzz_test.cpp runs each target on its seeds, and on the
+// inputs that once broke something, tests/fuzz/found/NAME/*, as ordinary tests.
 #pragma once
 
 #include <cstddef>
@@ -33,18 +33,19 @@ inline std::string to_text(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 struct Target {
   std::string_view name;
-  std::size_t longest;  // input that is of interest, bytes
+  std::size_t longest;  // max size of inputs that are of interest, bytes
   void (*run)(Bytes input);
   std::vector<Input> (*seeds)();
 };
 
 std::span<const Target> targets();
-const Target* find_target(std::string_view name);  // nullptr when there is none
+const Target* find_target(std::string_view name);  // nullptr if there is none
 
 Input read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, Bytes content);
 
-// A file of this process alone, for one user of the name at a time; removed with the object, if somebody writes it.
+// Path of a file private to this process, for one user of the name at a time. The destructor removes the file if
+// anybody wrote it.
 class ScratchFile {
  public:
   explicit ScratchFile(std::string_view name);
@@ -55,12 +56,13 @@ class ScratchFile {
   const std::string path;
 };
 
-// The files below a folder of the repository with that ending, or any, sorted; none where there is no such folder.
+// Returns the files below a folder of the repository with this extension (empty: any), sorted. Empty if the folder
+// does not exist.
 std::vector<std::filesystem::path> files_below(const std::string& folder, std::string_view ending);
-// Their content, of those of at most `longest` bytes.
+// Returns the contents of those files that have at most `longest` bytes.
 std::vector<Input> files_below(const std::string& folder, std::string_view ending, std::size_t longest);
 
-// Texts of tests/golden/diagnostics whose code starts with `code`, what is expected left out.
+// Returns the inputs in tests/golden/diagnostics whose code starts with `code`, without the expected parts.
 std::vector<Input> golden_inputs(std::string_view code);
 
 }  // namespace fathom::fuzz

@@ -1,5 +1,5 @@
-// Scenes in Fathom's own notation (compiler/frontend/text/read_text.h) and files that they import: what is read
-// compiles or is an error, its layout is kept by laying it out, and its JSON is the same scene.
+// Fuzz target for scenes in Fathom's own notation (compiler/frontend/text/read_text.h) and files that they import. A
+// text compiles or has an error, formatting a formatted text changes nothing, and the text's JSON is the same scene.
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,7 +31,7 @@ constexpr const char* kImports =
     "def f(n) = n + c.ball.scale(k)\n%%\n{\"version\": 1, \"params\": {\"r\": 1}, \"nodes\": {\"ball\": {\"type\": "
     "\"sphere\", \"radius\": \"r/2\"}}, \"objects\": [{\"use\": \"ball\"}]}\n";
 
-// An input's files, which lines of %% part: the scene, and those that it may import as "1", "2" ...
+// Splits an input into files at lines of %%: the scene, and the files that it may import as "1", "2" ...
 std::vector<std::string> files_of(const std::string& text) {
   constexpr std::string_view kMark = "\n%%\n";
   std::vector<std::string> files;
@@ -51,7 +51,7 @@ compiler::ImportReader reader_of(std::vector<std::string> files) {
   };
 }
 
-// A smaller world, for all of it to fit into the time of one input.
+// Smaller limits, so that one input fits into its time.
 compiler::Limits small_limits() {
   compiler::Limits limits;
   limits.steps = 20000;

@@ -1,4 +1,4 @@
-// fuzz_seeds FOLDER: the inputs that fuzz runs begin with, in a folder for each target. `scripts/fuzz` calls it.
+// fuzz_seeds FOLDER: writes the seeds, in one folder per target. `scripts/fuzz` calls it.
 #include <cstdio>
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-// What the pixels of a picture of one brightness say of it.
+// Estimates the mean radiance of an image of uniform brightness, with its standard error.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 namespace fathom::runtime {
 
 struct Estimate {
-  double mean, sigma;  // of the mean over the whole picture
+  double mean, sigma;  // sigma: standard error of the mean over the whole image
 };
 
-// Red radiance over all pixels; sigma from the spread between pixels, which are independent.
+// Red radiance over all pixels. sigma comes from the spread between pixels, which are independent.
 inline Estimate estimate(const Film& film) {
   double sum = 0, squares = 0;
   const double n = static_cast<double>(film.width()) * film.height();

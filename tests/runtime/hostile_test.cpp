@@ -1,6 +1,6 @@
-// Hostile inputs (tests/hostile/cases.txt): each is refused with the exit status and the message it should be, in
-// little memory, with nothing on standard output and no file left behind. That each ends is tested, not how soon: the
-// system ends the program after seconds of a processor that no machine is slow enough to need.
+// Hostile inputs (tests/hostile/cases.txt): each is refused with the expected exit status and message, in little
+// memory, with nothing on standard output and no file left behind. The test checks that each run ends, not how soon:
+// the system kills the program after more seconds of processor time than even a slow machine needs.
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -57,7 +57,8 @@ std::string numbered(std::string text, const std::string& mark, int number) {
   return text;
 }
 
-// "<rep 3>text</rep>" is text three times, $i and $j in it the number of the time from 0 and from 1.
+// Expands "<rep 3>text</rep>" to three copies of the text. In the text, $i and $j are the copy's number, counted from
+// 0 and from 1.
 std::string expanded(const std::string& recipe) {
   std::string out;
   for (std::size_t at = 0;;) {
@@ -74,7 +75,7 @@ std::string expanded(const std::string& recipe) {
   }
 }
 
-// The case's own file, and small ones that others name.
+// Writes the case's own file, and small files that other cases name.
 void make_files(const Folder& folder, const Case& hostile) {
   for (const char* beside : {"chunk-of-a-gigabyte.png", "huge.hdr", "of-nothing.hdr"})
     fs::copy_file(kFolder / beside, folder.path() / beside);
@@ -88,16 +89,16 @@ void make_files(const Folder& folder, const Case& hostile) {
   }
 }
 
-// Of a processor; the sanitizers take many times as much.
+// Processor time; the sanitizers take many times as long.
 rlim_t most_seconds() { return is_sanitized() ? 300 : 30; }
 
 struct Outcome {
-  int code = -1;  // a signal's number less 1000 when one ended it
+  int code = -1;  // exit status, or minus 1000 plus the number of the signal that ended the program
   double megabytes = 0;
   std::string out, err;
 };
 
-// Runs it by a shell in the folder, whose own needs count with it.
+// Runs the program by a shell in the folder. The measured memory includes the shell's.
 Outcome outcome_of(const Folder& folder, const std::string& arguments) {
   const std::string out = folder.path().string() + ".out", err = folder.path().string() + ".err";
   const std::string command = "exec '" + program_path() + "' " + arguments;

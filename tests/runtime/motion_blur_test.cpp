@@ -1,4 +1,4 @@
-// Pictures of scenes that move while light comes in.
+// Images of scenes that move while the shutter is open.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -14,7 +14,7 @@ using namespace fathom;
 using runtime::RenderOptions;
 using runtime::RenderResult;
 
-// A board off the axis that it spins about, once a second, over a floor.
+// A board off its axis of rotation, over a floor. One turn per second.
 const char* const kSpinning = R"({
   "version": 1,
   "params": {"time": 0},
@@ -36,7 +36,7 @@ compiler::CompiledScene at(double time, const char* text = kSpinning) {
   return tests::compiled(text, options);
 }
 
-// The scenes that a shutter sees that is open for `open` seconds, and the options that say so.
+// The scenes that a shutter sees while it is open for `open` seconds, and the options for them.
 struct Blurred {
   compiler::CompiledScene scene = at(0);
   std::vector<compiler::CompiledScene> scenes;
@@ -73,7 +73,7 @@ TEST_CASE("motion blur: the film is the sum of the moments' own, each with its s
 }
 
 TEST_CASE("motion blur: threads, tiles, ranges of samples and crops leave no trace") {
-  Blurred blurred(16, 3, 0.4);  // runs of 4, 6 and 6
+  Blurred blurred(16, 3, 0.4);  // runs of 4, 6 and 6 samples
   const RenderResult whole = blurred.render();
   blurred.options.threads = 3;
   blurred.options.tile = 5;
@@ -142,9 +142,9 @@ TEST_CASE("motion blur: ids are those of moments whose tables are the picture's 
   CHECK(runtime::render(own, options).film.means(4, 4).depth == Approx(3.0).margin(0.1));
 }
 
-// Of many pictures of 16 moments the mean is that of one of 4096: their spread says how near it has to be. Of 384
-// pixels the mean square of what is off, in standard deviations, is 1.03 with 64 pictures (t-distributed, 63 degrees
-// of freedom: 63/61), to within 0.075; the largest is seldom above 4.
+// The mean of many images of 16 moments equals an image of 4096 moments. The images' spread gives the tolerance. With
+// 64 images, the mean square deviation of 384 pixels, in standard deviations, is 1.03 (t-distributed, 63 degrees of
+// freedom: 63/61), within 0.075. The largest deviation is seldom above 4.
 TEST_CASE("motion blur: 16 moments give the light of 4096 on average, within their noise", "[heavy]") {
   constexpr int kPictures = 64, kWidth = 24, kHeight = 16, kReferenceSpp = 8192;
   Blurred reference(kReferenceSpp, 4096, 0.5, 1000);
@@ -172,7 +172,7 @@ TEST_CASE("motion blur: 16 moments give the light of 4096 on average, within the
       const double spread = (squares[at] / kPictures - mean * mean) / (kPictures - 1);
       const runtime::PixelMeans truth = wanted.film.means(x, y);
       const double variance = spread + truth.variance.x;
-      if (!(variance > 1e-14)) continue;  // the background above: the same in all pictures
+      if (!(variance > 1e-14)) continue;  // the background at the top, equal in all images
       const double z = (mean - truth.radiance.x) / std::sqrt(variance);
       most = std::max(most, std::abs(z));
       all += z * z;

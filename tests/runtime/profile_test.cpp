@@ -1,4 +1,4 @@
-// What a render says of its own cost: it adds up, and asking changes no bit of the picture.
+// The profile of a render: its numbers add up, and profiling changes no bit of the image.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace fathom::runtime::profile_test {
 namespace {
 
-// Grazing rays, which are decided in double, and every way for a path to end.
+// A scene with grazing rays, which are decided in double, and with every way for a path to end.
 const char* const kScene = R"("camera": {"position": [0, 1.2, 4], "target": [0, 0.5, 0]},
     "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.5, 0.7, 1]},
     "materials": {"white": {"type": "diffuse"}, "glass": {"type": "transparent"},
@@ -55,8 +55,8 @@ TEST_CASE("profile: every stage takes time, and all of them a thread's", "[rende
     RenderOptions options = options_of(160, 90, test::few(16));
     options.threads = threads;
     options.profile = true;
-    // What no stage has is memory for the film and the start and end of threads. A busy machine may draw these out,
-    // but not every time.
+    // No stage includes the film's allocation and the start and end of threads. A busy machine can prolong these, but
+    // not in every attempt.
     bool most = false;
     for (int attempt = 0; attempt < 20 && !most; ++attempt) {
       const Stats stats = render(scene, options).stats;
@@ -99,7 +99,7 @@ TEST_CASE("profile: a wider register has more lanes to spare", "[render]") {
     REQUIRE(vm::force_isa(isa));
     const MarchCounters counters = render(scene, options).stats.march;
     INFO(isa);
-    // The sanitized build has fewer widths than names (CMakeLists.txt).
+    // The sanitized build supports fewer widths than instruction sets (CMakeLists.txt).
     CHECK((counters.lanes < last || (tests::is_sanitized() && counters.lanes == last)));
     CHECK(counters.lanes >= counters.evaluations - counters.certified_evaluations);
     if (evaluations > 0) CHECK(counters.evaluations == evaluations);

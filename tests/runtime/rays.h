@@ -1,5 +1,4 @@
-// Rays at random whose numbers are exact in float, the true distances along them to solids of closed form, and how
-// far from the truth an answer is.
+// Random rays with coordinates exact in float, their true distances to solids of closed form, and the errors of hits.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +30,7 @@ class Random {
 
 inline glm::dvec3 to_float(glm::dvec3 v) { return glm::dvec3(glm::vec3(v)); }
 
-// A ray that passes the origin at distance `miss`, from `away` in front of it.
+// A ray that passes the origin at distance `miss`, and starts `away` before its nearest point.
 inline Ray aimed(Random& random, double miss, double away) {
   const glm::dvec3 d = random.direction();
   const glm::dvec3 aside = glm::normalize(glm::cross(d, random.direction()));
@@ -73,7 +72,7 @@ inline Real torus_field(const Ray& ray, Real t, Real major, Real minor) {
   return std::sqrt(q * q + y * y) - minor;
 }
 
-// Sphere tracing in long double, on either side, with steps of at least 1e-5, and bisection across a change of sign.
+// Sphere tracing in long double, on either side, with steps of at least 1e-5 and bisection across a change of sign.
 inline Real ring_distance(const Ray& ray, Real major, Real minor, Real end = 12) {
   const Real side = torus_field(ray, 0, major, minor) < 0 ? -1 : 1;
   const auto field = [&](Real t) { return side * torus_field(ray, t, major, minor); };
@@ -91,7 +90,7 @@ inline Real ring_distance(const Ray& ray, Real major, Real minor, Real end = 12)
 
 inline Real torus_distance(const Ray& ray) { return ring_distance(ray, 1, 0.25L); }
 
-// Rays that meet the unit sphere, as many as lie within equal areas of its disk, from `away` in front of it.
+// Rays that hit the unit sphere, uniform over its disc, starting `away` before it.
 inline std::vector<Ray> rays_at_sphere(int count, double away) {
   Random random(1);
   std::vector<Ray> rays;
@@ -99,7 +98,7 @@ inline std::vector<Ray> rays_at_sphere(int count, double away) {
   return rays;
 }
 
-// The scenes of these solids.
+// Scenes of these solids.
 inline const char* const kSphere = R"("objects": [{"type": "sphere", "radius": 1}])";
 inline const char* const kBox = R"("objects": [{"type": "box", "half_size": [0.75, 0.5, 1]}])";
 inline const char* const kPlane = R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])";
@@ -107,10 +106,10 @@ inline const char* const kTorus = R"("objects": [{"type": "torus", "major_radius
 
 using Truth = std::function<Real(const Ray&)>;  // distance to the first surface, negative for a miss
 
-// What became of rays, held against the truth.
+// Results of rays compared with the truth.
 struct Judgement {
   int rays = 0, hits = 0, false_hits = 0, false_misses = 0, invalid = 0, exhausted = 0;
-  std::vector<double> errors;  // of the hits that are hits, scene units, sorted
+  std::vector<double> errors;  // of the true hits, scene units, sorted
 
   void note(bool hit, double t, Real expected) {
     ++rays;

@@ -1,4 +1,4 @@
-// Whole pictures against closed forms, and the promise that threads and tiles leave no trace.
+// Whole images against closed forms, and independence of threads and tiles.
 #include "runtime/render.h"
 
 #include <array>
@@ -22,7 +22,7 @@ RenderOptions options_of(int width, int height, int spp) {
   options.width = width;
   options.height = height;
   options.spp = spp;
-  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread tells the error
+  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread gives the error
   return options;
 }
 
@@ -70,8 +70,8 @@ TEST_CASE("render: paths that are cut off bring what they met until then", "[ren
 }
 
 TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render][heavy]") {
-  // The floor's radiance under the lamp is albedo E / pi. Orthographic, looking at a small spot from the side, below
-  // the lamp and seeing nothing else. The spot is so small that E is 1e-4 from constant.
+  // The floor's radiance under the lamp is albedo E / pi. The orthographic camera looks from the side at a small spot
+  // below the lamp and sees nothing else. The spot is so small that E varies by 1e-4.
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [3, 1, 0], "target": [0, 0, 0],
         "width": 0.01},
       "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
@@ -103,7 +103,7 @@ TEST_CASE("render: glass and mirrors vanish in an even light", "[render]") {
 }
 
 TEST_CASE("render: glass absorbs along the way through it", "[render]") {
-  // A slab without refraction, seen straight on: exp(-absorption * thickness).
+  // A slab without refraction, perpendicular to the view: exp(-absorption * thickness).
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 0, 3], "width": 0.5},
       "background": [1, 1, 1],
       "materials": {"m": {"type": "transparent", "ior": 1, "absorption": [1, 2, 0]}},
@@ -119,7 +119,8 @@ TEST_CASE("render: the background is linear in the sine of the elevation, and up
       "background": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
       "objects": [{"type": "sphere", "radius": 0.1, "translate": [0, 0, 100]}])");
   const RenderResult result = render(scene, options_of(3, 3, 1));
-  const double sine = (2.0 / 3) / std::sqrt(1 + 4.0 / 9);  // of the middle column's top pixel, at its centre
+  // Sine of the elevation at the centre of the middle column's top pixel.
+  const double sine = (2.0 / 3) / std::sqrt(1 + 4.0 / 9);
   CHECK(result.film.means(1, 0).radiance.x == Approx((1 + sine) / 2).epsilon(1e-6));
   CHECK(result.film.means(1, 1).radiance.x == Approx(0.5).epsilon(1e-6));
   CHECK(result.film.means(1, 2).radiance.x == Approx((1 - sine) / 2).epsilon(1e-6));
@@ -181,7 +182,7 @@ TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[
   options.light_sampling = LightSampling::Hits;
   const Stats hits = render(scene, options).stats;
   CHECK(hits.shadow_rays == 0);
-  CHECK(hits.bounce_rays == both.bounce_rays);  // the same paths
+  CHECK(hits.bounce_rays == both.bounce_rays);  // the same paths in both
   options.cut_after = 0;
   CHECK(render(scene, options).stats.bounce_rays == 0);
 }
@@ -285,7 +286,7 @@ TEST_CASE("render: ranges of samples add up to the whole, and what was stopped g
       CHECK(resumed.film.hash() == whole.film.hash());
       CHECK(resumed.covered == whole.covered);
       CHECK(resumed.stats.resumed_samples == stopped.film.samples());
-      CHECK(going_on.resume_from->film.area().pixels() == 0);  // not kept twice
+      CHECK(going_on.resume_from->film.area().pixels() == 0);  // the film is moved, not copied
       CHECK(resumed.stats.primary_rays == 40u * 24u * 24u - stopped.film.samples());
     }
   }
@@ -357,8 +358,9 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
 }
 
 }  // namespace
-// Once, new rays from the top of a huge box met it again: float knows its surface only to 5e-4 (numbers of 10^4
-// cancel), and they started closer than that. A plane is the same floor without the large numbers.
+// Regression: rays leaving the top of a huge box hit the box again. Float resolves its surface only to 5e-4
+// (coordinates of 10^4 cancel), and the rays started closer than this. A plane is the same floor without the large
+// coordinates.
 TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render][heavy]") {
   const auto with_floor = [](const std::string& floor) {
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 1.5, 4], "target": [0, 0.5, 0]},
@@ -374,8 +376,9 @@ TEST_CASE("render: a floor that is the top of a huge solid is as bright as a pla
   CHECK(std::abs(box.mean - plane.mean) < 3 * (box.sigma + plane.sigma));
 }
 
-// Once, a ball 1e5 from the origin came out in three pieces, without its shadow, for float steps near the surface
-// were longer than the ball. Now the programs begin where the scene is, and are those of the scene at zero.
+// Regression: a ball 1e5 from the origin was rendered in three pieces and without a shadow, because float steps near
+// the surface were longer than the ball. The programs now have their origin near the scene, and equal those of the
+// scene at zero.
 TEST_CASE("render: a scene far from the origin looks as it does there", "[render][heavy]") {
   const auto at = [](double x) {
     const std::string x0 = std::to_string(x), x1 = std::to_string(x + 1.5);
@@ -396,7 +399,7 @@ TEST_CASE("render: a scene far from the origin looks as it does there", "[render
     CHECK(there.stats.march.certified == here.stats.march.certified);
     CHECK(there.stats.march.exhausted + there.stats.march.invalid == 0);
   }
-  // Where numbers are not so round, pixels differ by what rounding of the scene's own numbers makes of paths.
+  // With less round coordinates, pixels differ because the scene's own coordinates are rounded.
   const Estimate expected = estimate(here.film);
   const RenderResult there = render(at(123456.789), options);
   const Estimate found = estimate(there.film);
@@ -411,7 +414,7 @@ TEST_CASE("render: a scene far from the origin looks as it does there", "[render
   CHECK(there.stats.march.certified <= here.stats.march.certified + there.stats.march.rays / 500);
 }
 
-// Once, a plane cut every scene off ten thousand units from the camera.
+// Regression: a plane cut off every scene at ten thousand units from the camera.
 TEST_CASE("render: a large scene with a plane is not cut off", "[render]") {
   const auto scene =
       scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 15000, 40000], "target": [0, 5000, 0]},

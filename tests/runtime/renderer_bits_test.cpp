@@ -1,4 +1,5 @@
-// Whoever changes a bit of a picture says so: films of the renderer before are of another render then.
+// A change of the renderer that changes an image must raise kRendererBits: films of the previous renderer then belong
+// to another render.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -16,7 +17,7 @@ namespace {
 
 using namespace fathom;
 
-// Scenes and ways to take samples that have most of the renderer run, 8 pixels a side.
+// Scenes and sampling options that cover most of the renderer, 8 x 8 pixels.
 constexpr const char* kRenders[] = {"cornell.json -s 4",
                                     "showcase.json -s 4",
                                     "blends.json -s 4",
@@ -32,7 +33,7 @@ std::string value_of(const runtime::Identity& identity, std::string_view name) {
   return "";
 }
 
-// Two lines: the render's arguments, and "RENDERER SCENE-PROGRAM FILM".
+// The stored bits have two lines per render: its arguments, and "RENDERER SCENE-PROGRAM FILM".
 struct Bits {
   std::string renderer, program, film;
   bool operator==(const Bits&) const = default;

@@ -1,10 +1,9 @@
-// What samplers are chosen for: how fast the error falls, and how little of it is left when pixels are seen together.
+// The reasons for the samplers: how fast the error falls, and how small it is when pixels are averaged.
 #include "runtime/measure/sampling_error.h"
 
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-
 
 namespace fathom::runtime::sampling_error_test {
 namespace {
@@ -63,12 +62,12 @@ TEST_CASE("sampling error: of the kind blue little is left where pixels are seen
   }
 }
 
-// So `blue` costs nothing elsewhere: it may be the default.
+// This shows that `blue` costs nothing for single pixels and can be the default.
 TEST_CASE("sampling error: a pixel by itself errs with the kind blue as with sobol") {
   constexpr std::array<int, 5> kCounts = {1, 2, 4, 8, 16};
   for (const SquareIntegrand& f : square_integrands()) {
     for (const int count : kCounts) {
-      // As many samples as are planned, as in a render.
+      // The number of samples equals the planned number, as in a render.
       const std::array<int, 1> counts = {count};
       const int repeats = 10000;
       const double blue = sampling_errors(SamplerKind::Blue, f, counts, repeats, -1)[0].rmse;

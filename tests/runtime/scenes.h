@@ -7,7 +7,7 @@
 
 namespace fathom::runtime {
 
-// The scene that `json` says; "version" is supplied. Fails the test when the compiler refuses it.
+// Compiles the scene `json`, to which "version" is added. Fails the test when the compiler refuses the scene.
 inline compiler::CompiledScene scene_of(const std::string& json) {
   return tests::compiled("{\"version\": 1, " + json + "}");
 }

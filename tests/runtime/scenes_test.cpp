@@ -1,4 +1,4 @@
-// Every shipped scene: it compiles without a warning, and its picture agrees with a stored mean
+// Every shipped scene: it compiles without a warning, and its image agrees with stored means
 // (tests/images/README.md).
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ using namespace fathom;
 using namespace fathom::compiler;
 namespace fs = std::filesystem;
 
-constexpr int kColumns = 16, kRows = 9, kCellSide = 3;  // cells, pixels
+constexpr int kColumns = 16, kRows = 9, kCellSide = 3;  // image size in cells, cell size in pixels
 constexpr std::size_t kValues = kColumns * kRows * 3;
 
 std::vector<fs::path> scene_files() {
@@ -45,7 +45,7 @@ CompiledScene compile_file(const fs::path& file) {
   return std::move(*scene);
 }
 
-// Means of values over independent renders, and the standard errors of those means.
+// Means over independent renders, and their standard errors.
 struct Estimate {
   std::vector<double> mean, error;
   int renders = 0;
@@ -130,12 +130,13 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
   const char* updated = std::getenv("FATHOM_UPDATE_IMAGES");
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());
-    // For show: they come to the same code as the others by costlier ways. scripts/pictures renders them.
+    // These scenes are for show: they run the same code as the others, but take longer. scripts/pictures renders
+    // them.
     const fs::path folder = file.parent_path().filename();
     if (folder == "gallery" || folder == "lib" || tests::read_file(file).find("\nimport ") != std::string::npos)
       continue;
     const CompiledScene scene = compile_file(file);
-    if (scene.node_count > 500) continue;  // minutes of rendering; scripts/measure counts their hits
+    if (scene.node_count > 500) continue;  // minutes of rendering; scripts/measure counts this scene's hits
     if (updated != nullptr) {
       if (updated != file.stem().string() && updated != std::string_view("all")) continue;
       store(file, estimate(scene, 64, 1000));
@@ -143,8 +144,8 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
     }
     const Estimate reference = load(file), now = estimate(scene, 8, 1);
     // Welch's t with at least 7 degrees of freedom: |t| > 4.8 has probability 0.002, so more than 2 % of cells beyond
-    // it does not happen by chance; and no cell may be beyond 25 (probability 2e-5 for any of 432). 1e-5 is allowed
-    // for the rounding of the stored digits, where nothing varies.
+    // it are not chance. No cell may be beyond 25 (probability 2e-5 for any of 432). The allowance of 1e-5 covers the
+    // rounding of the stored digits where nothing varies.
     std::size_t far_off = 0;
     double worst = 0, brighter = 0, variance = 0;
     for (std::size_t v = 0; v < kValues; ++v) {
@@ -158,7 +159,7 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
     INFO("largest |t| " << worst << ", mean difference in errors " << brighter / std::sqrt(variance));
     CHECK(far_off <= kValues / 50);
     CHECK(worst < 25);
-    // Cells share no path, so their errors are independent but for the three channels: 3 x 5 standard deviations.
+    // Cells share no path, so their errors are independent, except for the three channels: 3 x 5 standard deviations.
     CHECK(std::abs(brighter) < 15 * std::sqrt(variance));
   }
 }

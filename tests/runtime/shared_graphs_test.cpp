@@ -1,10 +1,10 @@
-// Small scenes in which a node is used in so many ways that a walk over the graph as over a tree would never end.
-// Forty doublings took 2^39 visits to find lamps, lamps within other bodies, bodies of two materials, and what is
-// bounded beside a plane. That each verb ends is tested, not how soon: the system ends the program after seconds of a
-// processor that no machine is slow enough to need.
+// Small scenes that use nodes in so many ways that a walk over the graph as over a tree would never end. Regression:
+// forty doublings took 2^39 visits to find lamps, lamps inside other bodies, bodies of two materials, and bounded
+// objects next to a plane. The test checks that each verb ends, not how soon: the system kills the program after more
+// seconds of processor time than even a slow machine needs.
 //
-// Random scenes are held to the same: each node uses a few of those before it, moved, turned, scaled or painted anew,
-// or is an example of docs/GALLERY.md, which has one of each type of node. A verb does what it is asked or refuses
+// Random scenes are checked in the same way. Each node uses a few earlier nodes, translated, rotated, scaled or with
+// another material, or is an example of docs/GALLERY.md, which has one of each node type. A verb succeeds or refuses
 // the scene with an error.
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ namespace {
 using namespace fathom::tests;
 using test::Random;
 
-// `doubled`: a node in which $ stands for the one before, forty times.
+// `doubled`: a node in which $ stands for the previous node, applied forty times.
 std::string doublings(const std::string& base, const std::string& doubled) {
   std::string nodes = R"("n0": )" + base;
   for (int i = 1; i <= 40; ++i) {
@@ -41,7 +41,7 @@ std::string doublings(const std::string& base, const std::string& doubled) {
          nodes + R"(}, "objects": [{"use": "n40"}, {"type": "sphere", "radius": 9, "material": "clay"}]})";
 }
 
-// In order: those after `compile` and `dump --stage file` read what these write.
+// In this order: the verbs after `compile` and `dump --stage file` read the files that these write.
 const char* const kVerbs[] = {"check scene.json",
                               "check scene.json --probe 1000 --threads 1",
                               "dump scene.json --diff",
@@ -64,14 +64,14 @@ const char* const kVerbs[] = {"check scene.json",
                               "render -q scene.fbc -o scene.png",
                               "render -q scene.json -o scene.film"};
 
-// It follows rays by twenty methods, for minutes on some random scenes.
+// Not in kVerbs: `chart` marches rays by twenty methods, for minutes on some random scenes.
 const char* const kChart = "chart scene.json -o charts --rays 100 --rounds 1 --no-images";
 
 Result run_verb(const Folder& folder, const std::string& verb) {
   return folder.run_script(fmt::format("ulimit -t {}\n\"$fathom\" {}", is_sanitized() ? 300 : 30, verb));
 }
 
-// dump --region of a scene that is not worth cutting.
+// True if `dump --region` refused a scene that has no regions, because cutting it does not pay off.
 bool has_no_regions(const Result& result) {
   return result.code == 65 && result.err.find("the scene has no regions") != std::string::npos;
 }
@@ -99,7 +99,7 @@ TEST_CASE("shared graphs: every verb visits a node that is used in many ways onc
                       R"({"type": "smooth_union", "k": 0.001, "of": [$, $]})"));
 }
 
-// The examples of docs/GALLERY.md that are a node, outlines extruded or revolved, and the types of node in them.
+// The examples of docs/GALLERY.md that are nodes, outlines extruded or revolved, and the node types in them.
 struct Examples {
   Examples() {
     const std::string page = tests::read_file(FATHOM_SOURCE_DIR "/docs/GALLERY.md"), begin = "```json\n";
@@ -107,7 +107,7 @@ struct Examples {
       at += begin.size();
       const std::string text = page.substr(at, page.find("```", at) - at);
       const nlohmann::json node = nlohmann::json::parse(text, nullptr, false);
-      if (!node.is_object() || !node.contains("type")) continue;  // a piece of a scene
+      if (!node.is_object() || !node.contains("type")) continue;  // part of a scene
       add_types(node);
       const bool outline = compiler::find_node(node["type"].get<std::string>())->sort == compiler::Sort::Outline;
       nodes.push_back(outline ? fmt::format(R"({{"type": {}, "of": {}}})", kSolids[nodes.size() % 2], text) : text);
@@ -133,7 +133,7 @@ const char* const kMaterials = R"("materials": {
     "glass": {"type": "transparent"}, "water": {"type": "transparent", "ior": 1.3},
     "paint": {"type": "principled", "color": [0.2, 0.4, 0.6], "roughness": 0.4}})";
 
-// A scene for each seed.
+// Writes one random scene per seed.
 class Writer {
  public:
   explicit Writer(std::uint64_t seed) : random_(seed) {}
@@ -160,7 +160,7 @@ class Writer {
     return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", x, y, random_.uniform(lo, hi));
   }
 
-  // One of the nodes before `i`, mostly one of the last.
+  // Returns a use of a node before `i`, usually one of the last.
   std::string use(int i) {
     int back = 1;
     while (back < i && random_.chance(0.5)) ++back;
@@ -208,7 +208,7 @@ class Writer {
     return fmt::format(R"({{"type": {}, "of": [{}, {}]}})", kind, first, use(i));
   }
 
-  // Of a node cut to a box: what repeats or bends needs an end.
+  // Returns an alteration of a node cut to a box: repeating and bending nodes need a bounded child.
   std::string alteration(int i) {
     const char* const kinds[] = {R"("round", "radius": 0.05)",
                                  R"("onion", "thickness": 0.05)",
@@ -231,7 +231,7 @@ class Writer {
   Random random_;
 };
 
-// How many of the scenes of these seeds were rendered, and not refused: for a limit, or for what has no end.
+// Returns how many scenes of these seeds rendered. The others were refused, because of a limit or an unbounded node.
 int rendered(std::uint64_t first, std::uint64_t last) {
   int done = 0;
   for (std::uint64_t seed = first; seed < last; ++seed) {

@@ -18,7 +18,7 @@ TEST_CASE("units: rounds follow one another, short at first, and never long") {
   }
   CHECK(rounds_of({0, 16}).size() == 1);
   CHECK(rounds_of({0, 64}) == std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}});
-  // A part of a render begins with as few, wherever it begins.
+  // A part of a render begins with short rounds as well, wherever it begins.
   CHECK(rounds_of({20, 60}) == std::vector<SampleRange>{{20, 36}, {36, 52}, {52, 60}});
   CHECK(rounds_of({512, 1024}, 1).front() == SampleRange{512, 513});
 }

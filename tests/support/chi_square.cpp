@@ -11,13 +11,13 @@
 namespace fathom::test {
 namespace {
 
-// Gauss's rule of 3 points on [-1,1].
+// Gauss-Legendre quadrature rule of 3 points on [-1,1].
 constexpr std::array<double, 3> kPlaces{-0.7745966692414834, 0, 0.7745966692414834};
 constexpr std::array<double, 3> kWeights{5.0 / 9, 8.0 / 9, 5.0 / 9};
 constexpr int kMostDepth = 7, kMostGuidedDepth = 12;
-constexpr std::size_t kGuides = 8;  // in a cell, at most
+constexpr std::size_t kGuides = 8;  // max per cell
 
-// Polar angle and azimuth, in [-pi,pi].
+// Polar angle and azimuth, the azimuth in [-pi,pi].
 struct Place {
   double theta, phi;
 };
@@ -31,7 +31,7 @@ struct Cell {
   bool holds(Place p) const { return p.theta >= theta0 && p.theta < theta1 && p.phi >= phi0 && p.phi < phi1; }
 };
 
-// [row * columns + column]
+// Cells of the sphere: [row * columns + column].
 std::vector<Cell> cells(int rows, int columns) {
   std::vector<Cell> all;
   const double dt = M_PI / rows, dp = 2 * M_PI / columns;
@@ -48,7 +48,7 @@ class Integral {
   Integral(const DirectionPdf& pdf, const runtime::Frame& frame, double tolerance)
       : pdf_(pdf), frame_(frame), tolerance_(tolerance) {}
 
-  // At least four parts, so that no peak hides between the points of one.
+  // Integrates over at least four parts of the cell, so that no peak hides between the rule's points.
   double over(const Cell& c) const {
     double sum = 0;
     for (const Cell& part : quarters(c)) sum += refine(part, rule(part), kMostDepth);
@@ -101,8 +101,8 @@ class Integral {
   double tolerance_;
 };
 
-// The regularised incomplete gamma functions (Press et al., "Numerical Recipes", 3rd ed. 2007, section 6.2): P by its
-// series, Q by its continued fraction.
+// The regularised incomplete gamma functions: P by its series, Q by its continued fraction. Source: Press et al.,
+// "Numerical Recipes", 3rd ed. 2007, section 6.2.
 double gamma_series(double a, double x) {
   double term = 1 / a, sum = term;
   for (double n = a + 1; std::abs(term) > 1e-16 * sum; ++n) sum += term *= x / n;
@@ -172,7 +172,8 @@ ChiSquare pearson(std::span<const double> counts, std::span<const double> expect
   std::vector<std::size_t> order(expected.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return expected[a] < expected[b]; });
-  // From the least on: cells together until they expect 5. What never should happen is in the first of these.
+  // Pools cells in ascending order of their expected count until each pool expects 5. Cells in which nothing may ever
+  // fall end up in the first pool.
   double counted = 0, awaited = 0;
   int cells = 0;
   for (const std::size_t i : order) {

@@ -1,4 +1,4 @@
-// What the compiler makes of a text. The test fails when it refuses.
+// Compiles scene texts for tests. The test fails when the compiler reports an error.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@
 
 namespace fathom::tests {
 
-// Of any format.
+// Compiles a text in any scene format.
 inline compiler::CompiledScene compiled(const std::string& text, const compiler::CompileOptions& options = {}) {
   const compiler::Source source("test.json", text);
   compiler::Diagnostics diagnostics;
@@ -20,14 +20,14 @@ inline compiler::CompiledScene compiled(const std::string& text, const compiler:
   return *std::move(scene);
 }
 
-// `written` becomes the scene file that says the same.
+// Compiles `text` and sets `written` to the equivalent JSON scene file.
 inline compiler::CompiledScene compiled(const std::string& text, std::string& written) {
   compiler::CompileOptions options;
   options.on_syntax = [&](const compiler::ReadScene& scene) { written = compiler::write_json(scene.file); };
   return compiled(text, options);
 }
 
-// Of a scene that is nothing but its objects.
+// Compiles a scene that consists of objects only.
 inline compiler::CompiledScene compiled_objects(const std::string& objects,
                                                 const compiler::CompileOptions& options = {}) {
   return compiled(R"({"version": 1, "objects": [)" + objects + "]}", options);

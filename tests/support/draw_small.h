@@ -1,4 +1,5 @@
-// A few pixels of any scene, and its regions: no matter what they look like, nothing may break.
+// Smoke test: renders a few pixels of any scene and builds its regions. The result does not matter, only that nothing
+// crashes.
 #pragma once
 
 #include "compiler/scene/compiled_scene.h"
@@ -7,9 +8,9 @@
 
 namespace fathom::test {
 
-// Of scenes whose picture of light is a file, and of long programs, nothing is drawn.
+// Renders nothing if the environment map is a file or the distance program is long.
 inline void draw_small(const compiler::CompiledScene& scene) {
-  constexpr std::uint32_t kMostCost = 2000;  // multiply-adds a point
+  constexpr std::uint32_t kMostCost = 2000;  // multiply-adds per point
   if (scene.background.type == compiler::Background::Type::Image || scene.distance.cost() > kMostCost) return;
   runtime::RenderOptions options;
   options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.bounces = 1;

@@ -1,15 +1,16 @@
-// How much a test of random cases tries.
+// Number of cases that a randomised test runs.
 #pragma once
 
 #include <cstdlib>
 
-// There when AddressSanitizer's runtime is linked. Tests are compiled the same with it and without.
+// Weak symbol: not null only if AddressSanitizer's runtime is linked. Test objects are compiled the same with and
+// without the sanitizers.
 extern "C" void __asan_init() __attribute__((weak));
 
 namespace fathom::test {
 
-// `n` cases, or an eighth of them under the sanitizers and on emulated processors (FATHOM_FEW_CASES), where everything
-// takes ten times as long: what these look for shows in few cases as in many.
+// Returns `n`, or n / 8 under the sanitizers and on emulated processors (FATHOM_FEW_CASES), where every case takes
+// ten times as long. The errors that those runs look for show in few cases as well as in many.
 inline int few(int n) {
   static const bool all = __asan_init == nullptr && std::getenv("FATHOM_FEW_CASES") == nullptr;
   return all ? n : (n + 7) / 8;

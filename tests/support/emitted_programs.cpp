@@ -24,7 +24,7 @@ EmittedProgram named(std::string name, vm::Program program, glm::dvec3 origin = 
   return {name, {{}, std::move(field), compiler::Source(name, ""), origin, {}, {}, {}, {}, 0, "a test's"}};
 }
 
-// Numbers that no float is, so that the unrounded ones are seen to be kept.
+// Returns immediates that are not floats, so that a test notices when the emitter rounds the constants.
 std::vector<double> random_immediates(const vm::OpcodeInfo& row, std::uint32_t word, Random& random) {
   std::vector<double> immediates;
   for (int i = 0; i < vm::leading_immediates(word); ++i) immediates.push_back(random.uniform(-1.5, 1.5));
@@ -36,7 +36,7 @@ std::vector<double> random_immediates(const vm::OpcodeInfo& row, std::uint32_t w
   return immediates;
 }
 
-// The row with this operand, of random immediates, in the least program that has a use for it.
+// Returns the smallest program that uses the opcode `row` with this operand and random immediates.
 vm::Program program_of(const vm::OpcodeInfo& row, std::uint32_t operand, Random& random) {
   vm::Program program;
   const bool joined = row.form == Form::Shape && (operand & vm::kJoined) != 0;
@@ -50,7 +50,7 @@ vm::Program program_of(const vm::OpcodeInfo& row, std::uint32_t operand, Random&
   const std::uint32_t word = vm::opcode_word(row.opcode, row.form == Form::Outline ? 5 : operand);
   program.append(row.opcode, operand, random_immediates(row, word, random), {});
   if (row.form == Form::Point) {
-    program.append(Opcode::Plane, 0, {1, -2, 1, 0.25}, {});  // what the row did to each coordinate
+    program.append(Opcode::Plane, 0, {1, -2, 1, 0.25}, {});  // reads all coordinates that the instruction changed
     program.append(Opcode::Drop, 0, {}, {});
   }
   return program;
@@ -66,7 +66,7 @@ void add_opcodes(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
-// Shapes that stand elsewhere and are joined, functions of what does not lie on the stack.
+// Adds moved and joined shapes, and functions whose operands do not lie on the stack.
 void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
   const vm::OpcodeInfo& box = vm::info(Opcode::Box);
   for (std::uint32_t modes = 1; modes <= (vm::kMoved | vm::kJoined); ++modes) {
@@ -84,7 +84,8 @@ void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
-// Points that nest, locals, tags; the loops with immediates that keep them going; a scene far from zero.
+// Adds programs with nested points, locals and tags; loops with immediates that keep the loops running; and a scene
+// far from the origin.
 void add_others(std::vector<EmittedProgram>& programs) {
   vm::Program stacks;
   stacks.locals = 2;

@@ -1,6 +1,5 @@
-// Programs for the tests of `fathom emit`: every opcode alone, all that operands can say, random scenes. A program of
-// the build (tests/emit_programs.cpp) emits them and the tests are compiled with what it writes, so both draw the
-// same.
+// Programs for the tests of `fathom emit`: every opcode alone, every operand, random scenes. The build runs a program
+// (tests/emit_programs.cpp) that emits them and compiles its output into the tests, so both use the same list.
 #pragma once
 
 #include <string>
@@ -11,8 +10,8 @@
 namespace fathom::test {
 
 struct EmittedProgram {
-  std::string name;               // an identifier, in C++ and in GLSL
-  compiler::CompiledScene scene;  // of its fields those that are emitted; the rest is empty
+  std::string name;               // an identifier in C++ and in GLSL
+  compiler::CompiledScene scene;  // only the fields that the emitter reads; all others are empty
 };
 
 std::vector<EmittedProgram> emitted_programs();

@@ -1,4 +1,4 @@
-// Backgrounds that are sampled by tables: a sky without its sun, and a picture whose every pixel differs.
+// Backgrounds that the renderer samples by tables: a sky without its sun, and an image in which all pixels differ.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ inline std::shared_ptr<runtime::EnvironmentImage> random_image(int width, int he
 
 inline constexpr const char* kSky = R"("background": {"type": "sky", "elevation": 35, "azimuth": 50, "turbidity": 4,
     "sun_disc": false})";
-// The file is not read: random_image() stands for it.
+// Environment map whose file is never read: tests use random_image() instead.
 inline constexpr const char* kPicture = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                         R"(/tests/data/one-pixel.hdr", "rotate": 40, "strength": 2})";
 

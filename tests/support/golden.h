@@ -1,5 +1,5 @@
-// Golden files: an input and what is printed for it, in one file, parted by the line "----- expected".
-// FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
+// Golden files: an input and its expected output in one file, separated by the line "----- expected".
+// FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the expected output.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 namespace fathom::tests {
 
-// The whole file.
+// Returns the content of the file.
 std::string read_file(const std::filesystem::path& path);
 
-// The files of tests/golden/`folder`, sorted.
+// Returns the files of tests/golden/`folder`, sorted.
 std::vector<std::filesystem::path> golden_files(const std::string& folder);
 
-// CHECKs that print(input) is what each file of the folder expects.
+// CHECKs for each file of the folder that print(input) is the expected output.
 void check_golden(const std::string& folder, const std::function<std::string(const std::string& input)>& print);
 
 }  // namespace fathom::tests

@@ -1,4 +1,4 @@
-// Imports from a folder of the project.
+// Import reader for scene texts: finds imported files in a folder of the project.
 #pragma once
 
 #include <filesystem>

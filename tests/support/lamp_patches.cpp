@@ -26,14 +26,15 @@ Lamp lamp_of(Lamp::Shape shape) {
   lamp.translation = {0.3, -0.2, 0.1};
   return lamp;
 }
-// A part of a lamp's surface over the unit square, in the lamp's space.
+// Part of an area light's surface, parametrised over the unit square, in the light's local space.
 struct Patch {
   std::function<dvec3(double u, double v)> place;
-  std::function<glm::dvec2(dvec3)> parameters;  // of a point of the patch
-  std::function<bool(dvec3)> holds;             // a point of the surface
+  std::function<glm::dvec2(dvec3)> parameters;  // inverse of `place`, for a point of the patch
+  std::function<bool(dvec3)> holds;             // true if a point of the surface lies on the patch
 };
 
-// About the y axis: by the distance from it and the height.
+// Patch of a surface of revolution about the y axis. `profile` maps u to (distance from the axis, height), and
+// `parameter` maps a point back to u.
 Patch turned(const std::function<glm::dvec2(double)>& profile, const std::function<double(dvec3)>& parameter,
              const std::function<bool(dvec3)>& holds) {
   const auto place = [profile](double u, double v) {
@@ -49,7 +50,7 @@ Patch turned(const std::function<glm::dvec2(double)>& profile, const std::functi
 
 double across_axis(dvec3 q) { return std::sqrt(q.x * q.x + q.z * q.z); }
 
-// A ball's part above `sign` times the height h; the whole ball when sign is 0.
+// Part of a sphere of radius r above `sign` times the height h; the whole sphere when sign is 0.
 Patch cap_of_ball(double r, double h, double sign) {
   const auto height = [=](double u) { return sign == 0 ? r * (2 * u - 1) : r * u; };
   return turned(
@@ -60,7 +61,7 @@ Patch cap_of_ball(double r, double h, double sign) {
       [=](dvec3 q) { return sign == 0 ? (q.y / r + 1) / 2 : (sign * q.y - h) / r; },
       [=](dvec3 q) { return sign == 0 || sign * q.y > h; });
 }
-// The side, from the one line along which it turns away from the local place `from` to the other.
+// Side of a cylinder or capsule, between the two silhouette lines seen from the local point `from`.
 Patch side_of(double r, double h, bool capsule, dvec3 from) {
   const double middle = std::atan2(from.z, from.x), half = std::acos(std::min(1.0, r / across_axis(from)));
   return {[=](double u, double v) {
@@ -118,11 +119,12 @@ std::vector<Patch> patches_of(const Lamp& lamp, dvec3 place) {
   return patches;
 }
 
-constexpr int kBins = 8;  // a side of a patch
+constexpr int kBins = 8;  // per side of a patch
 
 std::size_t bin(double t) { return static_cast<std::size_t>(std::clamp(static_cast<int>(t * kBins), 0, kBins - 1)); }
 
-// The density's share in each bin of a patch: per solid angle, times the solid angle of pieces of the surface.
+// Integrates the density over each bin of a patch: density per solid angle, times the solid angle of small pieces of
+// the surface.
 void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid, std::vector<double>& expected) {
   const Lamp& lamp = shape.lamp();
   const std::size_t first = expected.size();
@@ -136,7 +138,7 @@ void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid,
       const dvec3 area = lamp.rotation * glm::cross(along_u, along_v) * (du * dv);
       const dvec3 place = lamp.rotation * patch.place(u, v) + lamp.translation, way = place - from;
       const double d2 = glm::dot(way, way), solid_angle = std::abs(glm::dot(area, way)) / (d2 * std::sqrt(d2));
-      // What turns away is behind the lamp.
+      // Pieces that face away are hidden by the light itself.
       const dvec3 inwards = shape.centre() - place;
       const bool seen = glm::dot(area, way) * glm::dot(area, inwards) > 0;
       if (seen) expected[first + bin(u) * kBins + bin(v)] += shape.pdf(from, place) * solid_angle;
@@ -144,7 +146,7 @@ void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid,
   }
 }
 
-// The counts of n samples; the last bin is for no sample.
+// Counts n samples per bin. The last bin counts failed samples.
 std::vector<double> count_samples(const LampShape& shape, const std::vector<Patch>& patches, dvec3 from, int n) {
   const Lamp& lamp = shape.lamp();
   std::vector<double> counts(patches.size() * kBins * kBins + 1);

@@ -1,6 +1,6 @@
-// Lamps of every shape, seen from places around them, and whether points on them fall as their density says: a lamp's
-// surface is cut into patches with parameters of their own, for directions would not tell the parts of a small lamp
-// apart.
+// Area lights of every shape, reference points around them, and a chi-square test of the points sampled on them. Each
+// light's surface is cut into patches with their own parametrisation, because directions would not separate the parts
+// of a small light.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace fathom::test {
 
-// Turned and moved, so that no axis is special.
+// Area lights, rotated and translated so that no axis is special.
 compiler::Lamp ball(double radius);
 compiler::Lamp box(glm::dvec3 half);
 compiler::Lamp round(compiler::Lamp::Shape shape, double radius, double half_height);
@@ -38,8 +38,9 @@ inline const NamedLamp kLamps[] = {
 };
 inline constexpr glm::dvec3 kLampPlaces[] = {{2, 1, 0.5}, {-0.4, 3, 1}, {0.5, -1.5, -0.9}, {10, -7, 4}};
 
-// Of `samples` points chosen for the place `from`, over 8 x 8 bins of each patch. The density is summed over `grid` x
-// `grid` pieces of a bin: where the lamp turns away within one, that is as exact as the pieces are small.
+// Chi-square test of `samples` points sampled for the reference point `from`, over 8 x 8 bins per patch. The expected
+// counts sum the density over `grid` x `grid` pieces per bin. In a bin that the light's silhouette crosses, the sum
+// is only as exact as the pieces are small.
 ChiSquare lamp_chi_square(const runtime::LampShape& shape, glm::dvec3 from, int samples, int grid);
 
 }  // namespace fathom::test

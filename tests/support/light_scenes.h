@@ -1,6 +1,6 @@
-// Scenes whose light is known in closed form. The text of each is what follows `"version": 1`; every one is seen by a
-// camera for which all pixels have the same value, or that value is the mean.
-// Sources: P1 to P10 of the tests' names are those of docs/ACCURACY.md.
+// Scenes whose radiance is known in closed form. Each text is the part of the scene file after `"version": 1`. The
+// camera sees the same value in all pixels, or the closed form is the mean of the image. Sources: P1 to P10 in the
+// names of tests are those of docs/ACCURACY.md.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ inline std::string grey(double value) {
 struct LightScene {
   std::string name;
   std::string json;
-  double radiance;  // of the picture's mean
+  double radiance;  // mean of the image
 };
 
-// P1: within a closed body whose walls emit 1 and have albedo a, all is 1 + a + a^2 + ...
+// P1: inside a closed body whose walls emit 1 and have albedo a, the radiance is 1 + a + a^2 + ... everywhere.
 inline LightScene closed_room(double albedo, const std::string& body = R"("type": "sphere", "radius": 1)") {
   return {"closed room of albedo " + std::to_string(albedo),
           R"("camera": {"position": [0.3, 0.1, 0.2], "target": [0, 0, -1], "fov": 90},
@@ -32,7 +32,7 @@ inline LightScene closed_room(double albedo, const std::string& body = R"("type"
           1 / (1 - albedo)};
 }
 
-// P2, P7: what absorbs nothing cannot be told from an even background.
+// P2, P7: a body that absorbs nothing cannot be told from a uniform background.
 inline LightScene in_even_light(const std::string& material,
                                 const std::string& body = R"("type": "sphere", "radius": 1)") {
   return {material,
@@ -42,7 +42,7 @@ inline LightScene in_even_light(const std::string& material,
           1};
 }
 
-// A body of which a small spot is seen, along z, within a sea of water that bends no light.
+// Small spot of a white box, seen along z, inside water that does not refract (ior 1).
 inline LightScene in_sea(const std::string& name, const std::string& sea, const std::string& rest) {
   return {name,
           R"("camera": {"type": "orthographic", "position": [0, 0, 3], "target": [0, 0, 0], "width": 0.002},
@@ -56,20 +56,21 @@ inline LightScene in_sea(const std::string& name, const std::string& sea, const 
           0};
 }
 
-// What water outranks has no surface there, so a glowing ball of clear glass in it is not.
+// Water outranks the glowing ball of clear glass, so the ball has no surface inside the water and does not emit.
 inline LightScene drowned_lamp() {
   return in_sea("a lamp that is not there", R"("type": "sphere", "radius": 10)",
                 R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 3, 3], "material": "glow"}])");
 }
 
-// No ray leaves a half space of water downwards.
+// No ray leaves a half-space of water downwards.
 inline LightScene bottomless_sea() {
   return in_sea("a sea without a ground", R"("type": "plane", "normal": [0, 0, -1], "offset": 1)",
                 R"(], "background": [1, 1, 1], "lights": {"far": {"type": "directional", "direction": [0, 0, -1],
                    "irradiance": [1, 1, 1], "angle": 2}})");
 }
 
-// A floor of albedo 1/2 round the origin, of which only a spot is seen that is too small for its light to vary.
+// Floor of albedo 1/2 through the origin. The camera sees only a spot of the floor, too small for the light to vary
+// over it.
 inline std::string floor_spot(const std::string& lights, const std::string& objects,
                               const std::string& materials = "") {
   return R"("camera": {"type": "orthographic", "position": [3, 0.4, 0.2], "target": [0, 0, 0], "width": 0.002},
@@ -79,7 +80,7 @@ inline std::string floor_spot(const std::string& lights, const std::string& obje
          objects + "]";
 }
 
-// P3: irradiance pi L (R/d)^2 cos of a ball that is all above the horizon.
+// P3: irradiance pi L (R/d)^2 cos of a ball entirely above the horizon.
 inline LightScene under_ball(double radius, double x, double y) {
   const double squared = x * x + y * y;
   return {"under a ball",
@@ -88,7 +89,8 @@ inline LightScene under_ball(double radius, double x, double y) {
           0.5 * 8 * radius * radius / squared * y / std::sqrt(squared)};
 }
 
-// Something flat between the floor's spot and what is above it, and the part of light its two walls let through.
+// Flat sheet between the floor's spot and the objects above, and the fraction of light that the sheet's two walls
+// transmit.
 struct Veil {
   const char* material;
   double passes;
@@ -99,10 +101,10 @@ inline std::string veiled_spot(const Veil& veil, const std::string& lights, cons
       objects + R"(, {"type": "box", "half_size": [0.5, 0.01, 0.5], "translate": [0, 0.5, 0], "material": "veil"})",
       R"(, "veil": )" + std::string(veil.material));
 }
-// Black, with holes that let three fifths through.
+// Black gauze: the holes of each wall transmit three fifths of the light.
 inline constexpr Veil kGauze{R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
                              0.36};
-// A slab met head-on passes (1 - R) / (1 + R), R = .04.
+// Glass pane at normal incidence: transmits (1 - R) / (1 + R), R = .04.
 inline constexpr Veil kPane{R"({"type": "principled", "transmission": 1, "roughness": 0, "thin_walled": true})",
                             (0.96 / 1.04) * (0.96 / 1.04)};
 
@@ -114,7 +116,7 @@ inline LightScene veiled_ball(const Veil& veil) {
       scene.radiance * veil.passes};
 }
 
-// Gauze that is smooth reflects R = .04 where it is no hole; from within it does not.
+// Smooth gauze reflects R = .04 where the sheet is not a hole. The sheet reflects nothing from inside.
 inline LightScene smooth_gauze() {
   LightScene scene = in_even_light(R"({"type": "principled", "color": [0, 0, 0], "roughness": 0, "opacity": 0.4})",
                                    R"("type": "box", "half_size": [3, 3, 0.1])");
@@ -122,8 +124,8 @@ inline LightScene smooth_gauze() {
   return scene;
 }
 
-// A black sheet that fills the picture, crossed twice, where so much of it is there and emits 3, before a background
-// of 1.
+// Black gauze that fills the image before a background of 1. A camera ray crosses two walls, each of which covers the
+// fraction `opacity` and emits 3 there.
 inline LightScene glowing_gauze(double opacity) {
   LightScene scene =
       in_even_light(R"({"type": "principled", "color": 0, "specular_weight": 0, "emission": [3, 3, 3], "opacity": )" +
@@ -134,7 +136,8 @@ inline LightScene glowing_gauze(double opacity) {
   return scene;
 }
 
-// P3 under a ball of which a part is there: it shines by its near side, and by its far side through the holes.
+// P3 under a ball that covers only the fraction `opacity` of its surface. The near side emits towards the floor, and
+// the far side emits through the holes of the near side.
 inline LightScene under_glowing_gauze(double opacity) {
   LightScene scene = under_ball(0.5, 0, 2);
   scene.json = floor_spot("", R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 2, 0], "material": "veil"})",
@@ -145,7 +148,8 @@ inline LightScene under_glowing_gauze(double opacity) {
   return scene;
 }
 
-// P3 under a black ball whose coat, which reflects nothing, lets half of the light through once and covers all of it.
+// P3 under a black ball with a coat. The coat reflects nothing, transmits half of the light per crossing and covers
+// the whole ball.
 inline LightScene under_coated_ball() {
   LightScene scene = under_ball(0.5, 0, 2);
   scene.json = floor_spot("", R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 2, 0], "material": "coated"})",
@@ -169,9 +173,9 @@ inline LightScene many_veils() {
           under_ball(0.3, 0, 1.4).radiance * std::pow(kGauze.passes, 4)};
 }
 
-// A drink that absorbs 0.5 per unit between two veils, which outrank it, under a point light of 3 straight above. It
-// fills the 0.08 between them and the 0.02 of the second: what has no filling of its own is full of what is before
-// it.
+// Absorbing liquid (0.5 per unit) between two veils that outrank it, under a point light of intensity 3 straight
+// above. The liquid fills the 0.08 between the veils and the 0.02 inside the second veil: a body without an interior
+// medium contains the medium in front of it.
 inline LightScene veiled_drink() {
   return {"a drink between veils",
           floor_spot(R"("lights": {"bulb": {"type": "point", "position": [0, 1, 0], "intensity": [3, 3, 3]}}, )",
@@ -183,7 +187,7 @@ inline LightScene veiled_drink() {
           0.5 * 3 / std::numbers::pi * kGauze.passes * kGauze.passes * std::exp(-0.5 * 0.1)};
 }
 
-// Irradiance I / d^2 of a point light straight above, of 3 at 1.
+// Irradiance I / d^2 of a point light straight above: intensity 3 at distance 1.
 inline LightScene veiled_point(const Veil& veil) {
   return {"a point light behind a veil",
           veiled_spot(
@@ -191,7 +195,7 @@ inline LightScene veiled_point(const Veil& veil) {
           0.5 * 3 / std::numbers::pi * veil.passes};
 }
 
-// P4: pi L R^2 / (R^2 + h^2) of a disc straight above.
+// P4: irradiance pi L R^2 / (R^2 + h^2) of a disc straight above.
 inline LightScene under_disc(double radius, double height) {
   return {"under a disc",
           floor_spot("", R"(, {"type": "cylinder", "radius": )" + std::to_string(radius) +
@@ -200,8 +204,8 @@ inline LightScene under_disc(double radius, double height) {
           0.5 * 8 * radius * radius / (radius * radius + height * height)};
 }
 
-// P5: Lambert's sum over the edges of a polygon (Lambert, "Photometria", 1760): E = L/2 sum angle_i (edge normal_i .
-// n).
+// P5: Lambert's sum over the edges of a polygon: E = L/2 sum angle_i (edge normal_i . n). Source: Lambert,
+// "Photometria", 1760.
 inline double polygon_irradiance(const std::vector<std::array<double, 3>>& corners, double radiance) {
   double sum = 0;
   const auto dot = [](const auto& a, const auto& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
@@ -215,7 +219,7 @@ inline double polygon_irradiance(const std::vector<std::array<double, 3>>& corne
   return radiance * std::abs(sum) / 2;
 }
 
-// A box lamp of which only the lower face is seen from the floor's spot, which must lie below it.
+// Box light of which the floor's spot sees only the lower face. The floor must lie below that face.
 inline LightScene under_rectangle(double half_x, double half_z, double x, double y) {
   const auto face = [&] {
     return std::vector<std::array<double, 3>>{
@@ -228,8 +232,8 @@ inline LightScene under_rectangle(double half_x, double half_z, double x, double
           0.5 * polygon_irradiance(face, 8) / std::numbers::pi};
 }
 
-// P6: a spherical cavity of albedo rho with a hole of half angle a under an even light 1: rho f / (1 - rho (1 - f)),
-// f = (1 - cos a) / 2. The camera looks in through the hole at a spot of the wall.
+// P6: spherical cavity of albedo rho with a hole of half angle a, in uniform light of radiance 1. The radiance is rho
+// f / (1 - rho (1 - f)) with f = (1 - cos a) / 2. The camera looks through the hole at a spot of the wall.
 inline LightScene cavity(double albedo, double degrees) {
   const double f = (1 - std::cos(degrees * std::numbers::pi / 180)) / 2;
   return {"cavity",
@@ -243,8 +247,8 @@ inline LightScene cavity(double albedo, double degrees) {
           albedo * f / (1 - albedo * (1 - f))};
 }
 
-// P8: through a slab of glass, head-on, with reflections within: (1 - R) / (1 + R), R = .04. What it reflects is
-// dark.
+// P8: slab of glass at normal incidence, with internal reflections: transmits (1 - R) / (1 + R), R = .04. The light
+// that the slab reflects comes from a dark background.
 inline LightScene slab() {
   return {
       "slab of glass",
@@ -255,11 +259,11 @@ inline LightScene slab() {
       2 * 0.96 / 1.04};
 }
 
-// P10: a white ball under a distant lamp at phase angle g, over the ball's disc: 2 (sin g + (pi - g) cos g) / (3 pi)
-// times irradiance / pi (Lambert's sphere).
+// P10: white ball under a distant light at phase angle g. The mean over the ball's disc is 2 (sin g + (pi - g) cos g)
+// / (3 pi) times irradiance / pi (Lambert's sphere).
 inline LightScene moon(double degrees) {
   const double g = degrees * std::numbers::pi / 180;
-  const double irradiance = 3, disc = std::numbers::pi / 4;  // the disc fills so much of the picture
+  const double irradiance = 3, disc = std::numbers::pi / 4;  // `disc`: fraction of the image that the ball covers
   const double phase = 2 * (std::sin(g) + (std::numbers::pi - g) * std::cos(g)) / (3 * std::numbers::pi);
   return {"moon",
           R"("camera": {"type": "orthographic", "position": [0, 0, 5], "width": 2}, "render": {"bounces": 1},
@@ -270,7 +274,8 @@ inline LightScene moon(double degrees) {
           disc * phase * irradiance / std::numbers::pi};
 }
 
-// A room with lamps of every kind, glass, a mirror and something rough, in which all ways to find light must agree.
+// Room with all kinds of lights, glass, a mirror and a rough surface, in which all light sampling strategies must
+// agree.
 inline constexpr const char* kLampRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
     "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"bounces": 4},
     "materials": {"white": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},

@@ -1,4 +1,4 @@
-// Materials that tests of the BSDF go through, and the directions they are looked at from.
+// Materials for the tests of the BSDF, and the directions from which the tests look at them.
 #pragma once
 
 #include <algorithm>
@@ -19,25 +19,26 @@ using runtime::Bsdf, runtime::MaterialPoint, runtime::MaterialType;
 inline const glm::vec3 kNormal = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
 inline constexpr float kCosines[] = {1, 0.8f, 0.5f, 0.2f, 0.05f};
 
-// A direction on the normal's side.
+// Returns a direction on the normal's side; `turn` is the azimuth in turns.
 inline glm::vec3 towards(float cos, float turn) {
   const float sin = std::sqrt(1 - cos * cos);
   return runtime::to_frame(kNormal,
                            {sin * runtime::sincos_turn(turn).cos, sin * runtime::sincos_turn(turn).sin, cos});
 }
 
-// A material seen from one of its sides.
+// Material, seen from one of its sides.
 struct MaterialCase {
   std::string name;
   MaterialPoint material;
   bool inside = false;
 
-  // What fills no body is of its own index from both sides.
+  // Relative index of refraction as the BSDF takes it. A material without an interior has the same index from both
+  // sides.
   float eta() const { return inside && material.fills() ? 1 / material.ior : material.ior; }
-  // The same from where wi is.
+  // Like eta(), but as seen from wi's side; `through` is true if wi lies on the other side of the surface.
   float across(bool through) const { return through && material.fills() ? 1 / eta() : eta(); }
   Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
-  // The index that light is bent by, specular_weight in it.
+  // Effective index of refraction of the specular boundary, scaled by specular_weight.
   float bending() const {
     if (material.thin_walled || material.type != MaterialType::Principled) return 1;
     const float s = std::sqrt(material.specular_weight) * (eta() - 1) / (eta() + 1);
@@ -109,9 +110,10 @@ inline std::vector<MaterialCase> materials() {
   return cases;
 }
 
-// How much light that goes one way differs from that which goes back, relative to it: the worst of so many random
-// pairs of directions. Indices are taken as 2 and weights as 1, whose inverses are floats: a rounded one is another
-// boundary. About z local space is world space, bit for bit, from either side.
+// Reciprocity error of the BSDF: max relative difference between f(wo, wi) and f(wi, wo) over `pairs` random pairs of
+// directions. The index of refraction is set to 2 and the specular weight to 1, because their inverses are exact
+// floats: a rounded inverse would describe another boundary. The normal is the z axis, where local and world space
+// agree bit for bit from either side.
 inline double worst_asymmetry(MaterialCase c, int pairs, std::uint64_t seed) {
   const glm::vec3 up(0, 0, 1);
   const auto greatest = [](glm::vec3 v) { return std::max({v.x, v.y, v.z}); };
@@ -127,7 +129,7 @@ inline double worst_asymmetry(MaterialCase c, int pairs, std::uint64_t seed) {
     const glm::vec3 wi(other.x, other.y, through ? -other.z : other.z);
     const Bsdf here(c.material, up, wo, c.eta(), c.inside);
     const Bsdf there(c.material, through ? -up : up, wi, c.across(through), through != c.inside);
-    // Radiance counts by the square of its side's index.
+    // Radiance scales with the square of the index of refraction on its side.
     const float index = through ? c.bending() : 1;
     const glm::vec3 forth = here.evaluate(wi).f / other.z * (index * index), back = there.evaluate(wo).f / wo.z;
     if (greatest(back) < 1e-6f) continue;
@@ -136,7 +138,7 @@ inline double worst_asymmetry(MaterialCase c, int pairs, std::uint64_t seed) {
   return worst;
 }
 
-// More of them, in layers: where energy may be counted twice.
+// Adds layered materials to materials(): layers are where a BSDF may count energy twice.
 inline std::vector<MaterialCase> layered_materials() {
   std::vector<MaterialCase> cases = materials();
   for (float roughness : {0.0f, 0.15f, 0.4f, 0.8f}) {
@@ -160,7 +162,7 @@ inline std::vector<MaterialCase> layered_materials() {
   return cases;
 }
 
-// Those that give back all light.
+// Materials that reflect or transmit all light.
 inline std::vector<MaterialCase> white_materials() {
   std::vector<MaterialCase> cases{{"diffuse", {}}, {"rough diffuse", matte(1)}, {"matte", matte(0)}};
   cases[0].material.base_color = glm::vec3(1);

@@ -1,4 +1,4 @@
-// Expression lists evaluated line by line in doubles, with no thought of speed or errors: what a list means.
+// Reference evaluator of expression lists: line by line, in double, without regard to speed or rounding errors.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ inline double plain_operation(const std::string& op, double a, double b) {
   return 0;
 }
 
-// The last line's value at each point. A line after the other, each at all points.
+// Returns the value of the last line at each point. Each line is evaluated at all points before the next line.
 inline std::vector<double> plain_list(const std::string& text, const std::vector<glm::dvec3>& points) {
   std::map<std::string, std::vector<double>> values;
   std::string last;
@@ -62,7 +62,8 @@ inline std::vector<double> plain_list(const std::string& text, const std::vector
     } else {
       const std::vector<double>& left = values.at(a);
       const std::vector<double>& right = b.empty() ? left : values.at(b);
-      if (op == "min" || op == "max" || op == "add" || op == "sub" || op == "mul") {  // most of long lists
+      // fast path: most lines of long lists
+      if (op == "min" || op == "max" || op == "add" || op == "sub" || op == "mul") {
         for (std::size_t i = 0; i < out.size(); ++i) {
           const double x = left[i], y = right[i];
           out[i] = op[1] == 'i' ? std::min(x, y) : op == "max" ? std::max(x, y) : op[0] == 'a' ? x + y

@@ -27,7 +27,8 @@ class Lowering {
     }
   }
 
-  // Leaves one value on the stack: the node at the top point, which is the frame-th that was ever pushed.
+  // Emits code that leaves one value on the stack: `node`, evaluated at the top point. `frame` numbers that point in
+  // the order in which points were pushed.
   void emit(NodeId node, std::uint32_t frame, std::uint32_t paint) {
     if (graph_.kind(node) == Kind::Paint) {
       return emit(graph_.children(node)[0], frame, static_cast<std::uint32_t>(graph_.params(node)[0]));
@@ -82,7 +83,8 @@ class Lowering {
     }
     if (compiler::spec(graph_.kind(node)).category == compiler::Category::Combinator) return;
     append(code.after);
-    // What an operator measures itself, as the way to copies left out, is painted as the node is.
+    // A distance that the node itself computes (e.g. a repetition's lower bound for omitted copies) belongs to the
+    // surface of the node's paint.
     if (painted_ && !code.after.empty()) append(Opcode::Tag, {}, paint);
   }
 

@@ -1,5 +1,5 @@
-// Programs for the machine's tests without the compiler: a graph written out as it stands, nothing optimised. Shared
-// nodes become locals. And the ways to get a verified program or die trying.
+// Programs for the tests of the machine, without the compiler: plain_lowering() writes a graph out as it stands,
+// without optimisation. Shared nodes become locals.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace fathom::test {
 
-// Aborts with the verifier's reason when it refuses.
+// Returns the verified program. Aborts with the verifier's reason when the verifier refuses it.
 vm::VerifiedProgram verified(vm::Program program);
 
-// Tags number the surfaces as Paint does; a graph without Paint has no tags.
+// Lowers a scene. Tags carry the surface numbers of Paint nodes. A graph without Paint has no tags.
 vm::VerifiedProgram plain_lowering(const compiler::Scene& scene);
 
-// One primitive.
+// Returns the program of one primitive.
 vm::VerifiedProgram primitive_program(compiler::Kind kind, const std::vector<double>& params);
 
 }  // namespace fathom::test

@@ -17,7 +17,8 @@ Result Folder::run(const std::string& arguments, const std::string& in) const {
 }
 
 Result Folder::run_script(const std::string& lines) const {
-  const std::filesystem::path io = path().string() + ".io";  // beside the folder, which stays the user's
+  // A sibling of the folder, so that the folder contains only the test's files.
+  const std::filesystem::path io = path().string() + ".io";
   std::filesystem::create_directories(io);
   std::ofstream(io / "script") << "fathom='" FATHOM_PROGRAM "'\n" << lines << '\n';
   const std::string command = "cd '" + path().string() + "' && sh '" + (io / "script").string() + "' >'" +

@@ -1,4 +1,4 @@
-// The program under test: run in a folder of its own, with two small scenes in it.
+// Runs the program under test in a temporary folder that contains two small scenes.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -36,9 +36,9 @@ inline const char* const kTwo = R"({
 })";
 
 std::string program_path();
-bool is_sanitized();  // whether the program was built with the sanitizers
+bool is_sanitized();  // true if the program was built with the sanitizers
 
-// A folder to run the program in.
+// Temporary folder in which tests run the program.
 class Folder : public TemporaryFolder {
  public:
   Folder() {
@@ -54,13 +54,13 @@ class Folder : public TemporaryFolder {
   }
   bool has(const std::string& name) const { return std::filesystem::exists(path() / name); }
 
-  // `arguments` as for a shell; standard input is `in`.
+  // Runs the program. `arguments` are parsed by a shell; `in` is the standard input.
   Result run(const std::string& arguments, const std::string& in = "") const;
-  // Lines of a shell in the folder, in which $fathom is the program.
+  // Runs shell commands in the folder; $fathom is the program.
   Result run_script(const std::string& lines) const;
 };
 
-// Width and height of a PNG, from its header. Source: PNG specification, section 11.2.2.
+// Width and height of a PNG, read from its header. Source: PNG specification, section 11.2.2.
 inline std::pair<int, int> png_size(const std::string& bytes) {
   REQUIRE(bytes.size() > 24);
   const auto big_endian = [&](std::size_t at) {

@@ -1,4 +1,4 @@
-// Whether two programs are the same to the bit, with where they come from.
+// same_program(): true if two programs are equal bit for bit, including their source locations.
 #pragma once
 
 #include <bit>

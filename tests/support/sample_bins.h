@@ -1,6 +1,7 @@
-// Whether samples fall as their density says: Pearson's chi-square statistic as standard deviations of a normal
-// distribution, by Wilson and Hilferty, "The Distribution of Chi-Square", 1931. Bins in which fewer than 5 are
-// expected are pooled; infinite when much falls where next to nothing is expected.
+// Chi-square goodness-of-fit test of samples against their density. Returns Pearson's statistic as standard
+// deviations of a normal distribution. Source: Wilson and Hilferty, "The Distribution of Chi-Square", 1931. Bins that
+// expect fewer than 5 samples are pooled. The result is infinite when many samples fall where almost none are
+// expected.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace fathom::test {
 
-// `expected` are shares of all samples.
+// `expected`: fraction of all samples per bin. `n`: number of samples.
 inline double chi_square_deviation(const std::vector<double>& counts, const std::vector<double>& expected, int n) {
   double statistic = 0, pooled = 0, pooled_count = 0;
   int degrees = -1;

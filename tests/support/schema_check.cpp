@@ -25,13 +25,14 @@ bool has_type(const Json& value, const std::string& type) {
 
 struct Context {
   const Json& value;
-  const Json& schema;  // the one with the keyword
+  const Json& schema;  // the schema that contains the keyword
   const Json& whole;
 };
-// Whether the keyword's `rule` holds. Rules about objects hold for what is none, and so on.
+// Returns true if the keyword's `rule` holds. A rule about objects holds for every value that is not an object, and
+// similarly for the other types.
 using Keyword = std::function<bool(const Context&, const Json& rule)>;
 
-// The first keyword of the schema that does not hold, or none.
+// Returns the name of the first keyword of the schema that does not hold, or nullptr.
 const std::string* broken_keyword(const Json& value, const Json& schema, const Json& whole);
 
 bool fits(const Json& value, const Json& schema, const Json& whole) {
@@ -46,7 +47,8 @@ std::size_t count_fitting(const Context& at, const Json& schemas) {
 
 bool check_properties(const Context& at, const Json& rule) {
   if (!at.value.is_object()) return true;
-  // Constants first: of many kinds of node only the one meant is looked into, or deep nesting would take forever.
+  // Checks `const` properties first. These properties reject all kinds of nodes except the right one at once. Without
+  // them deep nesting would take forever.
   for (const bool constants : {true, false}) {
     for (const auto& [name, schema] : rule.items()) {
       if (schema.contains("const") != constants || !at.value.contains(name)) continue;

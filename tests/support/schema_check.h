@@ -1,5 +1,5 @@
-// A validator for the keywords of JSON Schema (draft 2020-12) that compiler/frontend/records/schema.cpp writes, and no
-// others: a keyword it does not know throws, so that no rule is passed over in silence.
+// Validator for those keywords of JSON Schema (draft 2020-12) that compiler/frontend/records/schema.cpp writes. An
+// unknown keyword throws, so that no rule is silently ignored.
 //
 // Source: Wright, Andrews, Hutton, "JSON Schema Validation", 2022.
 #pragma once
@@ -9,7 +9,8 @@
 
 namespace fathom::tests {
 
-// What is wrong with `value`, with its place; empty when nothing is. `schema` is a part of `whole`, where $ref looks.
+// Returns the first violation in `value` with its location, or an empty string. `schema` is a part of `whole`, in
+// which $ref is resolved.
 std::string schema_problem(const nlohmann::json& value, const nlohmann::json& schema, const nlohmann::json& whole);
 
 inline std::string schema_problem(const nlohmann::json& value, const nlohmann::json& schema) {

@@ -1,4 +1,4 @@
-// Files of compiled scenes as someone makes them who knows the format: any sections, with the right digests.
+// Writes compiled scene files as an attacker who knows the format would: arbitrary sections with correct digests.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ inline std::vector<std::uint8_t> sealed(const Sections& parts, vm::Digest opcode
   return out.take();
 }
 
-// Of a sound file.
+// Returns the sections of a valid file.
 inline Sections sections_of(std::span<const std::uint8_t> file) {
   constexpr std::size_t kHeader = 144;
   Sections sections;

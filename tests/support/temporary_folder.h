@@ -1,4 +1,4 @@
-// An empty folder, removed with everything in it.
+// Empty temporary folder. The destructor removes the folder and its content.
 #pragma once
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
-// White furnaces: a ball of a white material in an even light of 1 returns 1 wherever it is seen, if its material and
-// the paths through it lose nothing.
+// White furnace test: a ball of a white material in uniform light of radiance 1 has radiance 1 everywhere, if neither
+// the material nor the paths through the ball lose energy.
 #pragma once
 
 #include <array>
@@ -14,10 +14,12 @@ namespace fathom::tests {
 
 struct WhiteMaterial {
   std::string json;
-  bool coat = false, glass = false, rough_pigment = false;  // `glass`: some of it transmits
+  // `glass`: true if some of the material transmits.
+  bool coat = false, glass = false, rough_pigment = false;
 };
 
-// Number `number` of the random white materials: every layer is there, in part or in whole, in one of two or three.
+// Returns random white material number `number`. Metalness, transmission and coat are each present, partly or fully,
+// in half of the materials.
 inline WhiteMaterial random_white(std::uint32_t number) {
   runtime::Sampler sampler(2026, number, 0, 0);
   const auto pick = [&](double low, double high) { return low + (high - low) * static_cast<double>(sampler.next()); };
@@ -50,15 +52,15 @@ inline WhiteMaterial random_white(std::uint32_t number) {
   return made;
 }
 
-// The scene, after `"version": 1`: the ball's disc touches the edges of a square picture.
+// Scene after `"version": 1`. The ball's disc touches the edges of a square image.
 inline std::string furnace(const std::string& material) {
   return R"("camera": {"type": "orthographic", "position": [0, 0, 3], "target": [0, 0, 0], "width": 2},
             "background": [1, 1, 1], "materials": {"m": )" +
          material + R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}])";
 }
 
-// The part of the light that the ball's disc returns, over `side` x `side` pixels of `spp` samples. What passes the
-// ball is 1.
+// Fraction of the light that the ball's disc returns, over `side` x `side` pixels with `spp` samples per pixel.
+// Samples that miss the ball have radiance 1 and are subtracted.
 inline double returned(const compiler::CompiledScene& scene, int side, int spp) {
   runtime::RenderOptions options;
   options.width = options.height = side;

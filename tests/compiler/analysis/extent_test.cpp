@@ -1,4 +1,4 @@
-// The box of a scene's parts that end.
+// Tests of a scene's extent: the box of its bounded parts.
 #include "compiler/analysis/extent.h"
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ using compiler::Box;
 using fathom::tests::compiled_objects;
 using glm::dvec3;
 
-// In the scene's coordinates.
+// Extent in the scene's coordinates.
 Box extent_of(const std::string& objects) {
   const compiler::CompiledScene scene = compiled_objects(objects);
   return scene.extent.moved(scene.origin);

@@ -1,4 +1,4 @@
-// Which parts of a graph are lamps, where they stand and how large they are.
+// Tests of the search for area lights: which nodes of a graph qualify, their positions and their sizes.
 #include "compiler/analysis/lamps.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
   CHECK(scene.surfaces[ball.surface].material == ball.material);
   CHECK(scene.materials[ball.material].name == "glow");
   CHECK(box.shape == Lamp::Shape::Box);
-  // Its z goes to x: counter-clockwise about y.
+  // The rotation takes z to x: counter-clockwise about y.
   CHECK(glm::length(place(box, {0, 0, 3}) - glm::dvec3(3, 0, 0)) < 1e-12);
   CHECK(box.half_size == glm::dvec3(1, 2, 3));
   CHECK((disc.shape == Lamp::Shape::Cylinder && disc.radius == 1 && disc.half_height == 0.01));
@@ -58,7 +58,7 @@ TEST_CASE("lamps: a quad stands in a plane of its own", "[lamps]") {
     area += 0.5 * (p.x * q.y - p.y * q.x);
   }
   CHECK(area == Approx(4 * 5));
-  // Lengths and the distance from the transform's fixed point stay.
+  // The transform preserves lengths (up to its scale) and the distance from its fixed point.
   CHECK(glm::length(place(quad, {quad.corners[0], 0}) - glm::dvec3(0, 1, 0)) == Approx(2 * std::sqrt(27.0)));
   CHECK(std::abs(glm::determinant(quad.rotation) - 1) < 1e-12);
 }
@@ -88,7 +88,8 @@ TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]")
       {"type": "sphere", "radius": 1, "translate": [6, 0, 0]}]})") == 2);
   const std::string twice = R"({"type": "sphere", "radius": 1, "material": "glow"})";
   CHECK(lamps_in(twice + "," + twice) == 1);
-  // The levelling of unions, which divides steep operands by their constants, hides no lamp.
+  // The level pass divides steep operands of a union by their Lipschitz constants. The pass must not hide an area
+  // light.
   CHECK(lamps_in(twice + R"(, {"type": "shear", "shift": [2, 0], "of": {"type": "box", "half_size": [1, 1, 1]}})") ==
         1);
 }
@@ -138,7 +139,7 @@ TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]
   };
   const Source source("scene.json", R"({"version": 1, "nodes": {)" + nodes + R"(}, "objects": [{"use": "n17"}]})");
   Diagnostics diagnostics;
-  compile(source, diagnostics, options);  // it needs too many instructions
+  compile(source, diagnostics, options);  // the scene needs too many instructions
   CHECK(found == kMaxLamps);
 }
 

@@ -1,4 +1,4 @@
-// The insides of transparent bodies, as the compiler sees them.
+// Interiors of transparent bodies, as the compiler finds them.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -31,7 +31,7 @@ TEST_CASE("media: one for each transparent material, opaque ones have none", "[c
   CHECK(value(scene.media[0], {5, 0, 0}) < 0);
   CHECK(value(scene.media[0], {9, 0, 0}) > 0);
   CHECK(value(scene.media[1], {9, 0, 0}) < 0);
-  // What is far away is not evaluated: two spheres, one sphere.
+  // The program of a medium leaves out bodies that are far away: two spheres here, one sphere there.
   CHECK(scene.media[0].distance.instructions() < scene.distance.instructions());
   CHECK(scene.media[1].distance.instructions() == 1);
   CHECK(with(R"("m": {"type": "diffuse"})", R"({"type": "sphere", "radius": 1, "material": "m"})").media.empty());
@@ -68,7 +68,7 @@ TEST_CASE("media: bodies are told apart within moved groups", "[compiler]") {
   CHECK(value(scene.media[0], {0, 0.5, 0}) > 0);
 }
 
-// Once, the part without a material of its own was taken for its neighbour's.
+// Regression: the part without a material of its own was taken for part of its neighbour.
 TEST_CASE("media: a body that has its material from above", "[compiler]") {
   const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "material": "glass", "of": [
       {"type": "sphere", "radius": 1},

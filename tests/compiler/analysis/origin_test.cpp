@@ -1,4 +1,5 @@
-// Scenes far from zero are compiled around an origin of their own: they mean what they meant, and are as exact.
+// The compiler gives scenes far from zero a local origin. The compiled scenes keep their meaning and are as exact as
+// near zero.
 #include "compiler/analysis/origin.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ Scene scene_of(std::uint64_t seed) {
   return random_scene(random, options);
 }
 
-// Of few digits, so that sums with the coordinates of points are exact.
+// Coordinates of few digits, so that sums with the coordinates of points are exact.
 dvec3 random_origin(Random& random, double most) {
   dvec3 origin;
   for (int i = 0; i < 3; ++i) origin[i] = std::round(random.uniform(-most, most) * 8) / 8;
@@ -49,7 +50,7 @@ Scene optimised(Scene scene) {
   return scene;
 }
 
-// A ball and a box at (x, 3, 0), and what else `more` says.
+// A ball and a box at (x, 3, 0), followed by the objects in `more`.
 std::string at(const std::string& x, const std::string& more = "") {
   return R"({"type": "union", "translate": [)" + x + R"(, 3, 0], "of": [{"type": "sphere", "radius": 1},
       {"type": "box", "half_size": [0.5, 0.25, 1], "translate": [1.25, 0, 0.5]}]})" +
@@ -101,7 +102,8 @@ TEST_CASE("origin: a scene moved far off and back is as it was, to what a double
   }
 }
 
-// What ends in transforms and planes is exact again; what keeps the scene's coordinates below says so.
+// Moving back makes a graph exact again if its branches end in transforms and planes. A node that keeps the scene's
+// coordinates below it reports a larger magnitude.
 TEST_CASE("origin: float errors of a scene brought back from far are within the bound", "[origin][bounds]") {
   vm::Workspace workspace;
   int fine = 0;
@@ -138,15 +140,15 @@ TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {
   CHECK(origin_of(at("10")) == dvec3(0));
   CHECK(origin_of(at("100000")) == dvec3(100000, 0, 0));
   CHECK(origin_of(at("-54321.25")) == dvec3(-54320, 0, 0));
-  CHECK(origin_of(at("0") + "," + at("100000")) == dvec3(0));  // as far from both
+  CHECK(origin_of(at("0") + "," + at("100000")) == dvec3(0));  // equally far from both
   CHECK(origin_of(R"({"type": "sphere", "radius": 1e-4, "translate": [5, 0, 0]})") == dvec3(5, 0, 0));
 }
 
-// A small thing beside a large one, a house in a town.
+// A small object next to a large one; a house in a town.
 TEST_CASE("origin: what the camera is close to counts when it is part of the scene", "[origin]") {
   CHECK(origin_of(at("0"), R"([1, 3, 0.01], "target": [1, 3, 0])") == dvec3(1, 3, 0));
   CHECK(origin_of(at("0") + "," + at("1000"), R"([1000, 3, 5], "target": [1000, 3, 0])") == dvec3(1000, 0, 0));
-  // A target that only says a direction.
+  // A camera target that only gives a direction.
   CHECK(origin_of(at("0"), R"([0, 3, 100], "target": [0, 3, 99])") == dvec3(0));
 }
 
@@ -159,7 +161,7 @@ TEST_CASE("origin: a formula keeps its coordinates, and a steep one the scene's 
   CHECK(near_formula("20") == dvec3(0));
 }
 
-// What a camera that looks from x over an endless floor shows is there, whatever else is in the scene.
+// A camera at x that looks along an endless floor shows geometry near x, whatever else is in the scene.
 TEST_CASE("origin: of an endless scene the camera's view counts", "[origin]") {
   const std::string floor = R"({"type": "plane", "normal": [0, 1, 0]})";
   const std::string there = R"([100000, 2, 5], "target": [100000, 1, 0])";
@@ -167,13 +169,13 @@ TEST_CASE("origin: of an endless scene the camera's view counts", "[origin]") {
   CHECK(origin_of(floor, there).x == 100000);
   CHECK(origin_of(at("100000", kFloor), there).x == 100000);
   CHECK(origin_of(R"({"type": "gyroid", "period": 1})", there).x == 100000);
-  // A crater in the floor; a column without end beside a ball.
+  // A crater in the floor; an infinite column next to a ball.
   CHECK(origin_of(R"({"type": "subtraction", "of": [{"type": "plane", "normal": [0, 1, 0]}, )" + at("1e5") + "]}",
                   there)
             .x == 100000);
   CHECK(origin_of(R"({"type": "infinite_cylinder", "radius": 1, "translate": [1e5, 0, 0]},)" + at("1e5"), there).x ==
         100000);
-  // A mountain at the horizon makes the ground before the camera no coarser.
+  // A mountain at the horizon does not coarsen the ground in front of the camera.
   CHECK(origin_of(floor + R"(, {"type": "sphere", "radius": 100, "translate": [10000, 0, 0]})",
                   R"([0, 2, 0], "target": [10000, 0, 0])") == dvec3(0));
 }
@@ -234,7 +236,7 @@ TEST_CASE("origin: what repeats without end is met where the camera is", "[origi
 }
 
 TEST_CASE("origin: what keeps the scene's coordinates says how coarse it is", "[origin]") {
-  // A turn about an axis a hundred thousand units away.
+  // A rotation about an axis a hundred thousand units away.
   const auto scene = compiled_objects(R"({"type": "twist", "turn": 1e-5, "of": {"type": "sphere", "radius": 1,
       "translate": [1e5, 0, 0]}}, {"type": "elongate", "half_size": [0, 0.5, 0], "of": {"type": "sphere",
       "radius": 1, "translate": [0, 1e5, 0]}})");

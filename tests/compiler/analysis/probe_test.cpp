@@ -15,7 +15,7 @@ using namespace fathom::compiler;
 
 const ProbeOptions kOptions{.points = 4000, .reach = 10, .threads = 1};
 
-// A box twisted about y, over a union with a ball, rounded: nothing of it levelled.
+// A box twisted about y, in a union with a ball, rounded. The level pass has not run.
 struct Twisted {
   Scene scene;
   NodeId twist;
@@ -102,7 +102,7 @@ TEST_CASE("all rows after the first take no more work than is allowed", "[probe]
   const NodeId ball = graph.add(Kind::Sphere, one, {});
   NodeId last = ball;
   for (int i = 0; i < 12; ++i) {
-    // Four doublings, then one node more each.
+    // Four doublings, then one more node per step.
     const double x = 1 + 0.1 * i;
     const auto moved = [&](NodeId node, double to) {
       return maker.make(Kind::Transform, std::vector<double>{1, 0, 0, -to, 0, 1, 0, 0, 0, 0, 1, 0, 1}, {{node}});

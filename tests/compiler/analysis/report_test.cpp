@@ -1,4 +1,4 @@
-// The exactness report and the lints, beside their golden files.
+// Tests of the exactness report and the lints, in addition to their golden files.
 #include "compiler/analysis/report.h"
 
 #include <catch2/catch.hpp>
@@ -53,7 +53,7 @@ TEST_CASE("the report has a row for each object, by its own field", "[report]") 
   CHECK(class_of(report.objects[0].knowledge) == "exact");
   CHECK_FALSE(report.objects[0].costliest);
   CHECK(class_of(report.objects[1].knowledge) == "bound");
-  // (kR + sqrt(k^2 R^2 + 4)) / 2 with k = pi/2, R a thousandth more than sqrt 2
+  // Lipschitz constant of the twist: (kR + sqrt(k^2 R^2 + 4)) / 2 with k = pi/2; R is a thousandth more than sqrt 2.
   const double radius = 1.001 * std::sqrt(2.0), kr = 1.5707963267948966 * radius,
                expected = (kr + std::sqrt(kr * kr + 4)) / 2;
   CHECK(report.objects[2].lipschitz == Approx(expected));
@@ -110,7 +110,8 @@ TEST_CASE("one union as the only object is one object", "[report]") {
   CHECK(report.objects[0].name == "pair");
 }
 
-// Once, a lamp in a glass ball sent out no light, it said, and a camera under water had to move.
+// Regression: a lint said that an area light inside a glass ball emits no light and that a camera under water must
+// move.
 TEST_CASE("what is within glass shows", "[report]") {
   const std::string outer = R"("camera": {"position": [1.5, 0, 0]}, "objects": [
       {"type": "sphere", "radius": 2, "material": "glass"}, {"type": "sphere", "radius": 1)";

@@ -1,5 +1,5 @@
-// Compiled scenes as bytes and as text: both read back to themselves; every part of a file that is wrong is refused
-// with its place, and whatever is accepted is sound.
+// Compiled scenes as bytes and as text: both forms read back as the same scene. The reader refuses every wrong part
+// of a file and names its position, and whatever the reader accepts is valid.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -28,7 +28,7 @@ using compiler::FileError;
 using Bytes = std::vector<std::uint8_t>;
 using Catch::Matchers::Contains;
 
-// Every table has something in it.
+// Scene that puts at least one entry into every table of a file.
 constexpr const char* kEverything = R"scene({
   "version": 1,
   "params": {"r": {"default": 0.5, "min": 0.1, "doc": "of the \"ball\" \\"}},
@@ -66,7 +66,7 @@ CompiledScene opened(const Bytes& bytes) {
   return std::get<CompiledScene>(std::move(scene));
 }
 
-// Why the bytes are refused; "" when they are not.
+// Returns why the reader refuses the bytes, or "" if it accepts them.
 std::string reason_of(const Bytes& bytes) {
   const auto stored = compiler::read_stored(bytes, "test.fbc");
   const auto* error = std::get_if<FileError>(&stored);
@@ -106,7 +106,7 @@ TEST_CASE("every shipped scene reads back from its bytes and from its listing", 
   int count = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
-    // Ten thousand of one node show the sanitizers no more than d1000 does.
+    // Scenes of ten thousand copies of a node show the sanitizers no more than the scene d1000 does.
     const bool few_cases = few(8) < 8;
     if (few_cases && entry.file_size() > 500'000) continue;
     INFO(entry.path().string());
@@ -167,7 +167,7 @@ TEST_CASE("a file that was cut or changed anywhere is refused", "[artefact]") {
   CHECK(reason_of(longer) == "1 bytes follow its last section");
 }
 
-// Whoever changes a file can make its digests right, too.
+// An attacker who changes a file can also correct its digests.
 TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]") {
   const Sections parts = without_text(compiler::write_file(tests::compiled(kEverything)));
   vm::Workspace workspace;
@@ -292,8 +292,8 @@ TEST_CASE("what a file claims counts for nothing without the text", "[artefact]"
   REQUIRE(liar.certified);
   const CompiledScene honest = compiler::unproved(liar);
   CHECK_FALSE(honest.certified);
-  CHECK(honest.bound.finite());          // interval arithmetic shows that there is nothing outside
-  CHECK(honest.lipschitz == Approx(1));  // as intervals show
+  CHECK(honest.bound.finite());          // interval arithmetic proves that nothing lies outside
+  CHECK(honest.lipschitz == Approx(1));  // proved by intervals, too
   CHECK_THAT(honest.summary, Contains("not proved") && !Contains("(proved)"));
   liar.lipschitz = 0.02;
   CHECK(compiler::unproved(liar).lipschitz == Approx(1));
@@ -322,7 +322,7 @@ TEST_CASE("names of any length and with any printable characters read back", "[a
   check_round_trips(scene);
 }
 
-// A pattern of the one before and itself again: each doubles the work at a point.
+// Each pattern uses the previous pattern twice, so each doubles the work per point.
 TEST_CASE("patterns that share others may not make a point dear without end", "[artefact]") {
   CompiledScene scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1})");
   scene.textures = {glm::dvec3(1)};

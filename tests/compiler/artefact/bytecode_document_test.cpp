@@ -1,5 +1,5 @@
-// docs/BYTECODE.md says what the table of opcodes and the list of fields say. FATHOM_UPDATE_GOLDEN=1 in the
-// environment rewrites both parts of it.
+// Checks that docs/BYTECODE.md contains the current table of opcodes and list of fields. FATHOM_UPDATE_GOLDEN=1 in
+// the environment rewrites both parts of the document.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -33,7 +33,7 @@ std::string opcode_table() {
     const vm::OpcodeInfo& row = *vm::find_opcode(i);
     std::string meaning = kMeanings[i];
     if (meaning.front() == '"')
-      meaning = meaning.substr(1, meaning.size() - 2);  // a machine row's is a sentence
+      meaning = meaning.substr(1, meaning.size() - 2);  // the meaning of a machine row is a sentence
     else
       meaning = "`" + meaning + "`";
     text +=
@@ -43,7 +43,7 @@ std::string opcode_table() {
   return text;
 }
 
-// Writes down what fields there are and of which types, instead of their values.
+// Archive that records the names and types of the fields instead of their values.
 class FieldTable : public Archive {
  public:
   void begin(std::string_view name) override {
@@ -105,7 +105,7 @@ class FieldTable : public Archive {
   int count_ = 0;
 };
 
-// One of each, also of what has several forms.
+// Scene with at least one of each field, including every form of the fields that have several.
 std::string field_table() {
   CompiledScene scene = tests::compiled(R"scene({
     "version": 1, "params": {"r": {"default": 1}},
@@ -131,7 +131,7 @@ std::string field_table() {
   return table.table();
 }
 
-// The document with what stands between the marks replaced.
+// Returns the document with the text between the marks replaced by `part`.
 std::string with_part(const std::string& document, const std::string& mark, const std::string& part) {
   const std::string begin = "<!-- " + mark + " -->\n";
   const std::size_t at = document.find(begin) + begin.size(), end = document.find("<!-- end -->", at);

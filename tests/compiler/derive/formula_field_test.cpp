@@ -1,4 +1,4 @@
-// Formulas as fields: the bounds that are proved for them, and the boxes of what they displace.
+// Formulas as fields: the bounds that the compiler proves for them, and the boxes of displaced nodes.
 #include "compiler/derive/formula_field.h"
 
 #include "compiler/derive/formula_bound.h"
@@ -25,7 +25,7 @@ using compiler::Knowledge;
 using compiler::Scene;
 using glm::dvec3;
 
-// The scene of one object as it is read, before any pass.
+// Graph of one object as the front end makes it, before any pass.
 Scene scene_of(const std::string& object) {
   compiler::CompileOptions options;
   options.stop_after = "graph";
@@ -78,7 +78,7 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
   }
 }
 
-// Of hundreds of pieces, of which the parts that prove the bound hold a few.
+// Formulas of hundreds of pieces. The specialised parts that prove the bound hold a few pieces each.
 TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
   for (int seed = 0; seed < few(6); ++seed) {
     Random random(seed);
@@ -113,7 +113,8 @@ TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
   }
 }
 
-// Once, the box was grown four times and then taken as it was, over which the formula's bound did not hold.
+// Regression: the compiler grew the box four times and then used the box even if the formula's bound did not hold
+// over it.
 TEST_CASE("a displaced node's box holds it", "[formula_field]") {
   for (const char* formula :
        {"0.5*x", "0.9*y", "0.3*sin(5*x)", "-0.2", "0.1*x*y", "0.05*x^2 - 0.5", "0.4*x + 0.4*y", "-0.4*abs(x)"}) {
@@ -126,7 +127,7 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
     Random random(3);
     for (int i = 0; i < 20000; ++i) {
       const dvec3 p = random.in_box(12);
-      // The ball and its formula without any box.
+      // `free` is the distance of the displaced ball without the box.
       const compiler::NodeId sum = scene.graph.children(scene.root)[0];
       const double free = judge_distance(scene.graph, sum, p), boxed = judge_distance(scene.graph, scene.root, p);
       if (!k.box.contains(p)) REQUIRE(free > 0);

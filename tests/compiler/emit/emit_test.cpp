@@ -1,4 +1,4 @@
-// The text of emitted code: what it calls things, what it says of the scene, that it does not say too much.
+// The text of emitted code: names, comments about the scene, and length.
 #include "compiler/emit/emit.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-// What follows the last line that begins with `begin`.
+// Returns the text from the last line that begins with `begin`.
 std::string tail(const std::string& text, const std::string& begin) {
   const std::size_t at = text.rfind('\n' + begin);
   REQUIRE(at != text.npos);

@@ -1,4 +1,4 @@
-// A lane type that has what the head of emitted C++ asks for and nothing else.
+// A lane type with exactly the operations that the head of emitted C++ requires.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -72,7 +72,7 @@ Pair<F> max(const Pair<F>& a, const Pair<F>& b) {
 
 }  // namespace pairs
 
-// Lanes of doubles say so.
+// Lanes of doubles must declare their scalar type.
 template <>
 struct showcase::lanes<pairs::Pair<double>> {
   using scalar = double;

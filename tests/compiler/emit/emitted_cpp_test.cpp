@@ -1,4 +1,5 @@
-// What `fathom emit cpp` writes, compiled with these tests: the machine's bits, in float and in double.
+// Compiles the output of `fathom emit cpp` with these tests and compares it bit for bit with the machine, in float
+// and in double.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,7 +28,7 @@ namespace {
 
 constexpr std::size_t kPoints = 3000;
 
-// Ordinary points; some on planes and axes, where ties are; some far out, or nowhere.
+// Ordinary points; some on planes and axes, where operands tie; some far out, infinite or NaN.
 Cloud cloud_around(std::uint64_t seed) {
   static const float kRare[] = {0.f,
                                 -0.f,
@@ -54,7 +55,7 @@ std::uint64_t bits_of_double(double d) {
   return std::bit_cast<std::uint64_t>(std::isnan(d) ? std::numeric_limits<double>::quiet_NaN() : d);
 }
 
-// Of how many points each gives other bits than the machine.
+// Number of points at which the emitted code differs from the machine in any bit.
 struct Differing {
   std::size_t floats = 0, doubles = 0;
 };
@@ -62,7 +63,7 @@ Differing differing(const compiler::CompiledScene& scene, float (*in_float)(floa
                     double (*in_double)(double, double, double)) {
   const Cloud cloud = cloud_around(99);
   vm::Workspace workspace;
-  // The machine takes places relative to the origin, which the emitted function subtracts itself.
+  // The machine takes points relative to the scene's origin. The emitted function subtracts the origin itself.
   const auto moved = [](float a, double by) { return by == 0 ? a : a - static_cast<float>(by); };
   Cloud relative;
   for (std::size_t i = 0; i < kPoints; ++i) {

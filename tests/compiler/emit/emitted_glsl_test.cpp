@@ -1,5 +1,5 @@
-// What `fathom emit glsl` writes: that it is GLSL, by the reference compiler, and what it computes, compiled with
-// these tests as C++ over GLM, whose names are GLSL's.
+// Tests of `fathom emit glsl`. The reference compiler checks that the output is GLSL. The values are checked by
+// compiling the output with these tests as C++ over GLM, whose names are GLSL's.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -21,13 +21,13 @@
 namespace fathom::test::emitted_glsl_test {
 namespace {
 
-// Whether the text calls a function whose accuracy GLSL leaves open.
+// True if the text calls a function whose accuracy GLSL does not specify.
 bool has_elementary(const std::string& text) {
   static const std::regex kCall("[^_a-z](sin|cos|tan|exp|log|atan)\\(");
   return std::regex_search(text, kCall);
 }
 
-// A fragment shader that calls every function, so that none is left unlinked.
+// Fragment shader that calls every function, so that the compiler checks all of them.
 std::string shader(const std::string& version) {
   std::string text = "#version " + version + "\nprecision highp float;\nout vec4 colour;\n", sum;
   for (const EmittedProgram& program : emitted_programs()) {
@@ -57,7 +57,7 @@ TEST_CASE("emitted GLSL is GLSL ES 3.00 and GLSL 3.30", "[emit]") {
     std::string line;
     for (std::ifstream log(folder.path() / "log"); std::getline(log, line);) UNSCOPED_INFO(line);
     std::ofstream(folder.path() / "scene.frag") << shader(version) + "float broken = true;\n";
-    CHECK(std::system(command.c_str()) != 0);  // it does look
+    CHECK(std::system(command.c_str()) != 0);  // the reference compiler does detect errors
   }
 }
 

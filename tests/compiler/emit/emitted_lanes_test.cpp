@@ -1,4 +1,5 @@
-// Emitted C++ over the machine's lanes, on every instruction set: the machine's bits.
+// Compiles emitted C++ over the machine's lanes and compares it bit for bit with the machine, on every instruction
+// set.
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// What scenes say of their animation.
+// Tests of the animation settings of scenes.
 #include "compiler/frontend/animation.h"
 
 #include <catch2/catch.hpp>

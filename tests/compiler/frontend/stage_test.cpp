@@ -1,4 +1,4 @@
-// Models from elsewhere, and what they are looked at with.
+// Staging of imported models: the front end adds a ground, a light and a camera.
 #include "compiler/frontend/stage.h"
 
 #include <catch2/catch.hpp>
@@ -11,7 +11,7 @@
 namespace fathom::compiler::stage_test {
 namespace {
 
-// Half a ball of radius 0.6, its flat side up, and a thin leg down to y = -0.8.
+// Half a ball of radius 0.6 with its flat side up, and a thin leg down to y = -0.8.
 const char* const kBowl =
     "x var-x\ny var-y\nz var-z\nxx square x\nyy square y\nzz square z\na add xx yy\nb add a zz\nc sqrt b\n"
     "r const 0.6\nball sub c r\nbowl max ball y\np add xx zz\nq sqrt p\nw const 0.05\npole sub q w\nl const -0.8\n"
@@ -40,7 +40,8 @@ double distance(const CompiledScene& scene, const glm::dvec3& p) {
 TEST_CASE("stage: the lowest point of a solid, to a thousandth of its box") {
   const CompiledScene bowl = compiled(kBowl, false);
   CHECK(lowest(bowl.distance, bowl.extent) == Approx(-0.8).margin(2e-3));
-  CHECK(lowest(bowl.distance, {glm::dvec3(-1, 0.5, -1), glm::dvec3(1, 1, 1)}) == 0.5);  // nothing is solid there
+  // The box contains nothing solid.
+  CHECK(lowest(bowl.distance, {glm::dvec3(-1, 0.5, -1), glm::dvec3(1, 1, 1)}) == 0.5);
 }
 
 TEST_CASE("stage: a model stands on a ground, is lit, and is framed") {
@@ -52,11 +53,11 @@ TEST_CASE("stage: a model stands on a ground, is lit, and is framed") {
     REQUIRE(staged.lights.size() == 1);
     CHECK(staged.camera.automatic);
     CHECK(staged.surfaces.size() == bare.surfaces.size() + 1);
-    // Far from the model there is nothing but the ground; where it stands the two touch.
+    // Far from the model there is only the ground. The model touches the ground.
     CHECK(distance(staged, {40, bottom + 1, 0}) == Approx(1).margin(3e-3));
     CHECK(distance(bare, {40, bottom + 1, 0}) > 30);
     CHECK(distance(bare, {text == kBall ? -0.4 : 0.0, bottom, 0}) == Approx(0).margin(3e-3));
-    // Three quarters above, and the whole model in the picture.
+    // Three-quarter view from above, with the whole model in the image.
     const glm::dvec3 towards = staged.camera.target - staged.camera.position;
     CHECK(towards.y < 0);
     CHECK(staged.camera.position.y + staged.origin.y > bottom + 1);

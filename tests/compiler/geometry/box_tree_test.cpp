@@ -1,4 +1,4 @@
-// Boxes found by the tree are those that a look at each finds.
+// The box tree finds the same boxes as a test of each box.
 #include "compiler/geometry/box_tree.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Hash-consing and the listing.
+// Tests of hash-consing and of the graph's listing.
 #include "compiler/graph/graph.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Fused programs: the same bits as the plain ones, on every evaluator, and nothing left to fuse.
+// Fused programs have the same bits as plain ones on every evaluator, and leave nothing to fuse.
 #include "compiler/lower/fuse.h"
 
 #include <bit>
@@ -23,13 +23,13 @@ using vm::Opcode;
 std::uint64_t bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
 
-// NaNs are one: which of two a sum hands on is the processor's business.
+// All NaNs count as equal: the processor decides which of two NaN operands a sum returns.
 template <class Number>
 bool same(Number a, Number b) {
   return bits(a) == bits(b) || (std::isnan(a) && std::isnan(b));
 }
 
-// In float, many points at a time; then in double, over a box, with gradient, with slope.
+// Compares distance and surface of many points in float, then distance, surface, range and slope bound in double.
 void check_same(const vm::VerifiedProgram& plain, const vm::VerifiedProgram& fused, Random& random) {
   constexpr std::size_t kPoints = 150;
   vm::Workspace workspace;
@@ -74,7 +74,7 @@ void check_same(const vm::VerifiedProgram& plain, const vm::VerifiedProgram& fus
   }
 }
 
-// The listing without heading, offsets and heights: one operation a line.
+// The listing without heading, offsets and stack heights: one operation per line.
 std::string operations(const vm::VerifiedProgram& program) {
   std::string all;
   const std::string text = vm::disassemble(program);
@@ -138,7 +138,7 @@ TEST_CASE("functions take coordinates, constants and locals for operands", "[fus
   CHECK(fused({ball, {Opcode::Translate, {1, 0, 0}}, x, sine, {Opcode::Drop}, least}) ==
         "sphere 0.5\ntranslate 1 0 0\nsin x\ndrop\nmin\n");
   CHECK(fused({ball, two, {Opcode::SmoothMin, {0.5, 0.5}}}) == "sphere 0.5\nsmooth_min _ 2 0.5 0.5\n");
-  // Two locals, of which an operand names one.
+  // Two locals, of which an instruction's operand can name one.
   CHECK(fused({ball, {Opcode::Tee, {}, 0}, x, sine, tee, minus, {Opcode::Load, {}, 0}, load, minus, least}) ==
         "sphere 0.5\ntee 0\nsin x\ntee 1\nminus\nload 0\nminus _ %1\nmin\n");
 }
@@ -157,7 +157,7 @@ TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
     check_same(verified(*plain), verified(once), random);
     CHECK(once.words.size() <= plain->words.size());
     CHECK(compiler::fuse(once).words == once.words);
-    // Every instruction keeps the place it comes from.
+    // Every instruction keeps its source location.
     REQUIRE(once.debug.size() == verified(once).instructions());
   }
   for (int seed = 0; seed < few(1000); ++seed) {

@@ -1,5 +1,5 @@
-// What the compiler makes of scenes: tests/golden/listings/*.txt hold a scene, and its graph after each pass that
-// changed it and both programs' listings.
+// Golden listings: tests/golden/listings/*.txt hold a scene, its graph after each pass that changed the graph, and
+// the listings of both programs.
 #include <catch2/catch.hpp>
 
 #include "compiler/compile.h"
@@ -81,7 +81,7 @@ TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[
   }
 }
 
-// Once, a long chain of named nodes overflowed the call stack.
+// Regression: a long chain of named nodes overflowed the call stack.
 TEST_CASE("a chain of a hundred thousand nodes compiles", "[compile]") {
   const int links = test::few(100000);
   std::string nodes = R"("n0": {"type": "sphere", "radius": 1})";

@@ -1,5 +1,5 @@
-// Every pass leaves the field and the surfaces as they were, and has nothing left to do on its own result; the code
-// that lowering makes of a graph means what the graph means.
+// Every pass preserves the field and the surfaces, and finds nothing to do in its own result. Lowering preserves the
+// meaning of the graph.
 #include "compiler/passes/passes.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::size_t nodes(const Scene& scene) {
   return static_cast<std::size_t>(std::count(reached.begin(), reached.end(), true));
 }
 
-// What the judge says of a scene at some points.
+// Verdicts of the judge on a scene at random points.
 struct Judged {
   std::vector<dvec3> points;
   std::vector<Verdict> verdicts;
@@ -61,7 +61,8 @@ Judged judged(const Scene& scene, int seed, int points) {
   return result;
 }
 
-// The distances agree everywhere (or their signs do), the surfaces away from ties.
+// Checks that the distances agree (or only their signs, for a pass that preserves no more), and that the surfaces
+// agree away from ties.
 void check_same(const Judged& before, const Scene& after, const Pass& pass) {
   for (std::size_t i = 0; i < before.points.size(); ++i) {
     const dvec3 p = before.points[i];
@@ -105,7 +106,7 @@ TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
   }
 }
 
-// All but those that leave no more than the sign.
+// All passes except those that preserve only the sign.
 TEST_CASE("all passes together leave the field as it was, and so does lowering", "[passes][lower]") {
   vm::Workspace workspace;
   for (int seed = 0; seed < few(400); ++seed) {
@@ -153,7 +154,7 @@ TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
   }
 }
 
-// The paint further in wins, whatever lies around it (compiler/graph/graph.h).
+// The innermost paint wins, whatever paint lies around it (compiler/graph/graph.h).
 TEST_CASE("paint within paint", "[lower]") {
   Scene scene;
   const auto add = [&](Kind kind, std::vector<double> params, std::vector<compiler::NodeId> children) {
@@ -198,7 +199,7 @@ TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
       const double distance = judge_distance(scene.graph, scene.root, p);
       INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
       if (!known.box.contains(p)) CHECK(distance > -1e-12);
-      // How far outside the box, along the axes and as the crow flies.
+      // Distance outside the box per axis, for its Euclidean and its maximum norm.
       const dvec3 beyond = glm::max(dvec3(0), glm::max(known.box.lo - p, p - known.box.hi));
       const bool outside = !known.box.contains(p);
       if (outside) CHECK(distance >= known.reach * glm::length(beyond) * (1 - 1e-9) - 1e-9);

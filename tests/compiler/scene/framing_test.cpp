@@ -1,4 +1,4 @@
-// Cameras that show the whole of a box, by the rays that the renderer sends.
+// Cameras that show the whole of a box, tested with the rays that the renderer traces.
 #include "compiler/scene/framing.h"
 
 #include <catch2/catch.hpp>
@@ -20,7 +20,8 @@ dvec3 corner(const Box& box, int i) {
   return {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
 }
 
-// How far out in the picture the box reaches to either side: 1 is the picture's edge. NaN when a corner is behind.
+// How far the box reaches towards each side of the image: 1 is the image's edge. NaN when a corner is behind the
+// camera.
 struct Reach {
   double left = 0, right = 0, down = 0, up = 0;
   double across() const { return std::max(left, right); }
@@ -81,8 +82,8 @@ TEST_CASE("framing: all corners are in the picture and two sides are at the marg
     CAPTURE(i, width, height, reach.left, reach.right, reach.down, reach.up);
     constexpr double kEdge = 1 - 2 * compiler::kFrameMargin;
     CHECK(std::max(reach.across(), reach.along()) <= kEdge + 1e-6);
-    // The tighter axis is at the margin on both sides.
-    // Or a wide view ends where the nearest corner would be too close to the eye.
+    // The tighter axis touches the margin on both sides. A wide view is the exception: it stops before the nearest
+    // corner comes too close to the eye.
     const dvec3 forward = glm::normalize(framed->target - framed->position);
     double nearest = INFINITY;
     for (int c = 0; c < 8; ++c) nearest = std::min(nearest, glm::dot(corner(box, c) - framed->position, forward));
@@ -111,7 +112,7 @@ TEST_CASE("framing: no camera shows what is nothing, has no end or is beyond num
   CHECK(!compiler::framed(camera, Box::everything(), 1));
   CHECK(!compiler::framed(camera, Box::centred(dvec3(1e200)), 1));
   CHECK(!compiler::framed(camera, Box::centred(dvec3(0)), 1));
-  const auto tiny = compiler::framed(camera, Box{{1e6, 0, 0}, {1e6, 0, 0}}, 1);  // a place far off
+  const auto tiny = compiler::framed(camera, Box{{1e6, 0, 0}, {1e6, 0, 0}}, 1);  // a point far from the origin
   REQUIRE(tiny);
   CHECK(glm::length(tiny->target - tiny->position) > 0.1);
 }

@@ -1,4 +1,4 @@
-// What the compiler knows of float errors and stretches; boxes and Lipschitz constants are in passes_test.cpp.
+// The compiler's bounds of float errors and operator norms. Boxes and Lipschitz constants are in passes_test.cpp.
 #include "compiler/shapes/bounds.h"
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ namespace {
 using namespace fathom;
 using fathom::tests::compiled_objects;
 
-// Largest |float - double| over d_f at random points near the surface within `size` of the origin.
+// Max |float - double| relative to d_f, at random points near the surface within `size` of the origin.
 double largest_error(const compiler::CompiledScene& scene, double size) {
   const runtime::Field field = runtime::make_field(scene);
   test::Random random(1);
@@ -27,7 +27,7 @@ double largest_error(const compiler::CompiledScene& scene, double size) {
     const float x = static_cast<float>(random.uniform(-size, size)),
                 z = static_cast<float>(random.uniform(-size, size));
     float y = 0;
-    for (int step = 0; step < 8; ++step) {  // onto the surface below or above
+    for (int step = 0; step < 8; ++step) {  // moves the point vertically onto the surface
       const double d = vm::evaluate_distance(scene.distance, glm::dvec3(x, y, z), workspace);
       y = static_cast<float>(y - d);
     }
@@ -42,7 +42,8 @@ double largest_error(const compiler::CompiledScene& scene, double size) {
 
 }  // namespace
 
-// Once, d_f followed the ray's coordinates alone and was a thousand times too small where large numbers cancel.
+// Regression: d_f depended on the ray's coordinates alone and was a thousand times too small where large numbers
+// cancel.
 TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
   for (const char* r : {"1", "100", "10000", "1000000"}) {
     const std::string s(r);
@@ -67,7 +68,7 @@ TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
   }
 }
 
-// Once, a lamp far away would have made every distance look uncertain.
+// Regression: a light far away would have made every distance look uncertain.
 TEST_CASE("what is far away costs nothing here", "[bounds]") {
   CHECK(compiled_objects(
             R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
@@ -76,7 +77,7 @@ TEST_CASE("what is far away costs nothing here", "[bounds]") {
         0.1);
 }
 
-// Once, the least stretch was computed from squares and lost its digits beside a large one.
+// Regression: the smallest singular value was computed from squares and lost its digits next to a large one.
 TEST_CASE("stretches of nested scales", "[bounds]") {
   for (const double b : {1.0, 1e2, 1e4, 1e6}) {
     using glm::dvec3;

@@ -1,5 +1,5 @@
-// Folded, repeated and bent space where it once went wrong; in general it is judged over random graphs
-// (passes_test.cpp) and by rays (tests/catalogue/warps_test.cpp).
+// Regression tests of folded, repeated and bent space. The general tests use random graphs (passes_test.cpp) and rays
+// (tests/catalogue/warps_test.cpp).
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -28,14 +28,15 @@ NodeId over(NodeMaker& maker, Kind kind, const std::vector<double>& params, Node
   return maker.make(kind, params, children);
 }
 
-// A solid whose value changes by no more than a two-hundredth of the way walked.
+// Solid with a small Lipschitz constant: its value changes by at most 1/200 of the distance moved.
 NodeId gentle(NodeMaker& maker, dvec3 lo, dvec3 hi) {
   const NodeId x = maker.make(Kind::X, {}, {});
   const NodeId operands[] = {x, maker.make(Kind::Constant, {{0.005}}, {})};
   return compiler::make_bounded(maker, maker.make(Kind::Multiply, {}, operands), {lo, hi}, {});
 }
 
-// Nowhere may a value change faster than the node's constant says, in double by the judge and by the machine.
+// Checks that no value changes faster than the node's Lipschitz constant allows, in double, by the judge and by the
+// machine.
 void check_slopes(const Scene& scene, double size) {
   const vm::VerifiedProgram program = plain_lowering(scene);
   const double lipschitz = compiler::analyse(scene.graph)[scene.root].lipschitz;
@@ -53,7 +54,8 @@ void check_slopes(const Scene& scene, double size) {
 
 }  // namespace
 
-// Once, these kept a child's constant below 1, while the distance of their own box is part of the result.
+// Regression: these nodes kept a child's Lipschitz constant below 1, although the distance to their own box is part
+// of the result.
 TEST_CASE("what adds a distance of its own changes by at least that", "[domain]") {
   const auto check = [](Kind kind, const std::vector<double>& params, dvec3 lo, dvec3 hi) {
     Scene scene;
@@ -73,8 +75,8 @@ TEST_CASE("what adds a distance of its own changes by at least that", "[domain]"
   check(Kind::Taper, {1, 0.5, 1}, {-1, -1, -1}, {1, 1, 1});
 }
 
-// Once, an axis without jitter of its own asked the nearest copy alone: its neighbour is no mirror image where both
-// are moved along another axis.
+// Regression: along an axis without jitter only the nearest copy was evaluated. The neighbour is not a mirror image
+// of that copy if the copies are jittered along another axis.
 TEST_CASE("copies that are moved along one axis have neighbours along the others", "[domain]") {
   for (int axis = 0; axis < 3; ++axis) {
     Scene scene;
@@ -88,8 +90,8 @@ TEST_CASE("copies that are moved along one axis have neighbours along the others
   }
 }
 
-// Once, the way to the copies left out was 0 on the axis, where all half-planes meet: rays along it hit nothing
-// there.
+// Regression: the lower bound for omitted copies was 0 on the axis, where all half-planes meet, so rays along the
+// axis hit something that is not there.
 TEST_CASE("the axis of a polar repetition is as far from the copies as they are", "[domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
@@ -103,7 +105,8 @@ TEST_CASE("the axis of a polar repetition is as far from the copies as they are"
   CHECK(vm::evaluate_distance(program, {1e-3, 0, 0}, workspace) == Approx(1.799));
 }
 
-// Once, each copy rounded a cell's side in its own way, and just below it one was left out: a slit through the solid.
+// Regression: each copy rounded the side of a cell differently, and just below the side one copy was omitted: a slit
+// through the solid.
 TEST_CASE("no copy is lost at the side of a cell", "[domain]") {
   const auto check = [](Kind kind, const std::vector<double>& params, dvec3 ball, double radius, dvec3 side,
                         dvec3 step) {
@@ -137,7 +140,7 @@ TEST_CASE("no copy is lost at the side of a cell", "[domain]") {
   }
 }
 
-// Once, beyond the last copies the same one was evaluated again and again in place of its neighbours.
+// Regression: beyond the last copies, the machine evaluated the last copy repeatedly instead of its neighbours.
 TEST_CASE("beyond the last copies their neighbours still count", "[domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
@@ -152,7 +155,7 @@ TEST_CASE("beyond the last copies their neighbours still count", "[domain]") {
   CHECK(vm::evaluate_distance(plain_lowering(scene), {3.0001, 0, 0}, workspace) == Approx(0.3001));
 }
 
-// Once, a normal whose squares vanish was no unit vector.
+// Regression: a mirror normal whose squares underflow was not normalised.
 TEST_CASE("mirrors of any length of normal are the same mirror", "[domain]") {
   vm::Workspace workspace;
   for (const double length : {1.0, 1e-161, 1e-300, 1e200}) {
@@ -166,17 +169,17 @@ TEST_CASE("mirrors of any length of normal are the same mirror", "[domain]") {
   }
 }
 
-// Once, a child that is its own mirror image was taken to stay exact when it is pulled apart; in the middle its
-// nearest point can lie off the plane.
+// Regression: the compiler assumed that a child symmetric about the plane stays exact under Elongate. In the middle
+// the child's nearest point can lie off the plane.
 TEST_CASE("a node pulled apart is a bound", "[domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
   scene.root = over(maker, Kind::Elongate, {1, 0, 0}, maker.make(Kind::BoxFrame, {{0.5, 1.0, 1.0, 0.1}}, {}));
   CHECK(maker.known(scene.root).outside == compiler::Exactness::Bound);
-  CHECK(judge_distance(scene.graph, scene.root, {0, 0, 0}) < 0.9);  // of 1.1
+  CHECK(judge_distance(scene.graph, scene.root, {0, 0, 0}) < 0.9);  // the true distance is 1.1
 }
 
-// Once, the copies of a tiny period were counted in an int.
+// Regression: the number of copies of a tiny period overflowed an int.
 TEST_CASE("more copies than can be counted are refused", "[domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);

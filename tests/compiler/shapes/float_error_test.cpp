@@ -1,5 +1,5 @@
-// Float errors of shapes and alterations of any proportion, against the bound that the compiler knows: near the
-// surface at most kFloatError * (max(1, |p|, |d|) + magnitude) (compiler/graph/knowledge.h).
+// Float errors of shapes and alterations of any proportion, compared with the compiler's bound. Near the surface the
+// error is at most kFloatError * (max(1, |p|, |d|) + magnitude) (compiler/graph/knowledge.h).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,15 +26,15 @@ using compiler::Scene;
 using compiler::Sort;
 using glm::dvec3;
 
-// Lengths each made up to 10^4 times longer, on their own: fat rings, needles, wide floors. Nothing when they do not
-// fit together any more.
+// Random parameters with each length scaled on its own by up to 10^4: fat rings, needles, wide floors. Returns
+// nullopt when the lengths no longer fit together.
 std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
   const compiler::NodeSpec& row = compiler::spec(kind);
   std::vector<double> params = random_params(kind, random);
   const auto stretch = [&](double& length) {
     if (random.chance(0.5)) length = static_cast<float>(length * std::pow(10.0, random.uniform(0, 4)));
   };
-  if (kind == Kind::Quad) {  // whose corners must stay in a plane
+  if (kind == Kind::Quad) {  // its corners must stay in a plane
     const double factor = std::exp2(random.below(14));
     for (double& length : params) length *= factor;
     return params;
@@ -52,7 +52,8 @@ std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
   return params;
 }
 
-// The largest error as a part of what is allowed, at points near the surface; 0 when float cannot hold the program.
+// Max error at points near the surface, relative to the allowed error. Returns 0 when the program's numbers do not
+// fit into float.
 double largest_error(const Scene& scene, bool flat, Random& random, int points) {
   auto result = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1'000'000));
   const auto* program = std::get_if<vm::VerifiedProgram>(&result);
@@ -84,7 +85,8 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
 
 }  // namespace
 
-// Once, fat rings, needles of triangles and long stars had nothing to say of the far corners they are evaluated from.
+// Regression: the magnitude of fat rings, needle triangles and long stars ignored the far corners that their code
+// computes from.
 TEST_CASE("float errors of shapes of any proportion are within the bound", "[bounds]") {
   for (const Sort sort : {Sort::Solid, Sort::Outline}) {
     for (const Kind kind : primitive_kinds(sort, false)) {
@@ -102,7 +104,7 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
   }
 }
 
-// Once, these moved a child from far off without saying so.
+// Regression: these nodes move a child in from far away, but their magnitude did not include the distance.
 TEST_CASE("float errors of what brings a child from far off are within the bound", "[bounds]") {
   Random random(1);
   for (const double far : {1.0, 1e3, 1e6}) {
@@ -122,15 +124,15 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
     check(Kind::Taper, {1 / far, 1 / far, 1}, Kind::Cylinder, {far, 0.125});
     check(Kind::Taper, {1 / far, 1 / far, 1}, Kind::InfiniteCylinder, {far});
     check(Kind::Extrude, {1}, Kind::IsoscelesTriangle, {far, far});
-    if (far > 1e3) continue;  // the copies that count are too many
+    if (far > 1e3) continue;  // too many copies would count
     const double beside = 0.25 * far / 10;
     check(Kind::Repetition, {1, 0, 0, 0, 0, 0, 0, 0, 0}, Kind::Triangle,
           {beside, 0, 0, beside + 0.25, 0, 0, beside, 0.25, 0.125, 0.125});
   }
 }
 
-// Once, a twist's or taper's tube touched the solid's own edges, and there its distance, many times as steep, joined
-// in.
+// Regression: the tube around a twist or taper touched the solid's own edges, where the tube's distance, many times
+// as steep, entered the result.
 TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bounds]") {
   for (const auto& [kind, params] : {std::pair(Kind::Taper, std::vector<double>{0.3, 1, 0.001}),
                                      std::pair(Kind::Twist, std::vector<double>{2000})}) {

@@ -1,4 +1,5 @@
-// Gradients of every primitive and of random graphs: of length 1 on the surface, never NaN, what differences say.
+// Gradients of every primitive and of random graphs: unit length on the surface, never NaN, equal to difference
+// quotients.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +17,7 @@ using compiler::Kind;
 using compiler::NodeSpec;
 using glm::dvec3;
 
-// Moves p onto the surface along the gradient; false when it will not settle.
+// Moves p onto the surface along the gradient. Returns false if p does not converge.
 bool to_surface(const vm::VerifiedProgram& program, dvec3& p, vm::Workspace& workspace) {
   for (int i = 0; i < 60; ++i) {
     const vm::SurfaceValue v = vm::evaluate_surface(program, p, workspace);
@@ -39,7 +40,8 @@ dvec3 central_difference(const vm::VerifiedProgram& program, dvec3 p, double h, 
   return slope;
 }
 
-// A point of the surface on the axis with a whole cone of normals: there the gradient is known by its direction only.
+// True if the surface has a point on the axis with a whole cone of normals. Only the direction of the gradient is
+// known there.
 bool has_tip(Kind kind, const std::vector<double>& k) {
   if (kind == Kind::InfiniteCone) return true;
   return (kind == Kind::Cone && (k[0] == 0 || k[1] == 0)) || (kind == Kind::Torus && k[1] >= k[0]);
@@ -67,10 +69,10 @@ TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
           const double length = glm::length(vm::evaluate_surface(program, p, workspace).gradient);
           CHECK(length <= 1 + 1e-9);
           if (row.kind != Kind::Torus || s.params[0] != s.params[1])
-            CHECK(length > 1e-3);  // a ring without a hole touches itself in the middle
+            CHECK(length > 1e-3);  // a ring without a hole touches itself at the centre
           continue;
         }
-        if (periodic(row.kind)) {  // sampled: 0.41 and more
+        if (periodic(row.kind)) {  // sampled lengths are 0.41 and more
           const double length = glm::length(vm::evaluate_surface(program, p, workspace).gradient);
           CHECK(length > 0.4);
           CHECK(length <= 1 + 1e-9);
@@ -85,7 +87,7 @@ TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
   });
 }
 
-// At any distance from the origin, up to 1e3: a float's own spacing there must not tilt the normal.
+// At distances up to 1e3 from the origin: the spacing of floats there must not tilt the normal.
 TEST_CASE("float normals of smooth shapes are within 1e-6 radians", "[shapes][normals]") {
   vm::Workspace workspace;
   for (Kind kind : {Kind::Sphere, Kind::Torus, Kind::Plane, Kind::RoundCone}) {
@@ -93,7 +95,7 @@ TEST_CASE("float normals of smooth shapes are within 1e-6 radians", "[shapes][no
       Random random(seed);
       const Sample s = sample(kind, random);
       compiler::Scene scene = s.scene;
-      // A ring's normal turns over the tube's small radius, where a float has the spacing of the large one.
+      // A ring's normal turns over the tube's small radius, while the floats are spaced for the large radius.
       const double slender = kind == Kind::Torus ? std::max(1.0, s.params[0] / s.params[1] / 4) : 1;
       const double reach[] = {0, 1, 1000};
       const dvec3 away = random.in_box(reach[seed % 3]);
@@ -123,7 +125,7 @@ TEST_CASE("gradients never are NaN: centres, axes, edges, corners", "[shapes][no
       const Sample s = sample(row.kind, random);
       const vm::VerifiedProgram program = plain_lowering(s.scene);
       const compiler::Box box = row.bound(s.params);
-      for (int i = 0; i < 125; ++i) {  // corners, edge and face centres of the box, and points beyond them
+      for (int i = 0; i < 125; ++i) {  // corner, edge and face centres of the box, and points beyond them
         dvec3 p;
         const int steps[] = {i % 5, i / 5 % 5, i / 25};
         for (int axis = 0; axis < 3; ++axis) {
@@ -151,7 +153,7 @@ TEST_CASE("gradients are what differences say, away from creases", "[shapes][nor
       const dvec3 p = random.in_box(2);
       const dvec3 fine = central_difference(program, p, 1e-5, workspace);
       const dvec3 coarse = central_difference(program, p, 4e-5, workspace);
-      if (glm::length(fine - coarse) > 1e-7) continue;  // a crease or a strong curvature nearby
+      if (glm::length(fine - coarse) > 1e-7) continue;  // a crease or strong curvature nearby
       ++smooth;
       INFO("at " << place(p));
       const dvec3 exact = vm::evaluate_surface(program, p, workspace).gradient;

@@ -1,5 +1,5 @@
-// Outlines in space: drawn along z and turned about y they are as exact as what is known of them says. Alone they go
-// through the same suite as the solids (shapes_test.cpp).
+// Outlines in space: extruded along z and revolved about y, they are as exact as the compiler claims. Outlines alone
+// go through the same tests as the solids (shapes_test.cpp).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -46,7 +46,7 @@ Made over_outline(Kind above, double parameter, Kind kind, const std::vector<dou
 
 dvec3 point_near_outline(Random& random) { return random.in_box(random.chance(0.8) ? 2 : 8); }
 
-// A value against the truth: equal where exact, else nearer to the surface on the same side.
+// Compares a value with the true distance: equal if the field is exact there, else nearer to zero with the same sign.
 void check(double value, double truth, const compiler::Knowledge& known) {
   if ((truth < 0 ? known.inside : known.outside) == Exactness::Exact) {
     CHECK(std::abs(value - truth) <= 1e-12 * std::max(1.0, std::abs(truth)));
@@ -70,7 +70,7 @@ void for_each_outline(const Check& each) {
 
 }  // namespace
 
-// The nearest point is on the wall, straight above or below the boundary, or on a cap within it.
+// The nearest point is on the wall, straight above or below the boundary, or on a cap inside the boundary.
 TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]") {
   vm::Workspace workspace;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
@@ -90,14 +90,14 @@ TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]"
   });
 }
 
-// Every point of the boundary becomes a circle: the nearest is in the half-plane of p. The outline is beside the axis,
-// or has its mirror line there.
+// Each point of the boundary becomes a circle, so the nearest point is in the half-plane of p. The outline lies
+// beside the axis, or the axis is its mirror line.
 TEST_CASE("an outline turned about y is as far as brute force says", "[outlines]") {
   vm::Workspace workspace;
   int exact = 0;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
     const compiler::Box box = compiler::spec(kind).bound(params);
-    const double to_axis = -box.lo.x;  // touches the axis from one side
+    const double to_axis = -box.lo.x;  // the offset at which the outline touches the axis from one side
     const double offset = random.chance(0.4) ? 0 : std::max(0.0, to_axis + random.length(1e-3, 1));
     if (offset == 0 && !compiler::spec(kind).facts.symmetric[0]) return;
     const Made made = over_outline(Kind::Revolve, offset, kind, params);
@@ -116,8 +116,8 @@ TEST_CASE("an outline turned about y is as far as brute force says", "[outlines]
 
 namespace {
 
-// The boundary of an outline moved by `offset` along x, without what is on the axis or beyond: segments, exact where
-// the outline has straight edges alone, else chords of its curves.
+// Boundary of an outline moved by `offset` along x, without the pieces on the axis or beyond it. The boundary is a
+// list of segments: exact for straight edges, chords for curves.
 class TurnedBoundary {
  public:
   TurnedBoundary(Kind kind, const std::vector<double>& params, double offset)
@@ -157,7 +157,7 @@ class TurnedBoundary {
   std::vector<std::pair<dvec2, dvec2>> segments_;
 };
 
-// Turned so that an edge or a part of the outline is on the axis or beyond.
+// Checks an outline that is revolved with an edge or a part on the axis or beyond it.
 compiler::Knowledge check_on_axis(Kind kind, const std::vector<double>& params, double offset, Random& random) {
   vm::Workspace workspace;
   const Made made = over_outline(Kind::Revolve, offset, kind, params);
@@ -180,7 +180,7 @@ compiler::Knowledge check_on_axis(Kind kind, const std::vector<double>& params, 
 
 }  // namespace
 
-// Once, edges on the axis counted as surface, and the distance inside was called exact.
+// Regression: edges on the axis counted as surface, and the compiler called the distance inside exact.
 TEST_CASE("an outline with an edge on the axis turns into a solid without a seam", "[outlines]") {
   int exact = 0, all = 0;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
@@ -197,12 +197,12 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
   Random random(1);
   const std::vector<double> outlines[] = {
       {0, -2, 2, -2, 2, 2, 0, 2},                                // an edge on the axis
-      {0, -2, 2, -2, 2, 2, 0, 2, 0, 1, 0, 0},                    // three
-      {-1, -2, 2, -2, 2, 2, -1, 2},                              // crossed
+      {0, -2, 2, -2, 2, 2, 0, 2, 0, 1, 0, 0},                    // three edges on the axis
+      {-1, -2, 2, -2, 2, 2, -1, 2},                              // crosses the axis
       {2, 3, -2, 3, -2, -3, 2, -3, 2, -1, -1, -1, -1, 1, 2, 1},  // a C whose back is beyond the axis
       {2, 0, 0, 1, -1, 0, 0, -1},                                // corners on the axis
-      {0, 0, 2, -1, 2, 1},                                       // touched
-      {0, 2, 1, 1, 0, 0, 1, -1, 0, -2, 3, -2, 3, 2},             // touched three times
+      {0, 0, 2, -1, 2, 1},                                       // touches the axis
+      {0, 2, 1, 1, 0, 0, 1, -1, 0, -2, 3, -2, 3, 2},             // touches the axis three times
       {-1, 0, 1, 0.1, -1, 0.2, 1, 0.3, -1, 0.4, 2, 0.5, 2, -1, -2, -1, -2, 0.5}};
   for (const std::vector<double>& points : outlines) {
     for (const double offset : {0.0, 0.25, -0.25}) {
@@ -216,7 +216,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
   }
 }
 
-// A profile as it is drawn: parts that are moved, turned and cut, each with an edge on the axis.
+// A profile with moved, rotated and cut parts, each of which has an edge on the axis.
 TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[outlines]") {
   vm::Workspace workspace;
   const auto at = [&](const std::string& solid, dvec3 p) {

@@ -1,4 +1,4 @@
-// Primitives at random, for the tests that hold for every one of them, and what those tests ask of each.
+// Random primitives, and helpers for tests that hold for every primitive.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ inline Sample sample(compiler::Kind kind, Random& random) {
   return s;
 }
 
-// Points in, around and far from a shape of size 1; some on an axis, a coordinate plane or a diagonal.
+// Points inside, around and far from a shape of size 1; some on an axis, a coordinate plane or a diagonal.
 inline glm::dvec3 random_point(Random& random) {
   const double half[] = {0.5, 1, 2, 2, 16};
   glm::dvec3 p = random.in_box(half[random.below(5)]);
@@ -54,17 +54,17 @@ inline vm::SurfaceValue evaluate_float(const vm::VerifiedProgram& program, glm::
   return {distance, {gx, gy, gz}, surface};
 }
 
-// Whether the estimate of a fractal is being judged, for which "distance" means less.
+// True for fractals, whose field is only a distance estimate.
 inline bool estimated(compiler::Kind kind) {
   return compiler::spec(kind).facts.outside == compiler::Exactness::Estimate;
 }
 
-// Fields whose gradient is shorter than 1 on the surface.
+// True for fields whose gradient may be shorter than 1 on the surface.
 inline bool periodic(compiler::Kind kind) {
   return kind == compiler::Kind::Gyroid || kind == compiler::Kind::SchwarzP || kind == compiler::Kind::SchwarzD;
 }
 
-// Solids and outlines.
+// Calls `check` for every solid and every outline.
 template <typename Check>
 void for_each_primitive(const Check& check) {
   for (const compiler::NodeSpec& row : compiler::node_table()) {

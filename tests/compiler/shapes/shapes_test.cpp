@@ -1,5 +1,5 @@
-// What a shape is: the judge against brute force, then the machine against the judge, then what every distance field
-// owes the renderer: a Lipschitz constant, a bounding box. Gradients: normals_test.cpp.
+// Tests of every shape: the judge against brute force, the machine against the judge, and the properties that the
+// renderer needs of every distance field (a Lipschitz constant, a bounding box). Gradients: normals_test.cpp.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -26,11 +26,12 @@ using glm::dvec3;
 
 constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
 
-// Largest errors of a kind: the machine's double and float evaluators against the judge.
+// Max errors of a kind: the machine's double and float evaluators against the judge.
 struct Errors {
   double wide = 0;    // double, relative to scale_of(p)
   double narrow = 0;  // float, in units of 2^-24 scale_of(p)
-  double near = 0;    // the same, of points within scale / 16 of the surface, where a step may end
+  // Like `narrow`, at points within scale / 16 of the surface, where a marching step may end.
+  double near = 0;
   std::string where_wide, where_narrow, where_near;
 };
 
@@ -46,7 +47,7 @@ Errors measure(Kind kind, int shapes, int points) {
       if (estimated(kind) && glm::length(p) < 1e-6) continue;
       const double truth = judge_distance(s.scene.graph, s.scene.root, p), scale = scale_of(p);
       const auto note = [&](double error, double& largest, std::string& where) {
-        if (error <= largest) return;  // a NaN is noted
+        if (error <= largest) return;  // false for NaN, so that a NaN is recorded
         largest = error;
         where = s.name + " at " + place(p) + ", seed " + std::to_string(seed);
       };
@@ -65,7 +66,7 @@ bool unbounded(Kind kind) {
 
 bool exact(const NodeSpec& row) { return row.facts.outside == compiler::Exactness::Exact; }
 
-// Solids whose formula is a lower bound of the depth inside: a spindle, an arc whose ends overlap.
+// True for solids whose formula is a lower bound of the depth inside: a spindle torus, an arc whose ends overlap.
 bool inside_is_bound(Kind kind, const std::vector<double>& k) {
   if (kind == Kind::Torus) return k[1] > k[0];
   return kind == Kind::CappedTorus && k[2] > 90 && k[2] < 180 &&
@@ -74,7 +75,7 @@ bool inside_is_bound(Kind kind, const std::vector<double>& k) {
 
 bool is_outline(const NodeSpec& row) { return row.sort == compiler::Sort::Outline; }
 
-// True distances to a solid, or to an outline, whatever z is.
+// Returns the true distance to a solid, or to an outline for any z.
 std::function<double(dvec3)> brute_force(const NodeSpec& row, const std::vector<double>& params) {
   if (is_outline(row)) {
     return [truth = BruteForceOutline(row.kind, params)](dvec3 p) { return truth.distance(glm::dvec2(p)); };
@@ -107,7 +108,8 @@ TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judg
         const double judged = judge_distance(s.scene.graph, s.scene.root, p), found = truth(p);
         INFO(s.name << ", seed " << seed << ", at " << place(p));
         if (inside_is_bound(row.kind, s.params) && found < 0) {
-          if (row.kind == Kind::Torus) CHECK(judged >= found - 1e-12);  // of overlapping arcs no depths are found
+          // Brute force finds no depths of overlapping arcs.
+          if (row.kind == Kind::Torus) CHECK(judged >= found - 1e-12);
           CHECK(judged <= 0);
         } else {
           CHECK(std::abs(judged - found) <= 1e-12 * scale_of(p));
@@ -191,7 +193,7 @@ TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
   });
 }
 
-// "Smallest cheap to know": every side of a finite box touches the surface, so that a loose box is noticed.
+// Every side of a finite box touches the surface ("smallest cheap to know"), so that a loose box is noticed.
 TEST_CASE("a primitive's box is tight", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
     if (estimated(row.kind)) return;

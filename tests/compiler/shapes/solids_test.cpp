@@ -1,5 +1,5 @@
-// Solids that are made of others, and those whose fields are not exact: the Menger sponge against its cubes, Julia
-// sets against their orbits.
+// Solids made of other solids, and solids whose fields are not exact: the Menger sponge against its cubes, Julia sets
+// against their orbits.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,14 +17,14 @@ namespace {
 using compiler::Kind;
 using glm::dvec3;
 
-// Distance to the nearest of the cubes that `levels` levels of holes leave of the cube of this half size.
+// Distance to the nearest cube that remains of a cube of this half size after removing `levels` levels of holes.
 double distance_to_cubes(dvec3 p, dvec3 centre, double half, int levels) {
   const dvec3 beyond = glm::max(glm::abs(p - centre) - half, 0.0);
   if (levels == 0) return glm::length(beyond);
   double nearest = 1e9;
   for (int cell = 0; cell < 27; ++cell) {
     const dvec3 at(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1);
-    if (glm::dot(at, at) < 2) continue;  // the middle and the six beside it
+    if (glm::dot(at, at) < 2) continue;  // the centre cell and its six neighbours
     nearest = std::min(nearest, distance_to_cubes(p, centre + at * (2 * half / 3), half / 3, levels - 1));
   }
   return nearest;
@@ -48,7 +48,7 @@ TEST_CASE("a Menger sponge is what its cubes are, and its field never more than 
   }
 }
 
-// Against random points of its surface.
+// Compares the ellipsoid with random points of its surface.
 TEST_CASE("an ellipsoid's distance has the right sign and is never too much", "[shapes]") {
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -65,7 +65,7 @@ TEST_CASE("an ellipsoid's distance has the right sign and is never too much", "[
   }
 }
 
-// All within minor_radius of a racetrack: two segments along y and two half circles.
+// All points within minor_radius of a racetrack: two segments along y and two half circles.
 TEST_CASE("a link is all within its radius of a racetrack", "[shapes]") {
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -82,7 +82,7 @@ TEST_CASE("a link is all within its radius of a racetrack", "[shapes]") {
   }
 }
 
-// Inside is where the orbit stays within the ball that none returns from.
+// A point is inside if its orbit stays in the ball outside which every orbit escapes.
 TEST_CASE("a Julia set is negative where orbits stay, positive where they leave, and never NaN", "[shapes]") {
   vm::Workspace workspace;
   int inside = 0, outside = 0;

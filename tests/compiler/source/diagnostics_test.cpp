@@ -1,6 +1,6 @@
-// Every diagnostic as the user sees it: tests/golden/diagnostics/*.txt hold a scene and, after the line
-// "----- expected", what is printed for it. A scene may open with lines `// -D name=number`, values for its
-// parameters. Lints are on, as for `fathom check`. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second
+// Golden tests of every diagnostic as the user sees it. tests/golden/diagnostics/*.txt hold a scene and, after the
+// line "----- expected", the printed diagnostics. A scene may begin with lines `// -D name=number`, which set its
+// parameters. Lints are on, as for `fathom check`. FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the expected
 // part.
 #include "compiler/source/diagnostics.h"
 
@@ -40,7 +40,7 @@ Definitions definitions_in(const std::string& scene) {
   return definitions;
 }
 
-// Of a scene, or of a listing, which opens with its head or a comment of its own kind.
+// Diagnoses a scene, or a listing, which begins with its header or with a comment of its own kind.
 Diagnostics diagnose(Source& source) {
   Diagnostics diagnostics;
   if (source.text().starts_with("fathom 3") || source.text().starts_with(";")) {
@@ -78,7 +78,8 @@ TEST_CASE("every code has a golden file and every golden file shows its code", "
     shown.insert(code);
   }
   for (const ErrorCode& row : kErrorCodes) {
-    if (row.code == "W0516") continue;  // of `fathom check`, not of the compiler: cli_picture_warning_test.cpp
+    // Issued by `fathom check`, not by the compiler: cli_picture_warning_test.cpp.
+    if (row.code == "W0516") continue;
     CAPTURE(std::string(row.code));
     CHECK(shown.count(std::string(row.code)) == 1);
     shown.erase(std::string(row.code));
@@ -180,7 +181,7 @@ TEST_CASE("twenty errors are printed and the rest counted, in every format", "[d
   CHECK(std::count(json.begin(), json.end(), '\n') == 21);
 }
 
-// The last hundred were kept: the list of nodes was checked from its end.
+// Regression: the list of nodes was checked from its end, so the last hundred errors were kept.
 TEST_CASE("of more errors than are kept the first are", "[diagnostics]") {
   std::string text = "{\"version\": 1, \"objects\": [\n";
   for (int i = 0; i < 200; ++i) text += "{\"type\": \"sphere\", \"radius\": -1},\n";
@@ -200,7 +201,8 @@ TEST_CASE("nearest", "[diagnostics]") {
   CHECK(nearest("wobble", words) == "");
   const std::string known = std::string(39, 'a') + "b";
   CHECK(nearest(std::string(40, 'a'), {known}) == known);
-  CHECK(nearest(std::string(41, 'a'), {known}) == "");  // names as long as the file would take the square of that
+  // Comparing names as long as the file would take quadratic time.
+  CHECK(nearest(std::string(41, 'a'), {known}) == "");
   CHECK(nearest("x", words) == "");
   CHECK(nearest("", words) == "");
   CHECK(nearest("fov", {}) == "");

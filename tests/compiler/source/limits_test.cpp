@@ -1,5 +1,5 @@
-// Each limit of a scene at its edge: what is just allowed compiles, one more is refused in words that name the place,
-// the limit and how to allow it.
+// Each limit of a scene at its edge: a scene at the limit compiles. A scene beyond the limit is refused with a
+// message that names the position, the limit and how to raise it.
 #include "compiler/source/limits.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ using namespace fathom::compiler;
 
 struct Outcome {
   bool good = false;
-  std::string text;  // what is printed
+  std::string text;  // printed diagnostics
   std::size_t nodes = 0, instructions = 0;
 };
 
@@ -38,7 +38,7 @@ Outcome outcome_of(const std::string& text, const Limits& limits) {
   return outcome;
 }
 
-// The least value of the limit with which the scene compiles must be `edge`.
+// Checks that `edge` is the smallest value of the limit with which the scene compiles.
 void check_edge(const std::string& text, double Limits::*limit, double edge, const std::string& code) {
   Limits limits;
   limits.*limit = edge;
@@ -84,7 +84,8 @@ TEST_CASE("limits: the memory that a scene's nodes take", "[limits]") {
   check_edge(two, &Limits::memory, 5 * kBytesPerNode, "E0312");
 }
 
-// Each of three glass balls is cut by those before it: 2 + 4 + 6 nodes, of which a place and a paint are one each.
+// Each of three glass balls is cut by the balls before it: 2 + 4 + 6 nodes. A transform and a paint count one node
+// each.
 TEST_CASE("limits: the solids of transparent materials", "[limits]") {
   std::string materials, balls;
   for (int i = 0; i < 3; ++i) {
@@ -137,10 +138,11 @@ TEST_CASE("limits: forty doublings of a node are forty nodes, and moved ones are
   CHECK(other.text.find("more than 1000000 instructions") != std::string::npos);
   CHECK(other.text.find("--limit instructions=2000000") != std::string::npos);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  CHECK(seconds.count() < 20);  // 2^40 would take days; hostile_test.cpp asks how much of a second it is
+  CHECK(seconds.count() < 20);  // 2^40 would take days; hostile_test.cpp limits processor time
 }
 
-// A formula's own program is held to the user's limits, too, and going beyond them is no fault of ours.
+// The program of a formula is subject to the user's limits, too. Exceeding a limit is a user error, not an internal
+// error.
 TEST_CASE("limits: what a program remembers", "[limits]") {
   std::string list = "a0 var-x\nm0 var-y\n";
   for (int i = 0; i < 40; ++i) list += fmt::format("a{1} add a{0} m{0}\nm{1} sin a{0}\n", i, i + 1);
@@ -155,7 +157,7 @@ TEST_CASE("limits: what a program remembers", "[limits]") {
   CHECK(outcome_of(list, limits).good);
 }
 
-// Lists of operands were made for each of them, as long as all that came before.
+// Regression: the compiler built a list of operands for each union, as long as all unions before it.
 TEST_CASE("limits: a chain of twenty thousand unions compiles to as many instructions", "[limits]") {
   std::string nodes = R"("a0": )" + kBall;
   for (int i = 1; i <= 20000; ++i) {

@@ -28,7 +28,7 @@ std::string join(const Lines& lines) {
   return text;
 }
 
-// What patch makes of `before`; its ranges are checked against the lines they head.
+// Applies a diff to `before` as patch does. Checks each hunk's ranges against the lines that follow.
 std::string patched(const std::string& diff, const std::string& before) {
   const Lines old = split(before);
   Lines out;

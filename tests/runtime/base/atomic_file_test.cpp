@@ -1,4 +1,4 @@
-// Files that appear whole: links, permissions, long names, and what others left behind.
+// Files that appear as a whole: links, permissions, long names, and leftovers of other programs.
 #include "runtime/base/atomic_file.h"
 
 #include <fcntl.h>
@@ -37,13 +37,14 @@ TEST_CASE("atomic files: what is replaced leaves its permissions, what is new ha
   CHECK(mode_of(folder.file("new")) == 0600);
 }
 
-// A checkpoint was looked at before it was synced: in the seconds that takes, another run's was replaced.
+// Regression: the program checked the old checkpoint before syncing the new one. In the seconds between, another
+// run's checkpoint could be replaced.
 TEST_CASE("atomic files: whether the target may be replaced is asked last") {
   const tests::TemporaryFolder folder;
   AtomicFile file(folder.file("target"));
   REQUIRE(file.write(kBytes));
   const auto another = [&] {
-    CHECK(folder.files() == 1);  // the file has a name beside the target
+    CHECK(folder.files() == 1);  // the file already has a temporary name next to the target
     std::ofstream(folder.file("target")) << "another's";
     return false;
   };

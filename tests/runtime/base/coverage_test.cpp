@@ -1,4 +1,4 @@
-// Coverage against a plain table of samples: what is covered, missing and doubled, whatever the blocks.
+// Coverage against a plain table of samples: covered, missing and doubled samples, for any blocks.
 #include "runtime/base/coverage.h"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ class RandomBlocks {
   std::mt19937 engine_;
 };
 
-// Blocks that are apart.
+// Disjoint random blocks.
 Coverage random_coverage(RandomBlocks& random, int blocks) {
   Coverage covered;
   for (int i = 0; i < blocks; ++i) {
@@ -61,7 +61,7 @@ TEST_CASE("coverage: the tidy form is known when it is seen") {
   for (unsigned seed = 0; seed < 4000; ++seed) {
     RandomBlocks random(seed);
     Coverage covered;
-    // A tidy one with one block too few, too many or changed, or none of these.
+    // The tidy form with one block removed, added or changed, or unchanged.
     std::vector<SampleBlock> blocks = random_coverage(random, random.whole(4)).blocks();
     const int change = random.whole(5);
     if (change == 1 && !blocks.empty()) blocks.pop_back();
@@ -106,7 +106,7 @@ TEST_CASE("coverage: its form depends on what is covered alone") {
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomBlocks random(seed);
     const Coverage covered = random_coverage(random, 6);
-    // The same in single pixels and samples, in another order.
+    // The same coverage in single pixels and samples, in another order.
     std::vector<SampleBlock> grains;
     for (const SampleBlock& block : covered.blocks()) {
       for (std::uint32_t s = block.samples.first; s < block.samples.last; ++s) {
@@ -141,8 +141,8 @@ TEST_CASE("coverage: overlaps are found, and only those") {
   CHECK(some < 290);
 }
 
-// A row of the picture alone may have as many blocks as a file has room for: minutes, when each was held against
-// each.
+// Regression: one row of the image can have as many blocks as a file has room for. Comparing each block with each
+// other took minutes.
 TEST_CASE("coverage: whether many blocks are apart is soon known") {
   Coverage even, odd;
   for (std::uint32_t i = 0; i < 200000; ++i) {

@@ -24,7 +24,7 @@ TEST_CASE("elementary: sine and cosine of a turn in double are within 1e-15 of l
   for (int i = -(1 << 18); i <= 1 << 19; ++i) {
     const double u = i * 0x1p-18 + (i % 7) * 1e-9;
     const SinCosReal angle = sincos_turn(u);
-    // The remainder of a turn is exact; of 2 pi times it libm knows all but the last bit.
+    // The remainder of a turn is exact. The product with 2 pi is exact except for its last bit.
     const double x = 2 * M_PI * (u - std::round(u));
     worst = std::max({worst, std::abs(std::sin(x) - angle.sin), std::abs(std::cos(x) - angle.cos)});
   }
@@ -109,7 +109,7 @@ TEST_CASE("elementary: sRGB decoded and encoded is the same signal", "[runtime]"
   for (double signal = 0; signal <= 1; signal += 1e-4) {
     worst = std::max(worst, std::abs(srgb_encode(srgb_decode(signal)) - signal));
   }
-  CHECK(worst <= 1e-7);  // the standard's two pieces meet with a step of 3e-8 in light
+  CHECK(worst <= 1e-7);  // the two pieces of the sRGB standard meet with a step of 3e-8 in linear light
   CHECK(srgb_decode(0) == 0);
   CHECK(srgb_decode(1) == 1);
   CHECK(srgb_decode(0.5) == Approx(0.21404114));

@@ -8,7 +8,7 @@
 namespace fathom::runtime::file_watch_test {
 namespace {
 
-// A watched file. Every text is of another length: two writes may be of one time.
+// A watched file. Every text has another length, because two writes can have the same time stamp.
 class Watched {
  public:
   Watched() : path_(folder_.file("scene.json")) { write("a scene"); }

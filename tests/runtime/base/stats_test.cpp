@@ -76,7 +76,7 @@ TEST_CASE("stats: a clock charges each stage what passes in it, and no time twic
   StageClock clock;
   clock.enter(Stage::Film);
   clock.stop();
-  CHECK(clock.seconds() == StageSeconds{});  // it was not started
+  CHECK(clock.seconds() == StageSeconds{});  // the clock was not started
 
   const auto pass = [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
   const Clock::time_point start = Clock::now();
@@ -90,7 +90,7 @@ TEST_CASE("stats: a clock charges each stage what passes in it, and no time twic
   clock.enter(Stage::Film);
   clock.stop();
   pass();
-  clock.enter(Stage::Shading);  // no longer measured
+  clock.enter(Stage::Shading);  // after stop(): not measured
   const double all = std::chrono::duration<double>(Clock::now() - start).count();
   const StageSeconds seconds = clock.seconds();
   CHECK(seconds[static_cast<std::size_t>(Stage::March)] >= 0.004);
@@ -104,7 +104,8 @@ TEST_CASE("stats: the peak of memory grows with what is held", "[runtime]") {
   const std::uint64_t before = peak_memory();
   REQUIRE(before > 1u << 20);
   REQUIRE(before < std::uint64_t{1} << 40);
-  const std::vector<char> held(before + (16u << 20), 1);  // more than was ever held, whatever has been freed since
+  // More than the process ever held, whatever it has freed since.
+  const std::vector<char> held(before + (16u << 20), 1);
   CHECK(peak_memory() >= held.size());
   CHECK(std::accumulate(held.begin(), held.begin() + 10, 0) == 10);
 }

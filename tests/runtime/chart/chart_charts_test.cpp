@@ -46,8 +46,8 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
     references += row.reference;
     failing += failures_ppm(row) > 0;
   }
-  CHECK(circles(svg, "marker").size() == rows.size() - references + 7);  // the legend has one of each
-  CHECK(count_of(svg, "Z\" class=\"marker\"") == references);            // at 0
+  CHECK(circles(svg, "marker").size() == rows.size() - references + 7);  // the legend has seven markers
+  CHECK(count_of(svg, "Z\" class=\"marker\"") == references);            // markers at zero error
   CHECK(circles(svg, "disc").size() == failing + 3);
   CHECK(contains(svg, "0123abc"));
 }
@@ -55,7 +55,7 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
 TEST_CASE("chart A: the default is bold, on the front and on the staircase", "[chart]") {
   const std::string svg = chart_a(sample_rays(), "composite", Cost::Time, kProvenance);
   for (const tests::Circle& marker : circles(svg, "marker")) {
-    if (marker.radius < 4) continue;  // the bold ones are larger
+    if (marker.radius < 4) continue;  // the default's bold markers are larger
     bool ringed = false;
     for (const tests::Circle& ring : circles(svg, "ring")) ringed |= ring.x == marker.x && ring.y == marker.y;
     const bool in_legend = marker.x < 100 && marker.y > 450;
@@ -75,7 +75,7 @@ TEST_CASE("chart A: the axes are time or evaluations, and p99", "[chart]") {
     CHECK(what_is_wrong(svg) == "");
     CHECK(contains(svg, "nanoseconds") == (cost == Cost::Time));
     CHECK(contains(svg, "fastest to slowest of 9 rounds") == (cost == Cost::Time));
-    // The first series is sphere tracing by eps 1e-3, 1e-5, 1e-6 over camera rays, none of them at 0.
+    // The first series is sphere tracing with eps 1e-3, 1e-5, 1e-6 over camera rays. None of its errors is 0.
     const auto markers = circles(svg, "marker");
     const auto decades = [&](double a, double b) { return std::log10(a / b); };
     const double scale_x = (markers[1].x - markers[0].x) / decades(cost_of(rows[1], cost), cost_of(rows[0], cost));
@@ -136,7 +136,8 @@ TEST_CASE("chart A: more methods than colours are told apart by dashes", "[chart
     rows.push_back(row);
   }
   const std::string svg = chart_a(rows, "composite", Cost::Time, kProvenance);
-  CHECK(count_of(svg, "stroke-dasharray=\"5 4\"") == 2 * (8 - (kPalette.size() - 1)));  // each and in the legend
+  // Each method twice: in the panel and in the legend.
+  CHECK(count_of(svg, "stroke-dasharray=\"5 4\"") == 2 * (8 - (kPalette.size() - 1)));
 }
 
 TEST_CASE("chart A: what was not measured is counted", "[chart]") {
@@ -159,12 +160,12 @@ TEST_CASE("chart B: curves over samples with their slopes, floors and both panel
   CHECK(find_text(words, "without the worst 0.1 % of pixels") != nullptr);
   CHECK(circles(svg, "marker").size() == 2 * rows.size() + 4);
   CHECK(count_of(svg, "class=\"level\"") == 4);
-  CHECK(count_of(svg, ">1024 spp<") == 2);  // of the default, in both panels
+  CHECK(count_of(svg, ">1024 spp<") == 2);  // the default's, in both panels
   CHECK(contains(svg, "tiered f32\n4 samples per pixel, 16 seeds\n0.084 s (0.0806 to 0.0899)\n"));
   CHECK(contains(svg, "5 to 95 % of 16 seeds"));
 }
 
-// An exact power law, 1e-3 after as many seconds as samples.
+// Curves that are exact power laws, with relMSE 1e-3 at the time in seconds that equals the number of samples.
 std::vector<ImageMeasurement> light_samples() {
   std::vector<ImageMeasurement> rows;
   for (const auto& [sampler, lights, slope] :
@@ -195,8 +196,8 @@ TEST_CASE("chart light: curves by ways to find light and by samplers, with the t
   CHECK(find_text(words, "both, independent, slope −1.00, 1e-3 after 20 s") != nullptr);
   CHECK(find_text(words, "hits, blue, slope −1.00, 1e-3 after 20 s") != nullptr);
   CHECK(circles(svg, "marker").size() == 2 * 9 + 3);
-  CHECK(count_of(svg, ">64 spp<") == 2);  // of the default, in both panels
-  // Each chart has what differs from the default in its own way alone.
+  CHECK(count_of(svg, ">64 spp<") == 2);  // the default's, in both panels
+  // Each chart shows only the rows that differ from the default in the chart's own parameter.
   CHECK_FALSE(contains(chart_light(rows, "composite", kProvenance), "sphere tracing"));
   CHECK_FALSE(contains(chart_b(rows, "composite", kProvenance), "independent"));
 }
@@ -204,17 +205,17 @@ TEST_CASE("chart light: curves by ways to find light and by samplers, with the t
 TEST_CASE("chart B: points are in the order of samples, whatever the rows' order", "[chart]") {
   auto rows = sample_images();
   const std::string svg = chart_b(rows, "composite", kProvenance);
-  std::swap(rows[0], rows[3]);  // of one curve
+  std::swap(rows[0], rows[3]);  // two points of one curve
   CHECK(chart_b(rows, "composite", kProvenance) == svg);
 }
 
 TEST_CASE("chart B: the floor is that at the most samples", "[chart]") {
   auto rows = sample_images();
   rows.erase(rows.begin() + 5, rows.end());
-  for (ImageMeasurement& row : rows) row.floor = 4e-5 / row.spp;  // 4 to 1024
+  for (ImageMeasurement& row : rows) row.floor = 4e-5 / row.spp;  // spp 4 to 1024
   std::swap(rows.front(), rows.back());
   const std::string svg = chart_b(rows, "composite", kProvenance);
-  const auto markers = circles(svg, "marker");  // by samples: a decade has the same height everywhere
+  const auto markers = circles(svg, "marker");  // in order of samples; a decade has the same height everywhere
   const double decade = (markers[4].y - markers[0].y) / std::log10(rows.back().relmse_med / rows.front().relmse_med);
   const double level = markers[4].y + decade * std::log10(rows.front().relmse_med / (4e-5 / 1024));
   const std::regex line("y1=\"([0-9.]+)\"[^>]*class=\"level\"");

@@ -92,7 +92,7 @@ TEST_CASE("chart colormap: a map has its pixels above and the scale below", "[ch
   CHECK(pixel(map, 2, 0) == kMissing);
   CHECK(pixel(map, 3, 0) == kNothing);
   CHECK(pixel(map, 4, 0) == viridis(0.5));
-  // In the strip: the boxes of what is missing and of nothing, then all colours from the first to the last.
+  // The strip below has the boxes of `missing` and `nothing`, then all colours from the first to the last.
   std::vector<Rgb> row;
   for (int x = 0; x < width; ++x) row.push_back(pixel(map, x, height + 8));
   CHECK(std::count(row.begin(), row.end(), kMissing) == 18);

@@ -1,4 +1,4 @@
-// What `fathom chart` measures, apart from times: the rays it follows, their errors, pictures and maps.
+// Measurements of `fathom chart`, except times: the traced rays, their errors, images and maps.
 #include <sched.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace fathom::runtime::chart_measure_test {
 namespace {
 
-// A unit ball in the middle of the picture, and light all round.
+// A unit ball in the middle of the image, with light from all directions.
 const char* const kBallScene = R"("camera": {"position": [0, 0, 4], "target": [0, 0, 0], "fov_y": 50},
     "film": {"width": 32, "height": 16}, "background": {"bottom": [0.2, 0.2, 0.2], "top": [1, 1, 1]},
     "objects": [{"type": "sphere", "radius": 1}])";
@@ -72,7 +72,7 @@ TEST_CASE("chart: bounces start above surfaces, and grazing rays pass them close
   const auto scene = scene_of(kBallScene);
   const Field field = make_field(scene);
   const double extent = extent_of(field);
-  CHECK(extent == Approx(std::sqrt(3)).epsilon(1e-5));  // half the diagonal of the ball's box
+  CHECK(extent == Approx(std::sqrt(3)).epsilon(1e-5));  // half the diagonal of the ball's bounding box
   const std::vector<RaySet> sets = make_ray_sets(scene, field, 2000, 5);
   for (const Ray& ray : sets[0].rays) {
     if (ray.origin != glm::dvec3(0, 0, 4)) FAIL_CHECK("a camera ray from elsewhere");
@@ -84,7 +84,7 @@ TEST_CASE("chart: bounces start above surfaces, and grazing rays pass them close
     CHECK((ray.slope >= 0 && ray.slope <= 1));
     slopes += static_cast<double>(ray.slope) / 2000;
   }
-  CHECK(slopes == Approx(0.5).margin(0.02));  // evenly over the hemisphere
+  CHECK(slopes == Approx(0.5).margin(0.02));  // uniform over the hemisphere
   int within = 0, near = 0;
   for (const Ray& ray : sets[2].rays) {
     const double gap = glm::length(glm::cross(ray.origin, ray.direction)) - 1;
@@ -106,7 +106,7 @@ TEST_CASE("chart: where the camera sees nothing there is nothing to bounce off",
   CHECK(sets[0].rays.size() == 100);
   CHECK(sets[1].rays.empty());
   CHECK(sets[2].rays.empty());
-  // No rays, no numbers; of rays that all miss, no errors.
+  // An empty set of rays gives no rows. Rays that all miss give no errors.
   const std::vector<Marching> methods = {{.method = Method::Tiered}, {.method = Method::Certified}};
   const auto rows = measure_rays(scene, field, sets, methods, 1, "nothing");
   REQUIRE(rows.size() == 2);
@@ -134,12 +134,12 @@ TEST_CASE("chart: what is charted ends with the reference, and starts with what 
   CHECK(compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)] == kDefaultSampler);
   CHECK(kLightSamplingNames[static_cast<std::size_t>(settings.light_sampling)] == kDefaultLights);
   CHECK(painted_ways(scene_of(kLampScene)).size() == 9);
-  // Once, light of the sky was no light to look for.
+  // Regression: the sky was not counted as a light to sample.
   const std::string under_sky = R"("background": {"type": "sky"}, "objects": [{"type": "sphere", "radius": 1}])";
   CHECK(painted_ways(scene_of(under_sky)).size() == 9);
 }
 
-// One row for each way, in the order of kWays, for each class of rays.
+// One row per way, in the order of kWays, for each class of rays.
 enum Way { kTiered, kCoarse, kFine, kHasty, kRelaxed, kReference, kWays };
 std::vector<Marching> ways() {
   return {{.method = Method::Tiered},
@@ -196,14 +196,14 @@ TEST_CASE("chart: errors are those to the reference, and thresholds show", "[cha
     expect_described(of_set, sets[i].ray_class);
     expect_judged(of_set);
   }
-  // A coarse threshold takes for hits what passes the ball.
+  // A coarse threshold takes rays that pass the ball for hits.
   CHECK(rows[2 * kWays + kCoarse].false_hit_ppm + rows[2 * kWays + kCoarse].gross_ppm > 1e5);
 }
 
 TEST_CASE("chart: a ray without a true answer is nobody's failure", "[chart]") {
   const auto scene = scene_of(R"("objects": [{"type": "box", "half_size": [1, 1, 1]}])");
   const Field field = make_field(scene);
-  // Past an edge of the box, by less than double resolves.
+  // Passes an edge of the box at a distance below double precision.
   const glm::dvec3 along = glm::normalize(glm::dvec3(1, -1, 0)), edge(1 + 0x1p-43, 1 + 0x1p-43, 0.25);
   const std::vector<RaySet> sets = {{"touching", {{edge - 3.0 * along, along}}}};
   REQUIRE(march(field, sets[0].rays, {.method = Method::Certified}).counters.contacts == 1);
@@ -225,7 +225,7 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
   const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "ground");
   REQUIRE(sched_getaffinity(0, sizeof after, &after) == 0);
   CHECK(CPU_EQUAL(&before, &after));
-  REQUIRE(rows.size() == 4);  // 16 and 4 samples
+  REQUIRE(rows.size() == 4);  // two ways, 16 and 4 samples each
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImageMeasurement& row = rows[i];
     CHECK(row.scene == "ground");
@@ -236,10 +236,10 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
     CHECK((0 < row.seconds_min && row.seconds_min <= row.seconds_med && row.seconds_med <= row.seconds_max));
     CHECK((0 < row.relmse_p05 && row.relmse_p05 <= row.relmse_med && row.relmse_med <= row.relmse_p95));
     CHECK(row.relmse_trimmed_med <= row.relmse_p95);
-    CHECK((0 < row.floor && row.floor < row.relmse_p95));  // the mean of pictures is better than the worst
+    CHECK((0 < row.floor && row.floor < row.relmse_p95));  // the mean of the images is better than the worst image
   }
   CHECK(rows[0].relmse_p95 < rows[1].relmse_p05);  // four times the samples
-  CHECK(rows[2].floor > 4 * rows[0].floor);        // a thick ball is another picture
+  CHECK(rows[2].floor > 4 * rows[0].floor);        // the large epsilon thickens the ball and changes the image
   const std::vector<ImageMeasurement> again = measure_images(scene, ways, plan, "ground");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CHECK(again[i].relmse_med == rows[i].relmse_med);
@@ -269,7 +269,7 @@ TEST_CASE("chart: maps have a number for each pixel, and none where nothing is t
   int missing = 0;
   for (std::size_t i = 0; i < maps.depth_error.size(); ++i) {
     const double x = (static_cast<double>(i % 32) - 15.5) / 8, y = (static_cast<double>(i / 32) - 7.5) / 8;
-    // In the plane through the ball's middle; its outline there, and that plane's half height, which is a pixel's 8.
+    // Tangents of the angles from the view axis, of the pixel and of the ball's outline. Half the height is 8 pixels.
     const double radius = std::hypot(x, y) * std::tan(25 * M_PI / 180), outline = 1 / std::sqrt(15);
     INFO("pixel " << i % 32 << ", " << i / 32);
     if (std::abs(radius - outline) > 1e-3) CHECK(std::isnan(maps.depth_error[i]) == (radius > outline));

@@ -19,7 +19,7 @@ RayMeasurement row(const char* method, double ns, double error, double failures)
   made.method = method;
   made.precision = "f32";
   made.ns_med = ns;
-  made.evals_mean = 1000 - ns;  // the other way round, to tell the costs apart
+  made.evals_mean = 1000 - ns;  // falls as the time rises, so that the two costs give different fronts
   made.terr_p99 = error;
   made.gross_ppm = failures;
   return made;
@@ -73,16 +73,16 @@ TEST_CASE("chart pareto: what no failure in so many rays leaves possible", "[cha
   CHECK(unseen_failures_ppm(50000) == 60);
   CHECK(unseen_failures_ppm(1) == 1e6);
   CHECK(unseen_failures_ppm(0) == 1e6);
-  // The rule of three against what it approximates: the share p with (1 - p)^n = 0.05.
+  // The rule of three approximates the failure rate p with (1 - p)^n = 0.05.
   CHECK(unseen_failures_ppm(50000) == Approx(1e6 * (1 - std::pow(0.05, 1.0 / 50000))).epsilon(0.002));
 }
 
 TEST_CASE("chart pareto: the front of a small set", "[chart]") {
   const std::vector<RayMeasurement> rows = {
       row("a", 10, 1e-1, 0),                         // the fastest
-      row("b", 20, 1e-2, 5), row("c", 20, 1e-2, 5),  // alike: both stay
+      row("b", 20, 1e-2, 5), row("c", 20, 1e-2, 5),  // equal: both stay
       row("d", 25, 1e-2, 0),                         // slower than b, but without failures
-      row("e", 30, 2e-2, 0),                         // beaten by d
+      row("e", 30, 2e-2, 0),                         // dominated by d
       row("f", 40, 1e-6, 9),
   };
   CHECK(front_of(rows, Cost::Time) == "abcdf");
@@ -106,11 +106,11 @@ TEST_CASE("chart pareto: the staircase is of those that fail no more often than 
   CHECK(names_of(reliable_front(rows, Cost::Time)) == "btiereda");
   rows.back().gross_ppm = 0;
   CHECK(names_of(reliable_front(rows, Cost::Time)) == "dctiereda");
-  rows.push_back(row("e", 60, 1e-6, 0));  // no better than a, and slower
+  rows.push_back(row("e", 60, 1e-6, 0));  // slower than a and no better
   CHECK(names_of(reliable_front(rows, Cost::Time)) == "dctiereda");
 }
 
-// What makes the picture readable: the eye can tell whether the default is on the front.
+// This makes the chart readable: the eye can tell whether the default is on the front.
 TEST_CASE("chart pareto: the default is on the front where it is on the staircase", "[chart]") {
   std::uint32_t state = 1;
   const auto random = [&](int below) {
@@ -121,7 +121,7 @@ TEST_CASE("chart pareto: the default is on the front where it is on the staircas
   for (int round = 0; round < 500; ++round) {
     std::vector<RayMeasurement> rows;
     for (int i = 0; i < 6; ++i) {
-      const double ns = 1 + 16 * random(40) + i;  // no two alike, nor two errors
+      const double ns = 1 + 16 * random(40) + i;  // no two times or errors are equal
       rows.push_back(row("a", ns, 1e-6 * (1 + 16 * random(40) + i), random(4)));
     }
     rows[3].method = kDefaultMethod;
@@ -169,7 +169,7 @@ TEST_CASE("chart fit: power laws are found exactly", "[chart]") {
 }
 
 TEST_CASE("chart fit: the least squares of points off the line", "[chart]") {
-  // In decades (0, 0), (1, 1), (2, 0): the slope is 0 and the height a third.
+  // In decades: (0, 0), (1, 1), (2, 0). The slope is 0 and the height 1/3.
   const PowerLaw law = fit_power_law(std::vector{1.0, 10.0, 100.0}, std::vector{1.0, 10.0, 1.0});
   CHECK(law.slope == Approx(0).margin(1e-12));
   CHECK(law.factor == Approx(std::pow(10.0, 1.0 / 3)));
@@ -190,7 +190,7 @@ TEST_CASE("chart fit: a curve for each method and eps", "[chart]") {
   const auto curves = fit_curves(tests::sample_images());
   REQUIRE(curves.size() == 4);
   CHECK(curves[0].method == "tiered");
-  CHECK(curves[0].slope == Approx(-1).margin(0.005));  // its floor bends it a little
+  CHECK(curves[0].slope == Approx(-1).margin(0.005));  // the floor bends the curve a little
   CHECK(curves[1].eps == 1e-3);
   CHECK(curves[1].slope > -0.8);
 }

@@ -26,7 +26,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Random {
  public:
-  double operator()() {  // in [0,1)
+  double operator()() {  // returns numbers in [0,1)
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return static_cast<double>(state_ >> 40) / (1 << 24);
   }
@@ -177,7 +177,7 @@ TEST_CASE("chart labels: segments and rectangles", "[chart]") {
   CHECK(meets_segment(box, {1, -1}, {1, 5}));
   CHECK_FALSE(meets_segment(box, {-1, 0.5}, {-0.1, 0.5}));
   CHECK_FALSE(meets_segment(box, {3, -1}, {3, 5}));
-  CHECK_FALSE(meets_segment(box, {-1, 0.5}, {0.5, 2}));  // round the corner
+  CHECK_FALSE(meets_segment(box, {-1, 0.5}, {0.5, 2}));  // passes the corner
 }
 
 TEST_CASE("chart plot: points are where the ticks of their values are", "[chart]") {
@@ -185,7 +185,7 @@ TEST_CASE("chart plot: points are where the ticks of their values are", "[chart]
   CHECK(what_is_wrong(svg) == "");
   const auto markers = circles(svg, "marker");
   const auto words = texts(svg);
-  REQUIRE(markers.size() == 4);  // the last is the legend's
+  REQUIRE(markers.size() == 4);  // the last marker is the legend's
   const char* x_labels[] = {"10", "100", "1\u00a0000"};
   const char* y_labels[] = {"10^−2", "10^−4", "10^−6"};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -193,7 +193,7 @@ TEST_CASE("chart plot: points are where the ticks of their values are", "[chart]
     const tests::Text *x = find_text(words, x_labels[i]), *y = find_text(words, y_labels[i]);
     REQUIRE((x && y));
     CHECK(markers[i].x == Approx(x->x).margin(0.011));
-    CHECK(markers[i].y == Approx(y->y - 4).margin(0.011));  // the baseline is below the middle
+    CHECK(markers[i].y == Approx(y->y - 4).margin(0.011));  // a text's baseline is below its middle
   }
   CHECK(markers[1].x - markers[0].x == Approx(markers[2].x - markers[1].x).margin(0.021));
   CHECK(markers[0].y < markers[1].y);
@@ -212,13 +212,13 @@ TEST_CASE("chart plot: panels share the scales", "[chart]") {
   CHECK(markers[2].y == Approx((markers[0].y + markers[1].y) / 2).margin(0.011));
   const double right_of_first = (markers[0].x + markers[1].x) / 2;
   CHECK(markers[2].x > right_of_first + 300);
-  CHECK(count_of(svg, ">a series<") == 1);  // one legend
+  CHECK(count_of(svg, ">a series<") == 1);  // one legend for both panels
   CHECK(count_of(svg, ">y, units<") == 1);
 }
 
 TEST_CASE("chart plot: zeros are diamonds in a slot, with a tick", "[chart]") {
   const std::string without = plot_svg(plot_of({point(10, 1e-2), point(100, 1e-4)}));
-  CHECK(count_of(without, "class=\"marker\"") == 3);  // and the legend's
+  CHECK(count_of(without, "class=\"marker\"") == 3);  // two points and the legend's marker
   CHECK(find_text(texts(without), "0") == nullptr);
   const std::string svg = plot_svg(plot_of({point(10, 1e-2), point(100, 1e-4), point(100, 0)}));
   CHECK(what_is_wrong(svg) == "");
@@ -251,7 +251,7 @@ TEST_CASE("chart plot: discs grow with the logarithm of the failures", "[chart]"
   plot.panels[0].series[0].points[1].failures_ppm = 1000;
   plot.panels[0].series[0].points[2].failures_ppm = 1;
   const auto discs = circles(plot_svg(plot), "disc");
-  REQUIRE(discs.size() == 2);  // no words for them, so none in the legend
+  REQUIRE(discs.size() == 2);  // without `disc_words`, the legend has no discs
   CHECK(discs[0].radius == Approx(disc_radius(1000)).margin(0.005));
   CHECK(discs[1].radius == Approx(disc_radius(1)).margin(0.005));
   plot.disc_words = "failures";
@@ -290,9 +290,9 @@ TEST_CASE("chart plot: rings, levels and the staircase", "[chart]") {
   CHECK(rings[0].y == markers[1].y);
   const std::string steps = "H" + coordinate(markers[0].x) + "V" + coordinate(markers[0].y) + "H" +
                             coordinate(markers[1].x) + "V" + coordinate(markers[1].y);
-  CHECK(count_of(svg, steps) == 2);  // the line and the shade
+  CHECK(count_of(svg, steps) == 2);  // once as the line, once as the border of the shaded area
   CHECK(count_of(svg, "class=\"level\"") == 1);
-  CHECK(find_text(texts(svg), "0.001") != nullptr);  // the axis holds the level
+  CHECK(find_text(texts(svg), "0.001") != nullptr);  // the axis covers the level
 }
 
 TEST_CASE("chart plot: whatever the numbers and the words are, the text is well formed", "[chart]") {
@@ -345,7 +345,7 @@ TEST_CASE("chart plot: it fits any width, is white whatever is behind, and asks 
   CHECK(svg.find("system-ui, sans-serif") != std::string::npos);
   for (const char* foreign : {"href", "url(", "<script", "<style", " id="})
     CHECK(svg.find(foreign) == std::string::npos);
-  CHECK(count_of(svg, "http") == 1);  // the name of SVG's elements
+  CHECK(count_of(svg, "http") == 1);  // the only URL is the SVG namespace
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Measurements to draw: rows of early prototypes for rays, an exact power law with a floor for pictures.
+// Measurements to draw: rows of early prototypes for rays, and an exact power law with a floor for images.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct SampleMethod {
   const char* precision;
   double eps, relax;
   int steps;
-  double us[2], evals[2], error, wrong[2], exhausted[2];  // camera, bounce; ppm
+  double us[2], evals[2], error, wrong[2], exhausted[2];  // of camera and bounce rays; ppm
 };
 
 inline std::vector<runtime::RayMeasurement> sample_rays() {
@@ -36,7 +36,7 @@ inline std::vector<runtime::RayMeasurement> sample_rays() {
   const char* classes[] = {"camera", "bounce", "grazing"};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t of = c == 0 ? 0 : 1;
-    const double harder = c == 2 ? 2.5 : 1;  // grazing rays were not measured: made up from the bounce rays
+    const double harder = c == 2 ? 2.5 : 1;  // grazing rays were not measured: factor on the bounce rays' numbers
     for (const SampleMethod& m : methods) {
       runtime::RayMeasurement row;
       row.scene = "composite";
@@ -67,7 +67,7 @@ inline std::vector<runtime::RayMeasurement> sample_rays() {
   return rows;
 }
 
-// relMSE = noise / spp + floor, the cost proportional to the samples.
+// relMSE = noise / spp + floor, with a cost proportional to the samples.
 inline std::vector<runtime::ImageMeasurement> sample_images() {
   struct Curve {
     const char* method;

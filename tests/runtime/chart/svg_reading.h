@@ -1,4 +1,4 @@
-// What tests read out of charts: the numbers of attributes of the elements of a class, and texts with their places.
+// Reads charts for tests: attributes of a class of elements, and texts with their positions.
 #pragma once
 
 #include <regex>
@@ -17,7 +17,7 @@ struct Circle {
   double x, y, radius;
 };
 
-// The circles of a class, in the order drawn.
+// Returns the circles of a class, in drawing order.
 inline std::vector<Circle> circles(const std::string& svg, const std::string& of_class) {
   const std::regex pattern("<circle cx=\"([^\"]*)\" cy=\"([^\"]*)\" r=\"([^\"]*)\" class=\"" + of_class + "\"");
   std::vector<Circle> found;
@@ -29,7 +29,7 @@ inline std::vector<Circle> circles(const std::string& svg, const std::string& of
 
 struct Text {
   double x, y;
-  std::string words;  // a raised exponent follows a `^`
+  std::string words;  // `^` precedes a superscript
 };
 
 inline std::vector<Text> texts(const std::string& svg) {

@@ -1,4 +1,4 @@
-// fathom chart as its users meet it, and how fathom render follows rays in other ways.
+// End-to-end tests of `fathom chart`, and of `fathom render` with other marching methods.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -22,7 +22,7 @@ using fathom::tests::Result;
 
 const char* const kFew = " --rays 100 --rounds 1";
 
-// What bounces off the ground may meet the ball.
+// Rays that bounce off the ground can hit the ball.
 const char* const kGround = R"({"version": 1, "film": {"width": 24, "height": 12}, "render": {"spp": 2},
   "camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]}, "background": [1, 1, 1],
   "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1}, {"type": "sphere", "radius": 1}]})";
@@ -63,7 +63,7 @@ TEST_CASE("cli: chart writes a page, tables, charts and maps") {
   CHECK(rays[0].starts_with("scene,method,precision,eps,relax,steps_max,class,rays,"));
   CHECK(rays[1].starts_with("ground,tiered,f32,0,0,0,camera,100,"));
   const std::vector<std::string> pictures = lines_of(folder.read("a/b/images.csv"));
-  CHECK(pictures.size() == 1 + 4);  // four methods, at 4 samples
+  CHECK(pictures.size() == 1 + 4);  // a header, and four methods at 4 samples
   for (const auto* table : {&rays, &pictures}) {
     for (const std::string& line : *table) CHECK(fields(line) == fields(table->front()));
   }
@@ -112,7 +112,7 @@ TEST_CASE("cli: chart without pictures, quietly, from standard input and of a sc
 
 TEST_CASE("cli: chart's maps keep the film's shape, however tall it is") {
   const Folder folder;
-  const int scale = 34;  // the strip under a map
+  const int scale = 34;  // height of the strip below a map
   for (const auto& [film, size] : {std::pair(R"("width": 64, "height": 16)", std::pair(320, 80 + scale)),
                                    std::pair(R"("width": 16, "height": 64)", std::pair(80, 320 + scale)),
                                    std::pair(R"("width": 1, "height": 65535)", std::pair(1, 320 + scale))}) {
@@ -157,7 +157,7 @@ TEST_CASE("cli: chart says what is wrong, and leaves nothing behind") {
     CHECK_THAT(result.err, Contains(c.message) && Contains("error"));
     CHECK(result.out == "");
   }
-  CHECK(folder.files() == 3);  // the scenes
+  CHECK(folder.files() == 3);  // only the scenes
 }
 
 TEST_CASE("cli: render follows rays as it is told") {

@@ -54,7 +54,7 @@ TEST_CASE("cli: check says how exact each object is and what costs the most") {
              Contains("\nnot certified: nothing is proved of the mandelbulb at bulb.json:4:5\n"));
 }
 
-// Once, the place was the whole formula's, which is the first line of an expression list.
+// Regression: the location was that of the whole formula, the first line of an expression list.
 TEST_CASE("cli: check names the operation that has no bound, and its line") {
   const Folder folder;
   folder.write("jump.vm", "# steps\n_0 var-x\n_1 var-y\n_2 floor _0\n_3 sub _1 _2\n_4 const 0.1\n_5 add _3 _4\n");
@@ -96,7 +96,7 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
   CHECK_THAT(rope.out, Contains("twist \"rope\" at rope.json:5:5\n") && Contains("\nno constant broken\n"));
   CHECK(folder.run("check rope.json --probe 5000 --threads 3").out == rope.out);
   const Result bulb = folder.run("check bulb.json --probe 1000");
-  CHECK(bulb.code == 0);  // nothing is claimed, so nothing breaks
+  CHECK(bulb.code == 0);  // the scene claims nothing, so nothing breaks
   CHECK_THAT(bulb.out, Contains("estimate") && Contains("no constant broken"));
   const auto lines = json_lines(folder.run("check rope.json --probe 1000 --error-format json").out);
   REQUIRE(lines.size() > 3);

@@ -1,4 +1,4 @@
-// fathom compile and fathom asm, and every verb over what they write.
+// `fathom compile` and `fathom asm`, and every verb on their output.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -26,7 +26,7 @@ TEST_CASE("a compiled scene renders to the same bits as the scene", "[cli]") {
     REQUIRE(folder.run("render " + scene + ".json -r 32 -s 2 -o a.exr -q").code == 0);
     REQUIRE(folder.run("render " + scene + ".fbc -r 32 -s 2 -o b.exr -q").code == 0);
     CHECK(folder.read("a.exr") == folder.read("b.exr"));
-    // Names and places are no part of what is rendered.
+    // Names and source locations do not affect the image.
     REQUIRE(folder.run("compile --strip " + scene + ".json -o " + scene + ".fbc").code == 0);
     REQUIRE(folder.run("render " + scene + ".fbc -r 32 -s 2 -o b.exr -q").code == 0);
     CHECK(folder.read("a.exr") == folder.read("b.exr"));
@@ -54,18 +54,18 @@ TEST_CASE("parameters can be set of a compiled scene as of the scene itself", "[
   CHECK(folder.run("eval s.fbc -D r=1 --at 3,0,0").out.starts_with("2 "));
   const Result wrong = folder.run("eval s.fbc -D r=5 --at 3,0,0");
   CHECK(wrong.code == 2);
-  // Set when it was compiled, and then set anew.
+  // A parameter set at compile time can be set again.
   REQUIRE(folder.run("compile s.json -D r=2 -o two.fbc").code == 0);
   CHECK(folder.run("dump two.fbc").out.find("sphere 2") != std::string::npos);
   const Result two = folder.run("eval two.fbc --at 3,0,0");
   CHECK(two.out.starts_with("1 "));
   CHECK(folder.run("dump --stage graph two.fbc").out.find("sphere radius=2 ") != std::string::npos);
-  CHECK(two.err.empty());  // proved with the value it was compiled with
+  CHECK(two.err.empty());  // proved with the value set at compile time
   CHECK(folder.run("eval two.fbc -D r=1.5 --at 3,0,0").out.starts_with("1.5 "));
   CHECK(folder.run_script("$fathom dump --stage file two.fbc | $fathom asm - -o - | cmp - two.fbc").code == 0);
   REQUIRE(folder.run("compile two.fbc -o again.fbc").code == 0);
   CHECK(folder.read("again.fbc") == folder.read("two.fbc"));
-  // Without the text there is nothing to set, and the message says so.
+  // Without the source text no parameter can be set, and the message says so.
   REQUIRE(folder.run("compile s.json --no-text -o bare.fbc").code == 0);
   const Result bare = folder.run("eval bare.fbc -D r=1 --at 3,0,0");
   CHECK(bare.code == 2);
@@ -84,7 +84,7 @@ TEST_CASE("every verb takes a compiled scene", "[cli]") {
   CHECK(folder.run("slice two.fbc -o slice.png").code == 0);
   CHECK(folder.run("emit cpp two.fbc -o two.h").code == 0);
   CHECK(folder.run("render - -o out.png -r 16 -s 1 -q", folder.read("two.fbc")).code == 0);
-  // Programs alone: what needs no graph.
+  // Programs alone suffice for verbs that need no graph.
   CHECK(folder.run("dump bare.fbc").code == 0);
   CHECK(folder.run("render bare.fbc -o out.png -r 16 -s 1 -q").code == 0);
   for (const char* verb : {"check bare.fbc", "dump --stage graph bare.fbc", "dump --after fold bare.fbc"}) {
@@ -194,7 +194,7 @@ TEST_CASE("programs that the text in their file does not make are run, but not b
   CHECK_THAT(folder.run("dump other.fbc").out, Contains("not proved, but said by the file"));
   CHECK_THAT(other.err, Contains("makes other programs of the scene in it"));
   CHECK_THAT(folder.run("check other.fbc").err, Contains("makes other programs of the scene in it"));
-  // compile makes it anew of the text.
+  // `compile` rebuilds the programs from the text.
   REQUIRE(folder.run("compile other.fbc -o again.fbc").code == 0);
   CHECK(folder.read("again.fbc") == folder.read("ball.fbc"));
 }

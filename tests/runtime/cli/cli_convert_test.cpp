@@ -1,4 +1,4 @@
-// Scenes in Fathom's own notation as users of the program meet them: every verb, conversion and layout.
+// End-to-end tests of scenes in Fathom's own notation: every verb, conversion and layout.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"

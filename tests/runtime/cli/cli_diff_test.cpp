@@ -1,4 +1,4 @@
-// fathom diff as its users meet it.
+// End-to-end tests of `fathom diff`.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -54,7 +54,7 @@ TEST_CASE("cli: diff ends with 1 above the tolerance of its metric") {
   CHECK_THAT(more.err, Contains("mse is 0.875, more than 0.87"));
   CHECK(folder.run("diff a.pfm b.pfm --tol 1.9 --metric max").code == 1);
   CHECK(folder.run("diff a.pfm b.pfm --tol 50 --metric relmse").code == 1);
-  // A value that is not finite is in no tolerance.
+  // NaN and infinity exceed every tolerance.
   folder.write("nan.pfm", float_map({NAN, 2, 3, 0, 0, 0.5f}));
   const Result invalid = folder.run("diff a.pfm nan.pfm --tol 100");
   CHECK(invalid.code == 1);

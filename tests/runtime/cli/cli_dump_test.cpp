@@ -1,4 +1,4 @@
-// fathom dump and fathom schema as their users meet them.
+// End-to-end tests of `fathom dump` and `fathom schema`.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -59,14 +59,14 @@ TEST_CASE("cli: dump prints JSON and drawings") {
   CHECK_THAT(folder.run("dump two.json --format mermaid").out, Contains("flowchart TD") && Contains("n4 -->|1| n1"));
 }
 
-// Once, an outline's groups after the first were left out, and all offsets behind them were wrong.
+// Regression: the dump left out all but the first immediates group of an outline, and all later offsets were wrong.
 TEST_CASE("cli: dump prints every group of an outline as JSON, and what is fused") {
   const Folder folder;
   folder.write("triangle.json", R"({"version": 1, "objects": [
     {"type": "extrude", "half_depth": 1, "of": {"type": "polygon", "points": [[0, 0], [2, 0], [0, 1]]}},
     {"type": "sphere", "radius": 1, "translate": [0, 5, 0]}]})");
   const auto program = nlohmann::json::parse(folder.run("dump triangle.json --format json").out);
-  CHECK(program["code"].size() == 4);  // polygon, slab, meet, the moved sphere joined
+  CHECK(program["code"].size() == 4);  // polygon, slab, meet, the translated sphere with a fused min
   const auto& polygon = program["code"][0];
   CHECK(polygon["op"] == "polygon");
   CHECK(polygon["operand"] == 3);
@@ -157,7 +157,7 @@ TEST_CASE("cli: dump --run shows the stacks at a point and names the first numbe
   CHECK(ball.code == 0);
   CHECK_THAT(ball.out, Contains("; at 0 3 0\n") && Contains("\n;   points (0 3 0)   values 2.5\n"));
   CHECK(ball.out.find("not finite") == std::string::npos);
-  // The listing is still one: the stacks stand in comments.
+  // The output is still a valid listing, because the stacks are in comments.
   CHECK(folder.run("asm - -o run.fbc", ball.out).code == 0);
   CHECK(folder.run("dump run.fbc --run --at 0,3,0").out.find("values 2.5") != std::string::npos);
   REQUIRE(folder.run("asm - -o nan.fbc", "x\nsqrt\nsphere 1 min\n").code == 0);
@@ -174,7 +174,7 @@ TEST_CASE("cli: dump --run shows the stacks at a point and names the first numbe
   CHECK_THAT(refused.err, Contains("too long to be run once for each of its instructions"));
 }
 
-// Once, pages of operands in another order were printed, which saves nothing.
+// Regression: the diff printed pages of operands in another order, which saves nothing.
 TEST_CASE("cli: dump --diff leaves out operands that only change places") {
   const Folder folder;
   folder.write("swap.json", R"_({"version": 1, "objects": [

@@ -1,4 +1,4 @@
-// Files for editors: made of the language's words, and fit for what the program prints.
+// Files for editors: generated from the language's words, and able to parse the program's messages.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>

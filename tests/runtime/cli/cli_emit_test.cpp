@@ -1,4 +1,4 @@
-// fathom emit as a user sees it.
+// End-to-end tests of `fathom emit`.
 #include <catch2/catch.hpp>
 #include <string>
 

@@ -1,4 +1,4 @@
-// What `cmake --install` installs works where it is installed.
+// Files installed by `cmake --install` work in their installed location.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"

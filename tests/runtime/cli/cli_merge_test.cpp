@@ -1,4 +1,5 @@
-// fathom merge: parts of a render, however it was split, are the whole bit for bit; what does not fit is refused.
+// `fathom merge`: the merged parts of a render equal the whole render bit for bit, however the render was split.
+// Parts that do not fit are refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
@@ -43,7 +44,7 @@ TEST_CASE("cli merge: crops and sample ranges split at random are the whole rend
     CHECK(folder.read("m.exr") == folder.read("whole.exr"));
     CHECK(folder.read("m.film") == folder.read("whole.film"));
     CHECK(folder.read("m.png") == folder.read("whole.png"));
-    // In two steps.
+    // Merges in two steps.
     REQUIRE(folder.run("merge " + parts[0] + " " + parts[1] + " -q -o some.film").code == 0);
     names = "some.film";
     for (std::size_t i = 2; i < parts.size(); ++i) names += " " + parts[i];
@@ -95,12 +96,12 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   REQUIRE(folder.run("render ball.json -s 8 -q -o e.film --adaptive").code == 0);
   CHECK(folder.run("merge a.film e.film -o m.exr").code == 65);
   REQUIRE(folder.run("render ball.json -s 8 -q -o e.exr --adaptive").code == 0);
-  CHECK(folder.run("merge e.film -o m.exr").code == 0);  // but a picture can be made of it
+  CHECK(folder.run("merge e.film -o m.exr").code == 0);  // but e.film alone can become an image
   CHECK(folder.read("m.exr") == folder.read("e.exr"));
   CHECK_FALSE(folder.has("out.png"));
 }
 
-// Films that take next to nothing to make may lie far apart.
+// Two small films can be far apart: their sum is as large as the whole image.
 TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
   const Folder folder;
   const std::string render = "render ball.json -s 1 -q --size 400x300 ";
@@ -129,7 +130,7 @@ TEST_CASE("cli merge: what is full only together is said to be lost") {
   CHECK_THAT(folder.run("render bright.json -s 8 -q -o m.exr").err, Contains("samples lost"));
 }
 
-// Once, light of 1e-10 was black without a word.
+// Regression: light of 1e-10 was black without a warning.
 TEST_CASE("cli merge: light too faint for the film is said to be") {
   const Folder folder;
   const auto render = [&](const std::string& background) {
@@ -143,7 +144,7 @@ TEST_CASE("cli merge: light too faint for the film is said to be") {
   CHECK_THAT(render("[1e-9, 1e-9, 1e-9]"), Contains("too faint for the film"));
   CHECK_THAT(render("[1e-7, 1e-7, 1e-7]"), !Contains("too faint"));
   CHECK_THAT(render("[0, 0, 0]"), !Contains("too faint"));
-  // In a picture that is bright elsewhere there is nothing to see in it.
+  // In an otherwise bright image, faint light is invisible and needs no warning.
   CHECK_THAT(render(R"({"bottom": [0, 0, 1e-12], "top": [1, 1, 1]})"), !Contains("too faint"));
 }
 

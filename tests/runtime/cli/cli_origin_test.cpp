@@ -1,5 +1,4 @@
-// Scenes far from zero as users of the program meet them: places are those of the scene, whatever the programs'
-// origin.
+// End-to-end tests of scenes far from zero: all printed positions are the scene's, whatever origin the programs use.
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -47,7 +46,8 @@ TEST_CASE("cli: slice draws the scene's coordinates, far from zero too") {
   const auto inside = [&](const std::string& flags) {
     return folder.run("slice " + flags + " -o a.png --show sign --size 8x8").out;
   };
-  CHECK(inside("far.json --box 99999,-0.5,100001,1.5") == "inside 28 of 64 pixels\n");  // 12 and two rows of floor
+  // 12 pixels of the ball and two rows of floor.
+  CHECK(inside("far.json --box 99999,-0.5,100001,1.5") == "inside 28 of 64 pixels\n");
   CHECK(inside("far.json --box 99999,-1,100001,1 --axis y --at 0.5") == "inside 12 of 64 pixels\n");
   CHECK(inside("far.json --axis x --at 100000 --box -1,0,1,2") == "inside 12 of 64 pixels\n");
   CHECK(inside("far.json --axis x --at 0 --box -1,0,1,2") == "inside 0 of 64 pixels\n");
@@ -73,7 +73,8 @@ TEST_CASE("cli: dump says where the programs' origin is, check speaks of the sce
   CHECK(check.code == 0);
   CHECK(check.err == "");
   CHECK_THAT(check.out, Contains("[99999.5,100000.5]x[0,1]x[-0.5,0.5]") && Contains("no constant broken"));
-  // A hair is not too thin where floats are fine: only far from the camera, or from the programs' origin.
+  // A thin object gets no warning where floats are fine. Thin objects matter only far from the camera or from the
+  // programs' origin.
   std::string hair = kFar;
   hair.replace(hair.find("0.5, \"translate\""), 3, "0.005");
   folder.write("hair.json", hair);

@@ -1,4 +1,4 @@
-// fathom slice as its users meet it.
+// End-to-end tests of `fathom slice`.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"
@@ -17,7 +17,7 @@ using fathom::tests::Result;
 
 TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
   const Folder folder;
-  // Centres within the radius 0.5 on a grid of 8 by 8 over [-1, 1]^2: 4 by 4 without the corners.
+  // An 8 by 8 grid over [-1, 1]^2 has 12 pixel centres within the radius 0.5: 4 by 4 without the corners.
   const Result sign = folder.run("slice ball.json -o a.png --show sign --box -1,-1,1,1 --size 8x8");
   CHECK(sign.code == 0);
   CHECK(sign.out == "inside 12 of 64 pixels\n");
@@ -26,7 +26,7 @@ TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
   const auto inside = [&](const std::string& flags) {
     return folder.run("slice two.json -o a.png --show sign --size 10x10 " + flags).out;
   };
-  // The left ball's box has the corners -3 and -1, the right box 1 and 3.
+  // The left ball's bounding box spans -3 to -1 in x, the right box 1 to 3.
   CHECK(inside("--box 1,-1,3,1") == "inside 100 of 100 pixels\n");
   CHECK(inside("--axis y --at 0.9 --box 1,-1,3,1") == "inside 100 of 100 pixels\n");
   CHECK(inside("--axis y --at 1.1 --box 1,-1,3,1") == "inside 0 of 100 pixels\n");

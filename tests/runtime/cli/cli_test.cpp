@@ -1,4 +1,4 @@
-// The program as its users meet it: exit codes, messages, data on stdout, files written and not written.
+// End-to-end tests: exit codes, messages, data on stdout, files written and not written.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -31,7 +31,7 @@ TEST_CASE("cli: files that cannot be read or written are exit code 74") {
     const Result result = folder.run(std::string("render ball.json ") + output);
     CHECK(result.code == 74);
     CHECK_THAT(result.err, Contains("`missing`"));
-    CHECK_THAT(result.err, !Contains("drew"));  // found before rendering
+    CHECK_THAT(result.err, !Contains("drew"));  // the error comes before rendering
   }
   CHECK(folder.run("dump ball.json").code == 0);
   CHECK(folder.files() == 2);
@@ -79,7 +79,8 @@ TEST_CASE("cli: the scenes that come with the program have no errors and no warn
     INFO(entry.path());
     CHECK(result.code == 0);
     if (entry.path().filename() ==
-        "e-gyroid.json") {  // whose sheet is meant in the gyroid's values, as its head says
+        // This scene's sheet is defined by the gyroid's values on purpose, see the head of the file.
+        "e-gyroid.json") {
       CHECK_THAT(result.err, Contains("W0511") && Contains("e-gyroid.json: 1 warning\n"));
     } else {
       CHECK(result.err == "");
@@ -160,8 +161,8 @@ TEST_CASE("cli: flags override the scene") {
     REQUIRE(folder.run("render ball.json -o a.png " + flags).code == 0);
     return png_size(folder.read("a.png"));
   };
-  CHECK(size("-r 20") == std::pair(20, 10));         // the film's aspect stays
-  CHECK(size("--aspect 4:3") == std::pair(32, 24));  // the width stays
+  CHECK(size("-r 20") == std::pair(20, 10));         // keeps the film's aspect ratio
+  CHECK(size("--aspect 4:3") == std::pair(32, 24));  // keeps the width
   CHECK(size("--res 21 --aspect 1.5x1") == std::pair(21, 14));
   CHECK(size("--size 5x7") == std::pair(5, 7));
   CHECK(size("-r 1 --aspect 100:1") == std::pair(1, 1));

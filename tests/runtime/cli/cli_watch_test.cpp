@@ -1,4 +1,4 @@
-// fathom render --denoise, --preview and --watch as their users meet them.
+// End-to-end tests of `fathom render` with --denoise, --preview and --watch.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"
@@ -13,7 +13,7 @@ using fathom::tests::kBall;
 using fathom::tests::png_size;
 using fathom::tests::Result;
 
-// A ball on a floor in soft light, which has noise.
+// A ball on a floor in soft light, so that the image is noisy.
 const char* const kNoisy = R"({
   "version": 1,
   "camera": {"position": [0, 1.5, 4], "target": [0, 0, 0]},
@@ -36,12 +36,12 @@ TEST_CASE("cli: --denoise keeps the noisy picture beside the denoised one") {
   REQUIRE(folder.run("render noisy.json -o plain.png --no-denoise").code == 0);
   CHECK(folder.read("a-noisy.png") == folder.read("plain.png"));
   CHECK(folder.read("a.png") != folder.read("plain.png"));
-  // The layer in the file is the same picture.
+  // The layer in the EXR file is the same image.
   REQUIRE(folder.run("tonemap a.exr --layer noisy -o layer.png").code == 0);
   CHECK(folder.read("layer.png") == folder.read("plain.png"));
   REQUIRE(folder.run("tonemap a.exr -o denoised.png").code == 0);
   CHECK(folder.read("denoised.png") == folder.read("a.png"));
-  // Any number of threads, the same bits.
+  // The bits do not depend on the number of threads.
   REQUIRE(folder.run("render noisy.json -o b.exr --denoise --threads 1").code == 0);
   REQUIRE(folder.run("render noisy.json -o c.exr --denoise --threads 3").code == 0);
   CHECK(folder.read("b.exr") == folder.read("c.exr"));
@@ -75,7 +75,7 @@ TEST_CASE("cli: --watch draws again when the file changes, and outlives errors")
   folder.write("flat.json",
                R"({"version": 1, "film": {"width": 16, "height": 8}, "render": {"spp": 2}, "background": [1, 1, 1],
                                 "objects": [{"type": "box", "half_size": [1, 0.2, 1]}]})");
-  // Waits until the condition holds; for minutes, for the machine may be busy.
+  // Waits until the condition holds, for up to minutes on a busy machine.
   const Result result = folder.run_script(R"(
     wait_for() { for i in $(seq 2400); do if eval "$1"; then return 0; fi; sleep 0.05; done; exit 9; }
     "$fathom" render ball.json -o a.png --watch 2>log & watcher=$!

@@ -1,4 +1,4 @@
-// A small judge of markup: every element closed in order, every attribute quoted and once, every & spelled out.
+// A small markup checker: elements are closed in order, attributes are quoted and unique, every & is escaped.
 #pragma once
 
 #include <cctype>
@@ -9,7 +9,7 @@
 
 namespace fathom::tests {
 
-// What is wrong with it, or nothing. Elements of HTML that have no end are known.
+// Returns the first error, or an empty string. Knows the HTML elements without an end tag.
 inline std::string what_is_wrong(const std::string& markup) {
   static const std::set<std::string> kWithoutEnd = {"meta", "img", "br", "link"};
   static const std::regex kAttribute(R"re(\s+([A-Za-z][A-Za-z0-9:-]*)="([^"<]*)")re");

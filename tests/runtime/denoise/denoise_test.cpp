@@ -16,7 +16,7 @@ namespace {
 
 using Pixels = std::vector<float>;
 
-// A picture with its truth: two copies with noise, and what is seen in each pixel.
+// An image with its truth: two noisy copies, and the features of the surface seen in each pixel.
 struct Scene {
   int width, height;
   Pixels truth, first, second, albedo, normal, depth;
@@ -38,7 +38,7 @@ struct Surface {
   float depth, light;
 };
 using Seen = std::function<Surface(int x, int y)>;
-// A factor of mean 1.
+// Returns a random factor of mean 1.
 using Noise = std::function<float(Sampler& sampler)>;
 
 Scene draw(int width, int height, const Seen& seen, const Noise& noise) {
@@ -62,7 +62,7 @@ Scene draw(int width, int height, const Seen& seen, const Noise& noise) {
   return scene;
 }
 
-// The light of a lamp at the upper left on a floor and a wall, both chequered; a shadow's edge that no feature shows.
+// A chequered floor and wall, lit by a lamp at the upper left. The edge of the shadow shows in no feature.
 Surface room(int x, int y) {
   const bool wall = x < 48;
   const float dx = static_cast<float>(x - 20) / 60, dy = static_cast<float>(y - 10) / 60;
@@ -76,7 +76,7 @@ Surface room(int x, int y) {
   return surface;
 }
 
-// The mean of `count` numbers of the exponential distribution: strong, skewed noise like that of few paths.
+// The mean of `count` exponentially distributed numbers: strong, skewed noise like that of few paths.
 Noise exponential(int count) {
   return [count](Sampler& sampler) {
     double sum = 0;
@@ -98,7 +98,7 @@ TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noi
     const double before = relmse(scene, scene.noisy()), after = relmse(scene, result);
     CAPTURE(before, after);
     CHECK(after <= before / 5);
-    // No energy is made or lost.
+    // The denoiser neither adds nor loses energy.
     CHECK(compare(scene.view(result), scene.view(scene.truth)).mean == Approx(0).margin(0.01));
   }
 }
@@ -137,7 +137,7 @@ TEST_CASE("denoise: nothing bleeds over an edge of albedo, normal or depth", "[r
   for (const Seen& edge : edges) {
     const Scene scene = draw(48, 32, edge, exponential(4));
     const Pixels result = denoise(scene.input(), 1);
-    // Columns beside the edge: their mean over the rows against the truth.
+    // The columns next to the edge: their mean over the rows against the truth.
     for (const int x : {22, 23, 24, 25}) {
       for (std::size_t c = 0; c < 3; ++c) {
         double mean = 0;
@@ -188,7 +188,7 @@ TEST_CASE("denoise: a firefly has no edge where the window ends", "[runtime]") {
       exponential(64));
   for (std::size_t c = 0; c < 3; ++c) scene.first[3 * scene.at(32, 32) + c] = 1e4f;
   const Pixels result = denoise(scene.input(), 1);
-  // The mean of what it adds so many pixels away.
+  // Returns the mean of the firefly's light over the pixels at these distances from it.
   const auto added = [&](double from, double to) {
     double sum = 0;
     int count = 0;
@@ -205,8 +205,8 @@ TEST_CASE("denoise: a firefly has no edge where the window ends", "[runtime]") {
   const double near = added(0, 4);
   CHECK(near > 5);
   CHECK(added(4, 6) < 0.9 * near);
-  CHECK(added(7.5, 8.5) < 0.3 * near);  // where the window ends
-  CHECK(added(9, 12) < 0.02 * near);    // the corners of the square around it
+  CHECK(added(7.5, 8.5) < 0.3 * near);  // at the border of the window
+  CHECK(added(9, 12) < 0.02 * near);    // in the corners of the square around the window
 }
 
 TEST_CASE("denoise: scales with the light", "[runtime]") {

@@ -1,4 +1,4 @@
-// Regions that are kept from render to render.
+// Regions kept from one render to the next.
 #include "runtime/field/region_store.h"
 
 #include <catch2/catch.hpp>
@@ -15,7 +15,7 @@ using namespace fathom;
 using runtime::RegionOptions;
 using runtime::RegionStore;
 
-// A cube of balls, large enough for regions. `first` moves the first of them.
+// A cube of balls, large enough for regions. `first` moves the first ball.
 compiler::CompiledScene balls(double first, double light = 1) {
   std::string objects;
   for (int i = 0; i < 343; ++i) {
@@ -69,7 +69,7 @@ TEST_CASE("region store: what was not asked for is forgotten, and lives on with 
     CHECK(again != first);
     CHECK_FALSE(store.kept(*again));
   }
-  // The program that it was built of is gone, but for the store's own.
+  // The scene's program no longer exists here: the regions use their own copy.
   runtime::RealScratch scratch;
   std::uint64_t instructions = 0;
   CHECK(first->evaluate(glm::dvec3(0, 0, 0.3), scratch, instructions) == Approx(0).margin(1e-9));

@@ -1,4 +1,4 @@
-// Regions: the whole program's bits, and the same picture with and without them.
+// Regions: the same bits as the whole program, and the same image with and without them.
 #include "runtime/field/regions.h"
 
 #include <fmt/format.h>
@@ -47,8 +47,8 @@ std::string grid(int side) {
   return "{\"version\": 1, \"objects\": [" + objects + "]}";
 }
 
-// A scene of many shapes, of four materials by turns; `blend` makes groups of three that are blended; on a ground
-// plane when asked for.
+// A scene of `count` shapes: `blend` blends groups of three, `ground` adds a ground plane, `materials` alternates
+// four materials.
 std::string many(int count, bool blend, bool ground, bool materials) {
   Random random(7);
   std::string objects;
@@ -102,10 +102,11 @@ Field with_regions(const compiler::CompiledScene& scene, RegionOptions options =
   return field;
 }
 
-// How many points differ between the two evaluations of a field, in float or in double.
+// Numbers of points at which the two evaluations of a field differ, in float and in double.
 struct Differences {
   std::size_t single = 0, real = 0;
-  std::size_t exact = 0, rounded = 0, far = 0;  // of all points: what became of the whole program's value
+  // Numbers of points with the whole program's exact value, with a rounded one, and without any program.
+  std::size_t exact = 0, rounded = 0, far = 0;
 };
 
 Differences compare(const vm::VerifiedProgram& program, const Regions& regions, const Sample& at) {
@@ -133,7 +134,8 @@ Differences compare(const vm::VerifiedProgram& program, const Regions& regions, 
 
 }  // namespace
 
-// A ray's steps were others with regions, which told less than the distance where nothing was near.
+// Regression: with regions, rays took other steps, because regions returned less than the distance where nothing was
+// near.
 TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float and in double", "[regions]") {
   for (const bool blend : {false, true}) {
     for (const bool ground : {false, true}) {
@@ -141,7 +143,7 @@ TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float
       const Field field = with_regions(scene);
       Differences all;
       for (int seed = 0; seed < test::few(24); ++seed) {
-        // Within, about, and far outside.
+        // Inside, around, and far outside.
         const Sample at = sample(kMostPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
         const Differences some = compare(scene.distance, *field.regions, at);
         all.single += some.single, all.real += some.real;
@@ -174,7 +176,7 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
         program, box, {.always = true, .room = bounded ? 0 : 3, .magnitude = static_cast<float>(known.magnitude)});
     if (!regions) continue;
     ++built;
-    for (const double reach : {1.05, 8.0}) {  // some of them outside
+    for (const double reach : {1.05, 8.0}) {  // some points lie outside
       Sample at = sample(kMostPoints, reach, seed);
       const glm::dvec3 middle = (box.lo + box.hi) / 2.0, half = (box.hi - box.lo) / 2.0;
       for (std::size_t i = 0; i < kMostPoints; ++i) {
@@ -210,7 +212,7 @@ TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]"
     vm::evaluate_surface(scene.surface, points, 100, a.out(), workspace);
     field.regions->evaluate_surface(points, 100, b.out(), workspace);
     for (std::size_t i = 0; i < 100; ++i) {
-      if (a.d[i] > 0.005f) continue;  // beyond the limits nothing is promised
+      if (a.d[i] > 0.005f) continue;  // beyond this distance gradients may differ
       ++near;
       CHECK(a.d[i] == b.d[i]);
       CHECK(a.surface[i] == b.surface[i]);
@@ -306,7 +308,7 @@ TEST_CASE("regions: rays meet what they meet without them, to the bit", "[region
   }
 }
 
-// The middle of a picture that is large enough to be worth building regions.
+// The middle of an image that is large enough for regions to pay off.
 RenderOptions part_of_picture() {
   RenderOptions options;
   options.width = 192, options.height = 128, options.spp = 2, options.threads = 1;
@@ -314,8 +316,8 @@ RenderOptions part_of_picture() {
   return options;
 }
 
-// With 1 and 2 threads regions met their limit of memory late enough for another attempt, with more they did not; and
-// with regions, small ones and none a picture was not the same.
+// Regression: regions reached their memory limit late enough for another attempt with 1 and 2 threads, but not with
+// more. Images with large regions, small ones and none were different.
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
           "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
@@ -341,8 +343,8 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
   CHECK(most > 0);
 }
 
-// A limit of time did not end building them, which takes up to half a minute. With another limit there were other
-// regions, so a render that went on after it counted other costs.
+// Regression: a time limit did not stop the building of regions, which takes up to half a minute. Another limit gave
+// other regions, so a resumed render counted other costs.
 TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
   RenderOptions options = part_of_picture();
@@ -356,8 +358,8 @@ TEST_CASE("regions: a limit of time ends building them, except where costs are k
   CHECK(freely.stats.region_bytes > 0);
 }
 
-// Building them took ten times what they may take: a cell keeps its part of the program until it is split, and in a
-// wide scene the cells of the first levels keep most of the program each.
+// Regression: building took ten times the allowed memory. A cell keeps its pruned program until the cell is split,
+// and in a wide scene each cell of the first levels keeps most of the program.
 TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions][released]") {
   const compiler::CompiledScene scene = tests::compiled(grid(100));
   const auto facts_of = [&](std::size_t memory) {

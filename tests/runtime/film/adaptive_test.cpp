@@ -16,7 +16,8 @@
 namespace fathom::runtime::adaptive_test {
 namespace {
 
-// A pixel whose samples are 1 / chance so often, else 0: mean 1, the more noisy the rarer. Skewed, as light is.
+// A pixel with samples of 1 / chance, which occur with probability `chance`, and 0 otherwise. The mean is 1, and the
+// noise grows as the chance falls. Skewed, as light is.
 struct Lottery {
   float chance;
   double draw(Sampler& sampler) const { return sampler.next() < chance ? 1 / static_cast<double>(chance) : 0; }
@@ -36,7 +37,8 @@ struct Sum {
 
 // One row of pixels rendered in two stages.
 struct Row {
-  std::vector<double> combined, pooled;  // [pixel] by first_share(); all samples alike
+  // Per pixel: both stages weighted by first_share(), and all samples weighted equally.
+  std::vector<double> combined, pooled;
 };
 
 Row render(std::span<const Lottery> pixels, int spp, std::uint64_t seed) {
@@ -79,7 +81,7 @@ TEST_CASE("adaptive: two stages have the true mean, one mean over both has not")
     CHECK(std::abs(t(combined[i])) < 4);
     worst_pooled = std::max(worst_pooled, std::abs(t(pooled[i])));
   }
-  CHECK(worst_pooled > 6);  // the test can tell
+  CHECK(worst_pooled > 6);  // the test can detect the bias
 }
 
 TEST_CASE("adaptive: less error than evenly shared out where pixels differ") {
@@ -121,10 +123,10 @@ TEST_CASE("adaptive: without noise all pixels have the same, and noise draws sam
   for (const int count : second_samples(estimates, 20, 20, 16)) CHECK(count == 12);
   for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i].variance = i % 20 < 10 ? 0.01 : 0.04;
   const std::vector<int> more = second_samples(estimates, 20, 20, 16);
-  // Twice the standard deviation, twice the samples: 8 and 16.
+  // Twice the standard deviation gets twice the samples: 8 and 16.
   CHECK(std::abs(more[20 * 10 + 2] - 8) <= 1);
   CHECK(std::abs(more[20 * 10 + 17] - 16) <= 1);
-  // The same deviation shows less where it is bright.
+  // The same deviation matters less where the image is bright.
   for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i] = {i % 20 < 10 ? 1.0 : 0.1, 0.04};
   const std::vector<int> dark = second_samples(estimates, 20, 20, 16);
   CHECK(dark[20 * 10 + 17] > 2 * dark[20 * 10 + 2]);
@@ -140,8 +142,8 @@ RenderOptions adaptive_options(int width, int height, int spp) {
   return options;
 }
 
-// A floor under a ball lamp out of the picture, and even light above the horizon: noise in one half only. Lights are
-// found by hitting them, which few paths do.
+// A floor under a ball lamp outside the image, and uniform light above the horizon: only one half is noisy. Light is
+// found by hits alone, which few paths have.
 compiler::CompiledScene floor_and_sky() {
   return scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 1, 0], "fov": 60}, "background": [0.5, 0.5, 0.5],
       "materials": {"floor": {"type": "diffuse", "color": [0.6, 0.5, 0.4]},
@@ -193,7 +195,8 @@ TEST_CASE("adaptive: renders have the mean of even ones, and the variance they s
     const double expected = mean_of(even, {x, y, x + 3, y + 3}).y;
     const double sigma = std::sqrt(cell.variance() / cell.n);
     INFO("cell " << i << ": " << cell.mean() << " +- " << sigma << ", evenly " << expected);
-    CHECK(std::abs(cell.mean() - expected) <= 4 * sigma + 2e-3 * expected);  // 2e-3: four of the even one's errors
+    // 2e-3: four standard errors of the even render.
+    CHECK(std::abs(cell.mean() - expected) <= 4 * sigma + 2e-3 * expected);
   }
   double found = 0;
   for (const Sum& pixel : pixels) found += pixel.variance();
@@ -304,8 +307,8 @@ TEST_CASE("adaptive: what was stopped in either stage goes on to the same bits",
   CHECK(second_stages <= 4);
 }
 
-// The mean square error of renders of the scene, from the spread between seeds, for both are unbiased; and relative
-// to brightness.
+// The mean square error of renders of the scene, absolute and relative to the brightness. The spread between seeds
+// gives the error, because both kinds of render are unbiased.
 struct Error {
   double square = 0, relative = 0;
 };
@@ -327,7 +330,8 @@ Error error_of(const compiler::CompiledScene& scene, RenderOptions options, int 
   return error;
 }
 
-// Light through a ball of glass, found by the few paths that hit the lamp, on a floor below an even sky.
+// A floor below a uniform sky, lit by a caustic through a glass ball: only the few paths that hit the lamp find its
+// light.
 TEST_CASE("adaptive: a caustic has less error than with as many samples everywhere", "[render][heavy]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 1.2, 6], "target": [0, 1.8, 0], "fov": 50},
       "background": [0.3, 0.3, 0.3],

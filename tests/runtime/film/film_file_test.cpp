@@ -1,4 +1,4 @@
-// Film files: what is written is read back; whatever is damaged, cut short or made up is refused.
+// Film files: a written file is read back, and a damaged, truncated or forged file is refused.
 #include "runtime/film/film_file.h"
 
 #include <catch2/catch.hpp>
@@ -105,7 +105,7 @@ TEST_CASE("film files: every flipped bit and every truncation is found") {
   CHECK(std::holds_alternative<FilmFile>(read_film(path)));
 }
 
-// As someone would write it who wants the reader to fail: checksums fit.
+// Heads forged to make the reader fail, with checksums that fit.
 TEST_CASE("film files: a head that makes no sense is refused although its checksum fits") {
   const tests::TemporaryFolder folder;
   const FilmFile wrote = small_file({});
@@ -127,7 +127,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
     if (const auto* unread = std::get_if<UnreadFilm>(&read)) {
       REQUIRE_FALSE(unread->missing);
     } else {
-      ++accepted;  // what was changed is a name, a value or a number that may be so
+      ++accepted;  // the change was a name, a value or another valid number
       const FilmFile& film = std::get<FilmFile>(read);
       REQUIRE(film.render.film.area() == film.shape.area);
     }
@@ -144,7 +144,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
   CHECK(accepted < static_cast<int>(6 * head.size()));
 }
 
-// What a scene calls its things is as long as it likes.
+// A scene's names can have any length.
 TEST_CASE("film files: what can be written can be read, however long") {
   const tests::TemporaryFolder folder;
   FilmFile wrote = small_file({});
@@ -179,7 +179,7 @@ TEST_CASE("film files: what a head becomes is counted before it is made") {
   CHECK(std::holds_alternative<FilmFile>(read_film_header(folder.file("a.film"), {3e6})));
   CHECK(std::holds_alternative<UnreadFilm>(read_film_header(folder.file("a.film"), {1.4e6})));
   std::string bytes = bytes_of(folder.file("a.film"));
-  bytes[15] ^= 1;  // of the head's length
+  bytes[15] ^= 1;  // a byte of the head's length
   write_bytes(folder.file("a.film"), bytes);
   CHECK(std::get<UnreadFilm>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
 }
@@ -198,7 +198,7 @@ TEST_CASE("film files: sums that take more memory than is allowed are not read")
   CHECK(std::holds_alternative<FilmFile>(read_film_header(path, {1e6})));
 }
 
-// They are looked at, not tidied: that takes the square of their number.
+// The reader checks the blocks for overlaps without tidying them, which would take quadratic time.
 TEST_CASE("film files: blocks that overlap are refused as fast as they are read") {
   const tests::TemporaryFolder folder;
   FilmHeader header = small_file({}).header;

@@ -54,7 +54,7 @@ TEST_CASE("film: layers that are not kept are zero and change nothing of the oth
   CHECK(usual.means(0, 0).evaluations == 0);
   CHECK(full.means(0, 0).evaluations == 20);
   CHECK(full.means(0, 0).instructions == 600);
-  CHECK(full.hash() == usual.hash());  // the cost is no part of the picture
+  CHECK(full.hash() == usual.hash());  // the hash of the image does not include the cost
   CHECK(bare.hash() != usual.hash());
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("film: every layer is the same in any order", "[runtime]") {
   CHECK(forwards.hash() == backwards.hash());
   CHECK(forwards.hash() == mixed.hash());
   const PixelMeans means = mixed.means(0, 0);
-  // Sample 0 hit nothing (0 % 3 is its depth), sample 1 did.
+  // Sample 0 hit nothing (its depth is 0 % 3), sample 1 did.
   CHECK(means.surface_id == 5 + 1);
   CHECK(means.material_id == 3 + 1);
   CHECK(means.position.z == 1e6);
@@ -113,7 +113,7 @@ TEST_CASE("film: ids and positions are those of samples that hit, 0 without any"
 TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
   for (const double scale : {1e-5, 1.0, 1e5}) {
     Film film(1, 1, {.variance = true});
-    // s^2 of 1, 2, ..., n is n (n + 1) / 12.
+    // The sample variance s^2 of 1, 2, ..., n is n (n + 1) / 12.
     constexpr int kSamples = 100;
     PathSample sample;
     for (int i = 1; i <= kSamples; ++i) {
@@ -121,20 +121,20 @@ TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
       film.add(0, 0, sample);
     }
     const double expected = scale * scale * (kSamples + 1) / 12.0;
-    CHECK(film.means(0, 0).variance.x == Approx(expected).epsilon(1e-4));  // the terms are rounded to 2^-32
+    CHECK(film.means(0, 0).variance.x == Approx(expected).epsilon(1e-4));  // the film rounds terms to 2^-32
   }
   Film even(1, 1, {.variance = true});
   PathSample sample;
   sample.radiance = glm::vec3(0.1f, 1e-4f, 1000.1f);
   for (int i = 0; i < 1000; ++i) even.add(0, 0, sample);
-  CHECK(even.means(0, 0).variance == glm::dvec3(0));  // exactly
+  CHECK(even.means(0, 0).variance == glm::dvec3(0));  // exactly 0
   Film one(1, 1, {.variance = true});
   one.add(0, 0, sample);
   CHECK(one.means(0, 0).variance == glm::dvec3(0));
 }
 
-// Of independent samples the truth; of samples that avoid each other an upper bound, for it takes them as
-// independent. Once, the layer's description did not say so.
+// The layer is the true variance for independent samples. For samples that avoid each other, the layer is an upper
+// bound, because it assumes independence. Regression: the layer's description did not say so.
 TEST_CASE("film: the variance layer against the variance between seeds", "[render][released]") {
   const auto scene =
       scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 0.3, 0]}, "background": [0.2, 0.3, 0.5],
@@ -200,7 +200,7 @@ TEST_CASE("film: a full sum stays full and says so", "[runtime]") {
   CHECK(film.means(0, 0).radiance.x == Approx(0x1p31 / 3));
 }
 
-// Red 1, 2, ..., n from number `first` on.
+// Adds red radiance 1, 2, ..., n as the samples from number `first` on.
 void add_count(Film& film, std::uint32_t first, int n) {
   for (int i = 1; i <= n; ++i) {
     PathSample sample = sample_of(static_cast<float>(i), 3);
@@ -220,7 +220,7 @@ TEST_CASE("film: films of parts add up to the film of the whole, in any order") 
   constexpr std::uint32_t kSamples = 60;
   const PixelRect area{2, 1, 7, 5}, left{2, 1, 4, 5}, right{4, 1, 7, 5};
   Film whole(area, every_layer());
-  // Left and right, even numbers and odd ones, those below 20 apart.
+  // Left and right halves, each split into the samples below 20, even ones and odd ones.
   std::vector<Film> parts;
   for (int i = 0; i < 6; ++i) parts.emplace_back(i % 2 == 0 ? left : right, every_layer());
   for (int y = area.y0; y < area.y1; ++y) {
@@ -259,13 +259,13 @@ TEST_CASE("film: of two stages radiance is weighted, the rest is of all samples"
   add_count(film, 0, 4);
   const PixelMeans first = film.means(0, 0);
   film.begin_second_stage(0.25);
-  CHECK(film.means(0, 0).radiance == first.radiance);  // nothing in it yet
+  CHECK(film.means(0, 0).radiance == first.radiance);  // the second stage is still empty
   CHECK(film.means(0, 0).variance == first.variance);
   add_count(film, 4, 9);
   film.add(0, 0, {.number = 13});
   const PixelMeans both = film.means(0, 0);
   CHECK(both.radiance.x == Approx(0.25 * 2.5 + 0.75 * 4.5));
-  // s^2 / n of 1..n is (n + 1) / 12; of 0..9 it is that of 1..10.
+  // The variance of the mean, s^2 / n, of 1..n is (n + 1) / 12. That of 0..9 equals that of 1..10.
   CHECK(both.variance.x == Approx((0.0625 * 5 + 0.5625 * 11) / 12));
   CHECK(both.halves[0].x == Approx(0.25 * 2 + 0.75 * 5));
   CHECK(both.halves[1].x == Approx(0.25 * 3 + 0.75 * 4));

@@ -28,7 +28,7 @@ struct Sum {
   double error() const { return std::sqrt((squares - sum * sum / n) / (n - 1) / n); }
 };
 
-// A floor lit by a small bright lamp that few paths find.
+// A floor lit by a small bright lamp that few paths hit.
 compiler::CompiledScene floor_and_lamp() {
   return scene_of(
       R"("camera": {"position": [0, 1, 0.5], "target": [0, 0, 0], "fov": 60}, "background": [0.2, 0.2, 0.2],
@@ -64,7 +64,7 @@ TEST_CASE("noise: judgements double the samples from the least to the most") {
   CHECK(next_end(0, 16, 16) == 8);
   CHECK(next_end(8, 16, 17) == 0);
   CHECK(next_end(0, 1, 4) == 2);
-  CHECK(next_end(0, 5, 17) == 3);  // one of each half at a time
+  CHECK(next_end(0, 5, 17) == 3);  // in pairs, one sample for each half
 }
 
 TEST_CASE("noise: it is the root of the mean of variance over brightness, of a picture of two halves") {
@@ -76,7 +76,7 @@ TEST_CASE("noise: it is the root of the mean of variance over brightness, of a p
     sample.radiance = glm::vec3(0.5f);
     film.add(1, 0, sample);
   }
-  // Variance of 0 and 2 is 2, of their mean 1.
+  // The variance of 0 and 2 is 2, that of their mean is 1.
   CHECK(noise_of(film, {0, 0, 1, 1}, {0}) == Approx(std::sqrt(1 / (2 * 1.01))));
   CHECK(noise_of(film, {0, 0, 2, 1}, {0}) == Approx(std::sqrt(1 / (2 * 1.01) / 2)));
 }
@@ -97,18 +97,18 @@ TEST_CASE("noise: each half is decided by the other, and what is no longer count
     }
     film.merge(part, stage);
   };
-  put(0, 0.0f);  // A agrees
-  put(1, 0.9f);  // B does not
+  put(0, 0.0f);  // half A is below the noise limit: B ends
+  put(1, 0.9f);  // half B is above the noise limit: A goes on
   CHECK(judge(film, 2, 0.1, state) == 1);
   CHECK(state.tiles[0].ends == std::array<std::uint32_t, 2>{0, 2});
-  for (int i = 0; i < 200; ++i) put(3, 0.0f);  // B goes on for A's sake
+  for (int i = 0; i < 200; ++i) put(3, 0.0f);  // B's new samples no longer count, but decide when A ends
   CHECK(film.means(3, 3).samples == 4);
   CHECK(judge(film, 402, 0.1, state) == 0);
   CHECK(state.tiles[0].ends == std::array<std::uint32_t, 2>{402, 2});
 }
 
-// The true mean within four standard errors, and the test can tell: stopping by the very samples that are kept is
-// off.
+// The mean of adaptive stopping is within four standard errors of the truth. As a control, stopping by the samples
+// that are kept is biased.
 TEST_CASE("noise: stopping leaves the mean alone, which stopping by one's own samples does not", "[render][heavy]") {
   const auto scene = floor_and_lamp();
   RenderOptions options = options_of(8, 8, test::few(40000));
@@ -142,7 +142,7 @@ TEST_CASE("noise: stopping leaves the mean alone, which stopping by one's own sa
                    << " (" << t(naive) << " sigma), samples " << samples.mean());
   CHECK(std::abs(t(ours)) < 4);
   CHECK(t(naive) < -6);
-  CHECK(samples.mean() > 20);  // it stops at various numbers
+  CHECK(samples.mean() > 20);  // renders stop at different numbers of samples
   CHECK(samples.mean() < 0.9 * kMost);
 }
 
@@ -155,7 +155,7 @@ RenderOptions noisy_options() {
   return options;
 }
 
-// Half of the picture is a lamp's even light, so tiles differ.
+// Half of the image is uniformly lit by the background, so the tiles' noise differs.
 compiler::CompiledScene lamp_and_sky() {
   return scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 1, 0], "fov": 60}, "background": [0.5, 0.5, 0.5],
       "materials": {"lamp": {"type": "emissive", "emission": [20, 20, 20]}},

@@ -29,13 +29,13 @@ Flip flip_of(const Pixels& a, const Pixels& b, float pixels_per_degree = kPixels
 }
 float checker(int x, int y, int) { return (x / 4 + y / 4) % 2 == 0 ? 0.8f : 0.2f; }
 
-// Greys have no hue and a plain picture no feature: the paper's formulas in double, by hand.
+// The paper's formulas in double for images of one grey, which have no hue and no features.
 double grey_flip(double a, double b) {
   const auto lightness = [](double t) {
     return 116 * (t > 216.0 / 24389 ? std::cbrt(t) : t * 841 / 108 + 4.0 / 29) - 16;
   };
-  // L*a*b* of sRGB's green and blue: (87.735, -86.183, 83.179), (32.297, 79.188, -107.860); Hunt takes L/100 of a and
-  // b.
+  // L*a*b* of sRGB's green and blue: (87.735, -86.183, 83.179), (32.297, 79.188, -107.860). The Hunt adjustment
+  // scales a and b by L/100.
   const double most_a = 0.87735 * -86.183 - 0.32297 * 79.188, most_b = 0.87735 * 83.179 + 0.32297 * 107.860;
   const double most = std::pow(87.735 - 32.297 + std::hypot(most_a, most_b), 0.7);
   const double error = std::pow(std::abs(lightness(a) - lightness(b)), 0.7);
@@ -93,10 +93,10 @@ TEST_CASE("flip: a difference shows where it is, an edge counts more than a fain
   CHECK(worst % kWidth == 20);
   CHECK(worst / kWidth == 15);
   CHECK(result.map.front() == 0);
-  // From far away the same dot is fainter, and spread over more pixels.
+  // From further away the same dot is fainter and spread over more pixels.
   const Flip far = flip_of(dot, grey, 200);
   CHECK(*std::max_element(far.map.begin(), far.map.end()) < 0.8f * *(result.map.begin() + worst));
-  // A step of the light differs at the step by more than what it changes there alone.
+  // A step in brightness differs more at the step than its change alone would.
   const Pixels step = draw([](int x, int, int) { return x < 20 ? 0.5f : 0.55f; });
   const Flip edge = flip_of(step, grey);
   const float plain_part = edge.map[15 * kWidth + 39];

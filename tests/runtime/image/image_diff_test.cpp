@@ -26,7 +26,7 @@ TEST_CASE("image diff: the measures are those of their formulas", "[runtime]") {
   CHECK(differences.relmse == Approx((4 / 0.01 + 1 / 1.01 + 0.25 / 0.01) / 6));
   CHECK(differences.max == 2);
   CHECK(differences.mean == Approx((2 - 1 + 0.5) / 6));
-  // The reference is the second one.
+  // The second argument is the reference.
   CHECK(compare(view(reference), view(picture)).relmse == Approx((4 / 4.01 + 1 / 0.01 + 0.25 / 0.26) / 6));
   CHECK(compare(view(reference), view(picture)).mean == Approx(-differences.mean));
 }

@@ -1,5 +1,4 @@
-// OpenEXR files of every kind, written by the library's own classes, read back as numbers that can be said
-// beforehand.
+// OpenEXR files of every kind, written by the library's own classes and read back: the numbers are known beforehand.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -21,7 +20,7 @@ namespace {
 
 constexpr int kWidth = 37, kHeight = 131, kX = -5, kY = 3;
 
-// The same numbers as every type of sample says them; half is as exact as any of them below 2^11.
+// The same numbers in every sample type. Half is as exact as the others below 2^11.
 struct Samples {
   std::vector<half> halves;
   std::vector<float> floats;
@@ -40,7 +39,7 @@ Samples random_samples() {
   return samples;
 }
 
-// Where the picture's pixel (0, 0) would be.
+// Places the values at the image's data window.
 template <class T>
 Imf::Slice slice_of(Imf::PixelType type, std::vector<T>& values) {
   return Imf::Slice::Make(type, values.data(), Imath::Box2i({kX, kY}, {kX + kWidth - 1, kY + kHeight - 1}));
@@ -93,7 +92,8 @@ TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compress
         const std::vector<float> wholes(samples.wholes.begin(), samples.wholes.end());
         CHECK((image.values[static_cast<std::size_t>(image.find("G"))] == samples.floats));
         CHECK((image.values[static_cast<std::size_t>(image.find("id"))] == wholes));
-        if (compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION) continue;  // rounds halves
+        // B44 rounds halves.
+        if (compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION) continue;
         CHECK((image.values[static_cast<std::size_t>(image.find("R"))] == wholes));
       }
     }
@@ -114,7 +114,7 @@ TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "
   std::vector<std::uint8_t> bytes = fuzz::read_file(folder.file("a.exr"));
   bytes.resize(bytes.size() - 100);
   problem_of(bytes);
-  // The last chunk, of three lines: its data, as long as it says, is zlib's for no bytes.
+  // The last chunk, of three lines: its data has the declared length, but is a zlib stream of no bytes.
   bytes = fuzz::read_file(folder.file("a.exr"));
   const std::uint8_t line[] = {kY + 128, 0, 0, 0}, nothing[] = {0x78, 0xda, 0x03, 0, 0, 0, 0, 0x01};
   const auto chunk = std::find_end(bytes.begin(), bytes.end(), std::begin(line), std::end(line));

@@ -16,7 +16,7 @@ std::vector<std::uint8_t> read(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// A part of a picture of 50 x 60 pixels with all layers; no two numbers of a pixel are the same.
+// A crop of an image of 50 x 60 pixels with all layers. No two numbers of a pixel are equal.
 Film varied_film() {
   Film film(PixelRect{11, 7, 33, 50}, kAllLayers);
   const PixelRect area = film.area();
@@ -59,7 +59,7 @@ TEST_CASE("image_exr: every channel of a film comes back, at its place in the pi
   CHECK(image.channels.size() == film_channels().size() - 3);
   int wrong = 0;
   for (const FilmChannel& channel : film_channels()) {
-    if (channel.name.starts_with("noisy")) continue;  // it was not denoised
+    if (channel.name.starts_with("noisy")) continue;  // the film was not denoised
     INFO(channel.name);
     const std::vector<float>* values = image.channel(channel.name);
     REQUIRE(values != nullptr);

@@ -75,7 +75,7 @@ TEST_CASE("image_io: a float map holds the values, the lowest row first", "[runt
   const std::string bytes = read(folder.file("a.PFM")), header = "Pf\n3 2\n-1.0\n";
   REQUIRE(bytes.size() == header.size() + 6 * 4);
   CHECK(bytes.substr(0, header.size()) == header);
-  CHECK(bytes.substr(header.size() + 3 * 4, 4) == std::string("\0\0\x80\x3f", 4));  // 1, the upper left
+  CHECK(bytes.substr(header.size() + 3 * 4, 4) == std::string("\0\0\x80\x3f", 4));  // 1.0, the upper left
   for (std::size_t i = 0; i < values.size(); ++i) {
     float value;
     std::memcpy(&value, bytes.data() + header.size() + 4 * ((i + 3) % 6), 4);

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-// It needs <cstdio> before it.
+// jpeglib.h needs <cstdio> before it.
 #include <jpeglib.h>
 
 namespace fathom::runtime::image_jpeg_test {
@@ -14,11 +14,11 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr double kMemory = 1e6;
-constexpr int kSide = 24;  // more than a block, and not a whole number of those of 16
+constexpr int kSide = 24;  // more than one block, and not a multiple of the 16-pixel blocks
 
 enum Kind { Baseline, Progressive, Arithmetic };
 
-// The value that a sample of the picture has before it is encoded: a ramp, steeper in each component.
+// The value of a sample before encoding: a ramp, steeper in each component.
 int sample(int x, int y, int component) { return 40 + x * (2 + component) + y; }
 
 Bytes encoded(int components, J_COLOR_SPACE space, Kind kind) {
@@ -69,13 +69,15 @@ TEST_CASE("image_jpeg: baseline and progressive, grey and coloured", "[runtime]"
       REQUIRE(picture.samples.size() == static_cast<std::size_t>(kSide * kSide * components));
       for (int i = 0; i < kSide * kSide * components; ++i) {
         const int pixel = i / components, truth = sample(pixel % kSide, pixel / kSide, i % components);
-        CHECK(std::abs(picture.samples[static_cast<std::size_t>(i)] - truth) <= 12);  // colour is halved in width
+        // Chroma has half the horizontal resolution.
+        CHECK(std::abs(picture.samples[static_cast<std::size_t>(i)] - truth) <= 12);
       }
     }
   }
 }
 
-// stb_image made up what a file ends without, and said nothing where an end of the image follows.
+// Regression: stb_image made up the missing data of a truncated file, and reported nothing when an end marker
+// followed.
 TEST_CASE("image_jpeg: a file that is cut off is refused wherever that is", "[runtime]") {
   for (const Kind kind : {Baseline, Progressive}) {
     const Bytes whole = encoded(3, JCS_RGB, kind);
@@ -86,7 +88,9 @@ TEST_CASE("image_jpeg: a file that is cut off is refused wherever that is", "[ru
       CHECK_FALSE(problem_of(part).empty());
       part.insert(part.end(), {0xff, 0xd9});
       const bool may_be_whole =
-          kind == Progressive || size + 4 > whole.size();  // some scans; the last byte's padding
+          // Exceptions: a progressive file cut after some scans, and a file that lacks only the padding of its last
+          // byte.
+          kind == Progressive || size + 4 > whole.size();
       if (!may_be_whole) CHECK_FALSE(problem_of(part).empty());
     }
   }
@@ -103,7 +107,7 @@ TEST_CASE("image_jpeg: memory is counted before it is taken", "[runtime]") {
   const double needed = static_cast<double>(grey.size()) + pixels * (1 + 12);
   CHECK(problem_of(grey, needed).empty());
   CHECK(problem_of(grey, needed - 1).find("bytes of memory") != std::string::npos);
-  // Beside the samples the coefficients of all its blocks.
+  // For a progressive file, the decoder also holds the coefficients of all blocks.
   const double more = static_cast<double>(progressive.size()) + pixels * (1 + 12 + 2);
   CHECK(problem_of(progressive, more).empty());
   CHECK(problem_of(progressive, more - 1).find("bytes of memory") != std::string::npos);

@@ -13,7 +13,7 @@
 namespace fathom::runtime::image_read_test {
 namespace {
 
-// 16 x 9 pixels that get brighter and bluer; the last one saw nothing.
+// 16 x 9 pixels that get brighter and bluer. The last pixel has no hit.
 Film ramp() {
   Film film(16, 9);
   for (int y = 0; y < 9; ++y) {
@@ -30,7 +30,7 @@ Film ramp() {
   return film;
 }
 
-// The largest difference of channels R, G, B from the layer's own numbers, once written and read.
+// Returns the largest error of channels R, G, B of a layer that was written and read.
 double error_of(const tests::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
   const Film film = ramp();
   const LayerValues values = layer_of(film, layer);
@@ -55,14 +55,14 @@ double error_of(const tests::TemporaryFolder& folder, const std::string& name, L
 
 TEST_CASE("image_read: what is written comes back as exactly as its format says", "[runtime]") {
   const tests::TemporaryFolder folder;
-  // The steepest step of sRGB's curve is 2.3 at white; half a step of 8 or 16 bits.
+  // Half a step of 8 or 16 bits, times the steepest slope of the sRGB decoding, 2.3 at white.
   CHECK(error_of(folder, "a.png", Layer::Beauty) <= 2.3 / 255 / 2);
   CHECK(error_of(folder, "b.png", Layer::Beauty, 16) <= 2.3 / 65535 / 2 + 1e-7);
   CHECK(error_of(folder, "a.bmp", Layer::Beauty) <= 2.3 / 255 / 2);
   CHECK(error_of(folder, "a.jpg", Layer::Beauty) <= 0.1);
   CHECK(error_of(folder, "a.pfm", Layer::Beauty) == 0);
   CHECK(error_of(folder, "n.pfm", Layer::Normal) == 0);
-  CHECK(error_of(folder, "d.pfm", Layer::Depth) == 0);  // grey in the file
+  CHECK(error_of(folder, "d.pfm", Layer::Depth) == 0);  // stored as grey
   CHECK(error_of(folder, "a.hdr", Layer::Beauty) <= 1.0 / 128);
   CHECK(error_of(folder, "b.png", Layer::Beauty, 16) > 0);
 }
@@ -80,7 +80,7 @@ TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
   }
 }
 
-// Two hexadecimal digits each.
+// Decodes two hexadecimal digits per byte.
 std::string bytes_of(std::string_view digits) {
   std::string bytes;
   for (std::size_t i = 0; i < digits.size(); i += 2) {
@@ -114,7 +114,7 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
             "89504e470d0a1a0a0000000d4948445200000001000000011004000000e58cd0410000000d4944415478da63f8ffdf81010007"
             "7e023fea81688e0000000049454e44ae426082")
             .values == Values{{1}, {1}, {1}, {0x4000 / 65535.f}});
-  // Whatever its name says.
+  // The content, not the file name, decides the format.
   CHECK(image_of(
             folder, "interlaced.jpg",
             "89504e470d0a1a0a0000000d49484452000000020000000208020000018ad3aae50000000f4944415478da63f8cf0004100208"
@@ -127,7 +127,7 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
             .values == Values{{1}, {1}, {1}});
 }
 
-// libpng takes the first three for whole pictures: what it has no data for stays black.
+// libpng accepts the first three as whole images and leaves the pixels without data black.
 TEST_CASE("image_read: a png whose data ends before its picture is refused", "[runtime]") {
   const tests::TemporaryFolder folder;
   const auto problem_of = [&](std::string_view digits) {
@@ -159,7 +159,7 @@ TEST_CASE("image_read: a png whose data ends before its picture is refused", "[r
   CHECK(problem_of(of_30000_by_30000).find("too large") != std::string::npos);
 }
 
-// R, G and B are made of grey.
+// R, G and B are each a copy of grey.
 TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[runtime]") {
   const tests::TemporaryFolder folder;
   const std::string png = bytes_of(
@@ -183,7 +183,7 @@ TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
       << std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
   const auto image = std::get<FloatImage>(read_image(folder.file("a.pfm")));
   CHECK(image.height == 2);
-  CHECK(image.values[0] == std::vector<float>{0, 1});  // the lower row comes first in the file
+  CHECK(image.values[0] == std::vector<float>{0, 1});  // the file starts with the lower row
   CHECK(image.values[2] == std::vector<float>{0, 3});
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
     problem(name, "");
     problem(name, "not a picture at all");
   }
-  // stb would read run lengths of an hdr picture for ever after its end, and invent rows of others.
+  // Past the end of an .hdr file, stb_image would read run lengths forever. In other formats, it would make up rows.
   for (const char* name : {"e.hdr", "e.bmp", "e.png", "e.jpg", "e.pfm"}) {
     REQUIRE(write_layer(layer_of(ramp(), Layer::Beauty), {}, folder.file(name)) == std::nullopt);
     std::ifstream file(folder.file(name), std::ios::binary);

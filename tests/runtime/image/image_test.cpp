@@ -10,7 +10,7 @@
 namespace fathom::runtime::image_test {
 namespace {
 
-// Two pixels: one grey hit at depth 2 and 4 each, and one pixel that saw nothing.
+// Two grey pixels that hit at depth 2 and 4, and a pixel without a hit.
 Film three_pixels() {
   Film film(3, 1);
   PathSample sample;

@@ -53,7 +53,7 @@ TEST_CASE("tone: filmic has Hable's values and his white", "[runtime]") {
 }
 
 TEST_CASE("tone: aces has the fit's values, and strong colours fade to white", "[runtime]") {
-  // Of grey both matrices only scale, by the sums of their rows: 1 within 3e-5.
+  // For grey, both matrices only scale by the sums of their rows: 1 within 3e-5.
   const auto fit = [](double v) {
     return (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
   };
@@ -66,8 +66,8 @@ TEST_CASE("tone: aces has the fit's values, and strong colours fade to white", "
 }
 
 TEST_CASE("tone: agx leaves middle grey in the middle, ends at its stops, and turns lamps white", "[runtime]") {
-  // Sobotka's sigmoid makes of 0.18 the signal 0.18^(1/2.4); the polynomial says so within 2 %, and the signal is a
-  // 2.2 display's.
+  // Sobotka's sigmoid maps 0.18 to the signal 0.18^(1/2.4), for a display of gamma 2.2. The polynomial fits the
+  // sigmoid within 2 %.
   CHECK(power(grey(ToneCurve::Agx, 0.18), 1 / 2.2) == Approx(std::pow(0.18, 1 / 2.4)).epsilon(0.02));
   CHECK(grey(ToneCurve::Agx, 0.18 * std::exp2(-10)) < 1e-4);
   CHECK(grey(ToneCurve::Agx, 0.18 * std::exp2(6.5)) > 0.98);
@@ -79,9 +79,9 @@ TEST_CASE("tone: agx leaves middle grey in the middle, ends at its stops, and tu
 TEST_CASE("tone: neutral keeps colours below its shoulder but for a reflection of 0.04", "[runtime]") {
   const glm::dvec3 color{0.6, 0.3, 0.2}, kept = apply_curve(ToneCurve::Neutral, color);
   for (int i = 0; i < 3; ++i) CHECK(kept[i] == Approx(color[i] - 0.04).epsilon(1e-12));
-  // Below 0.08 the reflection falls with the square, and the least colour becomes 6.25 x^2.
+  // Below 0.08 the reflection falls with the square: the smallest channel becomes 6.25 x^2.
   CHECK(apply_curve(ToneCurve::Neutral, {0.3, 0.05, 0.2}).y == Approx(6.25 * 0.05 * 0.05).epsilon(1e-12));
-  // Where it starts the shoulder goes on as it came.
+  // The shoulder starts with slope 1, the slope of the part below it.
   const double step = 1e-6, begin = 0.8;
   const double slope = (grey(ToneCurve::Neutral, begin + step) - grey(ToneCurve::Neutral, begin)) / step;
   CHECK(slope == Approx(1).epsilon(1e-3));

@@ -1,4 +1,4 @@
-// Pictures of the surroundings from files, and what is said of bad ones.
+// Environment maps read from files, and the messages about bad files.
 #include "runtime/light/environment_file.h"
 
 #include <catch2/catch.hpp>
@@ -24,7 +24,7 @@ void write(const std::string& path, const std::string& bytes) { std::ofstream(pa
 TEST_CASE("environment file: a Radiance picture", "[lights]") {
   const tests::TemporaryFolder folder;
   const std::string path = folder.file("sky.HDR");
-  // Two pixels without run lengths: (1, 0.5, 0.25) and (16, 0, 32), as mantissas over 256 times 2^(e - 128).
+  // Two pixels without run-length encoding: (1, 0.5, 0.25) and (16, 0, 32), as mantissas / 256 times 2^(e - 128).
   const unsigned char pixels[] = {128, 64, 32, 129, 64, 0, 128, 134};
   write(path,
         "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + std::string(reinterpret_cast<const char*>(pixels), 8));

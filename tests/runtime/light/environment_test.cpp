@@ -1,4 +1,4 @@
-// What lies beyond the scene: radiance, and directions against their density.
+// The environment: radiance, and sampled directions against their density.
 #include "runtime/light/environment.h"
 
 #include <catch2/catch.hpp>
@@ -26,13 +26,13 @@ compiler::CompiledScene scene_with(const std::string& settings) {
   return scene_of(settings + R"(, "objects": [{"type": "sphere", "radius": 1}])");
 }
 
-// A direction by height and turn, of which equal steps are equal solid angles.
+// Returns a direction by height and turn. Equal steps of both are equal solid angles.
 glm::vec3 direction_at(double y, double turn) {
   const double s = std::sqrt(std::max(0.0, 1 - y * y));
   return {s * std::cos(2 * M_PI * turn), y, s * std::sin(2 * M_PI * turn)};
 }
 
-// Directions fall as pdf() says and it integrates to 1; discs are left out of both.
+// Checks that sampled directions follow pdf() and that pdf() integrates to 1. Discs are left out of both.
 void check_density(const Environment& environment, const LightQuery& query) {
   constexpr int kRows = 16, kColumns = 16, kGrid = 24;
   std::vector<double> expected(kRows * kColumns), counts(kRows * kColumns);
@@ -90,7 +90,7 @@ TEST_CASE("environment: directions fall as their density says", "[lights]") {
 
 TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
   const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
-  CHECK(!gradient.emits());  // rays find it
+  CHECK(!gradient.emits());  // a gradient has no sampler: only hits find its light
   CHECK(gradient.estimate(kUp) == 0);
   auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
   const Environment picture(scene_with(kPicture), white);
@@ -109,14 +109,14 @@ TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and i
                                  std::string(rotate) + "}";
     return Environment(scene_with(settings), shared).radiance(glm::normalize(w)).x;
   };
-  // The middles of the pixels of the upper row: at 45 degrees of elevation, u = 1/8, 3/8, 5/8, 7/8.
+  // The pixel centres of the upper row: at 45 degrees of elevation, u = 1/8, 3/8, 5/8, 7/8.
   const float s = std::sqrt(0.5f);
   CHECK(looking("0", {-s, 1, s}) == Approx(0).margin(1e-5));
   CHECK(looking("0", {-s, 1, -s}) == Approx(1));
   CHECK(looking("0", {s, 1, -s}) == Approx(2));
   CHECK(looking("0", {s, -1, s}) == Approx(7));
   CHECK(looking("0", {0, 1, -1}) == Approx(1.5));
-  CHECK(looking("90", {-s, 1, -s}) == Approx(2));  // what was in front on the right is on the left
+  CHECK(looking("90", {-s, 1, -s}) == Approx(2));  // the front right of the map has moved to the left
 }
 
 TEST_CASE("environment: discs give the irradiance asked for, and rays see them", "[lights]") {
@@ -134,7 +134,7 @@ TEST_CASE("environment: discs give the irradiance asked for, and rays see them",
   CHECK(lit.pdf(kUp, {1, 0, 0}) == 0);
 }
 
-// Unaligned, what rounding to floats does to directions differs from place to place.
+// The direction is not axis-aligned, so that the float rounding of directions varies.
 std::string disc_of(double degrees) {
   return R"("lights": {"far": {"type": "directional", "direction": [-1, -2, -1], "irradiance": [2, 2, 2], "angle": )" +
          std::to_string(degrees) + "}}";
@@ -149,12 +149,12 @@ TEST_CASE("environment: a disc however small gives the irradiance asked for", "[
   }
 }
 
-// Once, a disc of 1e-4 degrees, as rays met it, was 7 % larger than its radiance was for.
+// Regression: for rays, a disc of 1e-4 degrees was 7 % larger than its radiance assumed.
 TEST_CASE("environment: rays that hit a small disc find its irradiance", "[lights]") {
   const Environment lit(scene_with(disc_of(1e-4)), nullptr);
   const glm::vec3 middle = glm::normalize(glm::vec3(1, 2, 1));
   const glm::vec3 aside = glm::normalize(glm::cross(middle, glm::vec3(1, 0, 0)));
-  float least = 0, most = 1e-3f;  // sines; its rim is between
+  float least = 0, most = 1e-3f;  // sines of two angles that bracket the disc's rim
   for (int i = 0; i < 40; ++i) {
     const float between = (least + most) / 2;
     (lit.radiance(glm::normalize(middle + between * aside)).x > 0 ? least : most) = between;
@@ -166,7 +166,7 @@ TEST_CASE("environment: directions to a disc pass a chi-square test against thei
   const Environment lit(scene_with(disc_of(10)), nullptr);
   test::ChiSquareSetup setup;
   setup.samples = test::few(100000);
-  // About the disc's middle, rows of 5 degrees: its rim is a side of cells.
+  // The pole points at the disc's centre and the rows span 5 degrees: the disc's rim is a cell border.
   setup.pole = glm::normalize(glm::vec3(1, 2, 1));
   setup.rows = 36;
   setup.columns = 72;

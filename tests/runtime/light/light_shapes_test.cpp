@@ -1,4 +1,5 @@
-// Points on lamps: density against where they fall, closed forms of irradiance (P3 to P5), and hits against samples.
+// Samples on area lights: density against the distribution of samples, closed forms of irradiance (P3 to P5), and
+// hits against samples.
 #include "runtime/light/light_shapes.h"
 
 #include <catch2/catch.hpp>
@@ -18,8 +19,8 @@ using compiler::Lamp;
 using glm::dvec3;
 using test::ball, test::quad, test::round;
 
-// Where a ray first comes within 1e-10 of the lamp. Lamps are convex, and so is the distance along a ray: the line
-// through two of its values falls to 0 before it does.
+// Returns the first point of a ray within 1e-10 of the area light. Area lights are convex, and so is the distance
+// along a ray: the secant through two of its values reaches 0 before the distance does.
 std::optional<dvec3> meet(const LampShape& shape, dvec3 from, dvec3 w) {
   double t = std::max(0.0, glm::length(shape.centre() - from) - shape.radius() * 1.001);
   const double end = glm::length(shape.centre() - from) + shape.radius() * 1.001;
@@ -72,7 +73,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
       CHECK(worst < 1e-6);
       CHECK(off < 1e-6);
       CHECK(least_facing > -1e-6);
-      CHECK(unseen <= 2);  // within rounding of an edge
+      CHECK(unseen <= 2);  // rounding near an edge
     }
   }
 }
@@ -88,11 +89,11 @@ TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[li
   const dvec3 front = sheet.centre() + 2.0 * sheet.normal();
   CHECK(sheet.pdf(front, sheet.centre() + 0.1 * sheet.normal()) > 0);
   CHECK(sheet.pdf(front, sheet.centre() - 0.1 * sheet.normal()) == 0);
-  // Its rounded edge is found by hits alone.
+  // Only hits find the sheet's rounded edge.
   CHECK(sheet.pdf(front, sheet.centre() + 1.05 * sheet.lamp().rotation[0] + std::sqrt(0.0075) * sheet.normal()) == 0);
 }
 
-// Irradiance of radiance 1 by sampling, with its standard error.
+// Irradiance by sampling for radiance 1, with its standard error.
 struct Mean {
   double value, error;
 };

@@ -1,5 +1,5 @@
-// The scene's lights together: what is sampled, with which density, and that hits know it. Shapes alone:
-// light_shapes_test.cpp; what lies beyond the scene: environment_test.cpp.
+// The scene's lights together: samples, their densities, and the densities of hits. Single shapes:
+// light_shapes_test.cpp. The environment: environment_test.cpp.
 #include "runtime/light/light.h"
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ const LightQuery kQueries[] = {{{0, -4.9, 0}, {0, 1, 0}},
                                {{-2, 3, 2}, {0, 0, 1}, true},
                                {{20, 3, 30}, {-0.6f, 0, -0.8f}}};
 
-// Irradiance by sampling, as luminance, with its standard error; shadows left out.
+// Irradiance by sampling, as luminance, with its standard error. Ignores shadows.
 struct Mean {
   double value, error;
 };
@@ -84,7 +84,7 @@ TEST_CASE("lights: a sample's density is that of the hit or of the background", 
         ++near;
         const glm::dvec3 hit = query.position + s.distance * glm::dvec3(s.wi);
         pdf = lights.pdf_of_hit(query, s.surface, hit);
-        // wi is in float: at the very edge of a face the hit may lie on the next.
+        // wi is in float: at the very edge of a face the hit can lie on the next face.
         if (pdf == 0 || s.lamp_cosine < 0.01f) continue;
         CHECK(s.radiance == glm::vec3(scene.materials[s.material].emission));
         CHECK(scene.surfaces[s.surface].material == s.material);
@@ -92,7 +92,7 @@ TEST_CASE("lights: a sample's density is that of the hit or of the background", 
       worst = std::max(worst, std::abs(static_cast<double>(pdf / s.pdf) - 1));
     }
     CAPTURE(query.position.x, near, beyond, worst);
-    // Each side at least one time in four.
+    // The lights choose area lights and the environment at least one time in four each.
     CHECK(near + beyond > 1400);
     CHECK(near > 300);
     CHECK(beyond > 400);
@@ -143,7 +143,7 @@ TEST_CASE("lights: point, spot and directional lights are exact", "[lights]") {
   CHECK((point.delta && point.pdf == 1 && point.distance == Approx(2) && point.material == kNoMaterial));
   CHECK(glm::length(point.radiance - glm::vec3(1, 2, 3)) < 1e-6f);
   CHECK(glm::length(point.wi - glm::vec3(0, 1, 0)) < 1e-6f);
-  CHECK(only(R"({"type": "point", "position": [0, -2, 0]})", below).pdf == 0);  // behind the surface
+  CHECK(only(R"({"type": "point", "position": [0, -2, 0]})", below).pdf == 0);  // the light is behind the surface
 
   const std::string spot = R"({"type": "spot", "position": [0, 2, 0], "target": [0, 0, 0], "intensity": [4, 4, 4],
       "angle": 40, "blend": 0.5})";
@@ -178,7 +178,7 @@ TEST_CASE("lights: lights of all kinds together give the sum of each", "[lights]
 }
 
 TEST_CASE("lights: what cannot be sampled has no density", "[lights]") {
-  // One object, one surface: a whole ball, and one that is cut.
+  // One object with one surface: a whole ball, and a ball that is cut.
   const compiler::CompiledScene scene =
       scene_with("", R"({"name": "lamps", "type": "union", "material": "glow", "of": [
       {"type": "sphere", "radius": 1},
@@ -192,11 +192,12 @@ TEST_CASE("lights: what cannot be sampled has no density", "[lights]") {
   CHECK(lights.pdf_of_hit(query, scene.lamps[0].surface, {4, -1, 0}) == 0);
   CHECK(lights.pdf_of_hit(query, scene.lamps[0].surface + 1, {0, -1, 0}) == 0);
   CHECK(lights.pdf_of_background(query, {0, 1, 0}) == 0);
-  CHECK(lights.pdf_of_hit({{0, 0, 0}, {0, 1, 0}}, scene.lamps[0].surface, {0, -1, 0}) == 0);  // from within
+  // The query is inside the ball.
+  CHECK(lights.pdf_of_hit({{0, 0, 0}, {0, 1, 0}}, scene.lamps[0].surface, {0, -1, 0}) == 0);
 }
 
 TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
-  // Two boxes make a cross; the middle of its lower face belongs to both.
+  // Two boxes make a cross. The middle of the cross's lower face belongs to both.
   const compiler::CompiledScene scene = scene_with("", R"(
       {"type": "box", "half_size": [2, 0.1, 0.5], "translate": [0, 3, 0], "material": "glow"},
       {"type": "box", "half_size": [0.5, 0.1, 2], "translate": [0, 3, 0], "material": "glow"},)" +
@@ -204,7 +205,7 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
   REQUIRE(scene.lamps.size() == 2);
   const Lights lights(scene);
   const LightQuery query{{0.1, 0, 0.2}, {0, 1, 0}};
-  // Lambert's formula by pieces of area, over the cross; sides are turned away from what lies below the lamp or
+  // Lambert's formula, summed over small areas of the cross. The boxes' sides face away from the point below, or
   // nearly.
   double truth = 0;
   constexpr int kSteps = 800;
@@ -219,14 +220,14 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
   const Mean e = irradiance(lights, query, test::few(60000));
   CAPTURE(e.value, truth, e.error);
   CHECK(std::abs(e.value - truth) < 4 * e.error + 1e-3 * truth);
-  // Counted twice the middle would add this much.
+  // The error is small enough to detect the middle being counted twice.
   CHECK(e.error < 0.02 * truth);
 }
 
 TEST_CASE("lights: a scene without any is empty", "[lights]") {
   CHECK(Lights(scene_with("", kFloor)).empty());
   CHECK(Lights(scene_with("", kFloor)).sample(kQueries[0], 0.5f, {0.5f, 0.5f}).pdf == 0);
-  CHECK(Lights(scene_with(R"(, "background": [1, 1, 1])", kFloor)).empty());  // rays find it by themselves
+  CHECK(Lights(scene_with(R"(, "background": [1, 1, 1])", kFloor)).empty());  // only hits find a uniform background
   CHECK_FALSE(Lights(scene_with(R"(, "background": {"type": "sky"})", kFloor)).empty());
   CHECK_FALSE(Lights(scene_with("", kRoom)).empty());
   CHECK_FALSE(Lights(scene_with(R"(, "lights": {"p": {"type": "point"}})", kFloor)).empty());

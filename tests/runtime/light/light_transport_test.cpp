@@ -1,4 +1,4 @@
-// Whole pictures against light that is known in closed form, and the ways to find light against each other.
+// Whole images against closed forms of their light, and the light sampling strategies against each other.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,21 +21,20 @@ RenderOptions square(int side, int spp) {
   options.width = side;
   options.height = side;
   options.spp = spp;
-  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread tells the error
+  options.sampler = compiler::SamplerKind::Independent;  // so that the pixels' spread gives the error
   return options;
 }
 
 constexpr std::array kEveryWay = {LightSampling::Both, LightSampling::Lights, LightSampling::Hits};
 
-// Within 4 standard errors, which are at most `error` of the value: with as many checks as this file has, one in a
-// thousand correct renderers would fail.
+// Checks the mean within 4 standard errors, which are at most `error` of the value. With as many checks as this file
+// has, one in a thousand correct renderers would fail.
 void expect(const LightScene& scene, RenderOptions options, double error) {
   const RenderResult result = render(scene_of(scene.json), options);
   const Estimate found = estimate(result.film);
   INFO(scene.name << ": " << found.mean << " +- " << found.sigma << ", in closed form " << scene.radiance);
   CHECK(std::abs(found.mean - scene.radiance) <= 4 * found.sigma + 2e-5 * scene.radiance);
-  CHECK(found.sigma <=
-        error * std::sqrt(64.0 / test::few(64)) * scene.radiance);  // of fewer samples, under sanitizers
+  CHECK(found.sigma <= error * std::sqrt(64.0 / test::few(64)) * scene.radiance);  // fewer samples under sanitizers
   CHECK(result.stats.march.invalid + result.stats.dropped_samples == 0);
 }
 
@@ -53,7 +52,8 @@ TEST_CASE("light: closed rooms, however paths end", "[render][light][released]")
 TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
   for (const char* material : {R"({"type": "diffuse", "color": [1, 1, 1]})", R"({"type": "specular"})",
                                R"({"type": "transparent"})", R"({"type": "transparent", "ior": 2.4})",
-                               // Once, paths that came in by a hole and left by refraction brought 3.5 % too much.
+                               // Regression: paths that entered through a hole and left by refraction brought 3.5 %
+                               // too much.
                                R"({"type": "principled", "transmission": 1, "roughness": 0, "opacity": 0.5})"}) {
     for (const LightSampling way : kEveryWay) {
       RenderOptions options = square(16, test::few(64));
@@ -77,12 +77,13 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
   }
 }
 
-// Once, whatever stood before a light hid it: a ball's light was noisier, a point's was lost.
+// Regression: any object in front of a light blocked shadow rays. A ball light was noisier, and a point light was
+// lost.
 TEST_CASE("light: holes and panes let light through to where it is looked for", "[render][light]") {
   for (const tests::Veil& veil : {tests::kGauze, tests::kPane}) {
     INFO(veil.material);
     RenderOptions options = square(16, test::few(64));
-    options.cut_after = 1;  // a pane lights the floor with what the floor has sent up
+    options.cut_after = 1;  // no second bounce: the pane also reflects the floor's own light back to the floor
     expect(tests::veiled_point(veil), options, 1e-3);
   }
   for (const LightSampling way : kEveryWay) {
@@ -93,7 +94,8 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
   }
 }
 
-// Once, each crossing brought a shadow ray nearer to the lamp than it should end, and two walls hid it.
+// Regression: after each crossing, a shadow ray ended nearer to the area light than it should, and two walls hid the
+// light.
 TEST_CASE("light: many veils", "[render][light]") {
   for (const LightSampling way : {LightSampling::Both, LightSampling::Lights}) {
     RenderOptions options = square(32, test::few(64));
@@ -102,14 +104,16 @@ TEST_CASE("light: many veils", "[render][light]") {
   }
 }
 
-// Once, the way through a liquid between two veils cost nothing: absorption was that of where the shadow ray began.
+// Regression: a liquid between two veils absorbed nothing, because a shadow ray used only the absorption at its
+// start.
 TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
   RenderOptions options = square(16, test::few(64));
   options.cut_after = 1;
   expect(tests::veiled_drink(), options, 1e-3);
 }
 
-// Once, light was found on a clear lamp's surface where water filled it, and through a sea that has no end.
+// Regression: shadow rays found light on a clear lamp's surface although water filled the lamp, and light through an
+// unbounded sea.
 TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
   for (const LightScene& scene : {tests::drowned_lamp(), tests::bottomless_sea()}) {
     for (const LightSampling way : kEveryWay) {
@@ -121,7 +125,7 @@ TEST_CASE("light: no more is found in water than gets there", "[render][light]")
   }
 }
 
-// Once, a sheet of opacity 0.25 shone as one without holes: 5.8 of light where there are 1.875.
+// Regression: a sheet of opacity 0.25 emitted as much as a sheet without holes: 5.8 instead of 1.875.
 TEST_CASE("light: of a surface with holes only what is there emits", "[render][light]") {
   for (const double opacity : {0.25, 0.0}) {
     expect(tests::glowing_gauze(opacity), square(16, test::few(256)), 1e-2);
@@ -134,7 +138,7 @@ TEST_CASE("light: of a surface with holes only what is there emits", "[render][l
   }
 }
 
-// Once, a coat's colour was in all that the surface reflects and not in what it emits.
+// Regression: a coat's colour tinted the reflected light, but not the emitted light.
 TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
@@ -144,8 +148,8 @@ TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
   }
 }
 
-// Once, paths caught in the glass ended by chance however bright they were: the few that were left weighed so much
-// that most renders were 1 % too dark.
+// Regression: Russian roulette ended paths caught in the glass regardless of their throughput. The few survivors
+// weighed so much that most renders were 1 % too dark.
 TEST_CASE("light: paths that lose nothing are not ended by chance", "[render][light][released]") {
   const auto scene =
       scene_of(tests::furnace(R"({"type": "principled", "transmission": 1, "roughness": 0.15, "ior": 2.4})"));
@@ -167,7 +171,7 @@ TEST_CASE("light: random white materials return what they get", "[render][light]
   CHECK(sum / count > 0.98);
 }
 
-// What goes straight on is not scattered: however few bounces a path may make, it sees what lies behind a hole.
+// Straight transmission is not scattering: a path of any bounce limit sees the light behind a hole.
 TEST_CASE("light: holes are no bounces", "[render][light]") {
   LightScene scene =
       tests::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
@@ -178,7 +182,7 @@ TEST_CASE("light: holes are no bounces", "[render][light]") {
   expect(scene, options, 1e-1);
 }
 
-// Once, what does not fill a body had the index of what is around it, and reflected nothing.
+// Regression: a material without an interior had the refractive index of its surroundings and reflected nothing.
 TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
   LightScene scene = tests::smooth_gauze();
   RenderOptions options = square(16, test::few(256));
@@ -203,7 +207,7 @@ TEST_CASE("light: Lambert's ball at every phase", "[render][light][released]") {
   }
 }
 
-// The picture in cells, of several renders with seeds of their own: mean of each cell and variance of that mean.
+// An image divided into cells, rendered with several seeds: mean of each cell, and variance of that mean.
 struct Cells {
   std::vector<double> mean, variance;
 };
@@ -246,8 +250,8 @@ TEST_CASE("light: looking for lights, hitting them and both give one picture", "
       worst = std::max(worst, std::abs(t));
       all += t / std::sqrt(static_cast<double>(both.mean.size()));
     }
-    // Of 64 cells with some 46 degrees of freedom one is beyond 4.2 in about 150 pictures; the sum of all is beyond
-    // 3.3 in a thousand.
+    // With 64 cells and some 46 degrees of freedom, one cell is beyond 4.2 in about 150 images. The sum over all
+    // cells is beyond 3.3 once in a thousand.
     INFO("way " << static_cast<int>(way) << ": worst cell " << worst << ", all together " << all);
     CHECK(worst < 4.2);
     CHECK(std::abs(all) < 3.3);

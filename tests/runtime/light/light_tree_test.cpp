@@ -1,5 +1,5 @@
-// Which light is chosen: probabilities that sum to 1, that choices follow, and that no light is left out that
-// matters.
+// The choice of a light: probabilities sum to 1, choices follow the probabilities, and every light that matters can
+// be chosen.
 #include "runtime/light/light_tree.h"
 
 #include <catch2/catch.hpp>
@@ -58,7 +58,7 @@ TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[light
       expected.push_back(std::max(0.0, 1 - sum));
       CAPTURE(count, query.position.x, sum);
       CHECK(sum < 1 + 1e-5);
-      // Below the leaves' own estimates a node's may be above 0: then there is no sample.
+      // A node's estimate can be above 0 when those of its leaves are all 0. Choosing this node gives no sample.
       CHECK((count > LightTree::kFewLights ? sum > 0.9 : std::abs(sum - 1) < 1e-5 || tree.total(query) == 0));
       CHECK(worst < 1e-4);
       CHECK(test::chi_square_deviation(counts, expected, n) < 5);

@@ -1,4 +1,4 @@
-// The daylight model: its published zenith, its scale, its colours, its sun.
+// The daylight model: its published zenith luminance, its scale, its colours, its sun.
 #include "runtime/light/sky.h"
 
 #include <catch2/catch.hpp>
@@ -51,7 +51,7 @@ TEST_CASE("sky: around noon its mean is about 1, and the zenith is blue", "[ligh
 
 TEST_CASE("sky: the sun gives 100 klx from high up, and is red and dim when low", "[lights]") {
   const glm::vec3 high = Sky(sky_at(70, 2.5)).sun_irradiance(), low = Sky(sky_at(3, 2.5)).sun_irradiance();
-  CHECK(lum(high) > 9);  // of 13.31 outside the air
+  CHECK(lum(high) > 9);  // of 13.31 outside the atmosphere
   CHECK(lum(high) < 13.31);
   CHECK(lum(low) < 0.3 * lum(high));
   CHECK(low.x > 3 * low.z);

@@ -41,14 +41,15 @@ TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
   const auto ball = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field box_field = make_field(box), ball_field = make_field(ball);
   RealScratch scratch;
-  // Past an edge of the box.
+  // The ray passes an edge of the box.
   const glm::dvec3 along = glm::normalize(glm::dvec3(1, -1, 0.5));
   const auto past_edge = [&](double gap) {
     return certify(box_field, glm::dvec3(1 + gap, 1 + gap, 0) - 5.0 * along, along, 1, {0, 10, 0}, scratch).status;
   };
   CHECK(past_edge(1e-13) == Status::Contact);
   CHECK(past_edge(1e-10) == Status::Miss);
-  // A curve is nearly level where it touches: what the derivative excludes takes no resolution.
+  // A ball's field is nearly level along a tangent ray, but bounds of the derivative exclude a hit without resolving
+  // the gap.
   const glm::dvec3 aside = glm::normalize(glm::dvec3(2, -1, 0)), by = glm::normalize(glm::dvec3(1, 2, 3));
   const auto past_ball = [&](double gap) {
     return certify(ball_field, (1 + gap) * aside - 5.0 * by, by, 1, {0, 10, 0}, scratch);
@@ -72,7 +73,7 @@ TEST_CASE("certify: intervals settle a long ray along a plane in a few evaluatio
   CHECK(down.evaluations < 200);
 }
 
-// Rays that graze a fractal, and what blends.
+// A scene with grazing rays along a fractal, and with a blend.
 compiler::CompiledScene difficult_scene() {
   return scene_of(R"("objects": [
       {"type": "mandelbulb", "power": 8, "iterations": 8, "bailout": 16, "detail": 0.0005},
@@ -89,7 +90,7 @@ TEST_CASE("certify: rays that are searched side by side end as each does alone",
   const test::IsaGuard guard;
   const auto scene = difficult_scene();
   const Field field = make_field(scene);
-  // Short enough to end within the bound, where nothing is clipped.
+  // Short enough to end inside the bounding box, so that no ray is clipped.
   Random random(8);
   std::vector<Ray> rays;
   for (int i = 0; i < 400; ++i) {

@@ -26,7 +26,7 @@ struct Clipped {
   double entry, length;
 };
 
-// One ray, slab by slab.
+// Clips one ray, slab by slab.
 Clipped clip_one(const Ray& ray, const compiler::Box& box, double far) {
   const double squared = glm::dot(ray.direction, ray.direction);
   const bool placed = std::isfinite(ray.origin.x) && std::isfinite(ray.origin.y) && std::isfinite(ray.origin.z);
@@ -47,7 +47,7 @@ Clipped clip_one(const Ray& ray, const compiler::Box& box, double far) {
   return {Clip::Within, begin, end - begin};
 }
 
-// Rays of every kind about the origin: towards boxes and away, along axes, far too long, and no rays at all.
+// Random rays around the origin: towards boxes and away from them, along axes, far too long, and invalid ones.
 Ray random_ray(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-4, 4), component(-1, 1);
   std::uniform_int_distribution<int> kind(0, 15);
@@ -102,7 +102,8 @@ TEST_CASE("rays are clipped as one by one, wherever they stand and on every inst
       clip(*block, first, box, far);
       for (std::size_t i = 0; i < count; ++i) {
         if (i < first) {
-          wrong += !(block->length[i] == rays[i].t_max || std::isnan(rays[i].t_max));  // left alone
+          // clip() does not change these rays.
+          wrong += !(block->length[i] == rays[i].t_max || std::isnan(rays[i].t_max));
           continue;
         }
         const Clipped expected = clip_one(rays[i], box, far);

@@ -1,5 +1,5 @@
-// Rays that are led by what is known to be convex (Field::convex, Ray::clear) against the search in double, which is
-// not: none is lost, none comes back to what it left, and they take fewer evaluations.
+// Rays that use convexity radii (Field::convex, Ray::clear) against the search in double, which uses none: no hit is
+// lost, no ray hits the surface it left, and rays take fewer evaluations.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ namespace {
 using namespace fathom;
 using namespace fathom::runtime;
 
-// Convex shapes and some that are not, far and near, cut, blended, grown, scaled and mirrored, on a ground plane.
+// Convex and other shapes, far and near, cut, blended, rounded, scaled and mirrored, on a ground plane.
 std::string scene(std::uint64_t seed) {
   test::Random random(seed);
   static const char* kShapes[] = {"\"sphere\", \"radius\": {0:.3f}",
@@ -102,7 +102,7 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
     std::vector<Ray> rays, without;
     for (std::size_t i = 0; i < places.hits.size(); ++i) {
       const glm::dvec3 normal(places.points[i].normal), direction = random.direction();
-      // Every third nearly along the surface.
+      // Every third ray is nearly along the surface.
       const glm::dvec3 aside = direction - (1 - 0.02 * (i % 3 == 0)) * glm::dot(direction, normal) * normal;
       const glm::dvec3 away = i % 3 == 0 ? aside : direction;
       const double side = glm::dot(away, normal) < 0 ? -1 : 1;

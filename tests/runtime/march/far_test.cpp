@@ -1,4 +1,5 @@
-// Scenes far from zero, and small things beside large ones: hits are where they are near zero (compiler/analysis/origin.h).
+// Scenes far from zero, and small objects next to large ones: hits are as exact as near zero
+// (compiler/analysis/origin.h).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,7 +13,8 @@
 namespace fathom::runtime::far_test {
 namespace {
 
-// Rays that are exact in float there, and aim at the solid; truth follows from moving them back, which is exact.
+// Moves the rays by `offset`. They stay exact in float and aim at the solid. Moving them back is exact and gives the
+// truth.
 std::vector<Ray> rays_far_off(const std::vector<Ray>& here, double offset) {
   std::vector<Ray> there = here;
   for (Ray& ray : there) ray.origin = to_float(ray.origin + glm::dvec3(offset, 0, 0));
@@ -23,7 +25,7 @@ TEST_CASE("march: far from the scene's zero hits are as exact as near it", "[mar
   struct Case {
     const char* solid;
     Truth truth;
-    double miss;  // of rays from the solid's middle, at most
+    double miss;  // max distance of rays from the solid's centre
   };
   const Case cases[] = {
       {R"("type": "sphere", "radius": 1)", sphere_distance, 1},
@@ -48,8 +50,8 @@ TEST_CASE("march: far from the scene's zero hits are as exact as near it", "[mar
       REQUIRE(judgement.errors.size() > aims.size() / 4);
       CHECK(judgement.false_hits + judgement.false_misses == 0);
       CHECK(judgement.invalid == 0);
-      // Of the coordinates that rays are marched in: none but those at 10 are further from zero than the solid is
-      // wide.
+      // Size of the coordinates in which rays are marched. Only at offset 10 are they further from zero than the
+      // solid is wide.
       const float size = static_cast<float>(offset - scene.origin.x + 1);
       const double unit = static_cast<double>(std::nextafter(size, INFINITY) - size);
       CHECK(judgement.p99() <= std::max(2e-6, 4 * unit));
@@ -89,7 +91,7 @@ TEST_CASE("march: over an endless floor far off, a ball is met where it is", "[m
   }
 }
 
-// A ten-thousandth the size of what it stands beside.
+// A ball ten thousand times smaller than its neighbour.
 TEST_CASE("march: a grain beside a ball is hit where it is", "[march]") {
   for (const double away : {1e-3, 1e-2, 1e-1}) {
     const std::string camera =

@@ -1,5 +1,5 @@
-// What the marcher owes every ray; the hard cases, one by one, are in tests/catalogue/intersection_test.cpp. Truth is
-// computed in long double from the very rays that are marched, whose numbers are exact in float.
+// The marcher's guarantees for every ray. The hard cases, one by one, are in tests/catalogue/intersection_test.cpp.
+// The truth is computed in long double from the marched rays themselves, whose coordinates are exact in float.
 #include "runtime/march/march.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ TEST_CASE("march: an empty scene is missed, and a wide floor hides nothing that 
                                             {"type": "sphere", "radius": 0.05, "translate": [0, 0.05, 0]}])");
   std::vector<Ray> rays;
   for (int i = 0; i < 2000; ++i) {
-    const double slope = std::pow(10.0, -1 - 3 * i / 2000.0);  // rise over run, towards the ball's middle
+    const double slope = std::pow(10.0, -1 - 3 * i / 2000.0);  // rise over run of a ray towards the ball's centre
     rays.push_back({to_float({0, 0.05 + 3 * slope, 3}), to_float(glm::normalize(glm::dvec3(0, -slope, -1)))});
   }
   CHECK(march(make_field(nothing), rays).counters.hits == 0);
@@ -57,7 +57,7 @@ TEST_CASE("march: an empty scene is missed, and a wide floor hides nothing that 
   }
 }
 
-// Once, every ray ended 1e12 away, whatever was asked for.
+// Regression: every ray ended at 1e12, whatever far limit was asked for.
 TEST_CASE("march: a floor of any size is met", "[march]") {
   for (const char* size : {"1", "1e6", "1e12", "1e15"}) {
     CAPTURE(size);
@@ -71,8 +71,8 @@ TEST_CASE("march: a floor of any size is met", "[march]") {
   }
 }
 
-// So near that many t are one place, and the value there exactly 0: brackets crept through those, a millionth of t at
-// a time.
+// Regression: this close to a surface, many t round to the same point, and the field there is exactly 0. Brackets
+// moved through these t in steps of a millionth of t.
 TEST_CASE("march: a surface at a tiny t is found as soon as any other", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 0.5},
       {"type": "plane", "normal": [0, 1, 0], "offset": -0.5}])");

@@ -1,4 +1,4 @@
-// What each method of runtime/march/method.h promises, in both precisions, and what the renderer's own once broke.
+// The guarantees of each method of runtime/march/method.h, in both precisions, and regressions of the default method.
 #include "runtime/march/method.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ const char* const kMixed = R"("camera": {"position": [0, 1, -5], "target": [0, 0
       {"type": "box", "half_size": [0.5, 0.4, 0.6], "translate": [1.3, -0.2, 0.2]},
       {"type": "sphere", "radius": 0.6, "translate": [0, 0.3, -0.5]}])";
 
-// The rays of a picture of so many pixels in height, twice as wide.
+// The camera rays of an image of this height, twice as wide.
 std::vector<Ray> camera_rays(const compiler::CompiledScene& scene, int height) {
   const Camera camera(scene.camera, 2 * height, height);
   std::vector<Ray> rays;
@@ -54,7 +54,7 @@ std::string name_of(const Marching& marching) {
          " eps " + std::to_string(marching.epsilon);
 }
 
-// What of a hit may be float noise, scene units.
+// Returns the error of a hit that float rounding explains, in scene units.
 double noise_of(const Marching& marching) {
   if (marching.method == Method::Certified) return 1e-11;
   return marching.precision == Precision::Double ? 1e-10 : 2e-5;
@@ -63,10 +63,10 @@ double noise_of(const Marching& marching) {
 // A ray whose first hit is known.
 struct Known {
   Ray ray;
-  double t, cosine;  // of the angle between the ray and the normal there
+  double t, cosine;  // cosine of the angle between the ray and the normal at the hit
 };
 
-// All that hit the unit sphere no flatter than at 80 degrees.
+// Rays that hit the unit sphere at max 80 degrees from the normal.
 std::vector<Known> known_sphere_hits() {
   std::vector<Known> known;
   Random random(21);
@@ -79,7 +79,7 @@ std::vector<Known> known_sphere_hits() {
   return known;
 }
 
-// Those of them that meet a face of the box far from its edges, where the field is that of the face's plane.
+// Rays that hit a face of the box far from its edges, where the field is that of the face's plane.
 std::vector<Known> known_box_hits() {
   constexpr double kHalf[] = {0.75, 0.5, 1.0}, kFromEdge = 0.1;
   std::vector<Known> known;
@@ -108,7 +108,7 @@ void expect_promised(const char* scene_text, const std::vector<Known>& known) {
       INFO(scene_text << ": " << name_of(marching));
       const MarchResult result = march(field, rays, marching);
       const double allowed = info(marching.method).uses_epsilon ? epsilon : 0;
-      double excess = -1;  // of the error over eps / cosine
+      double excess = -1;  // largest excess of an error over eps / cosine
       int missed = 0;
       for (std::size_t i = 0; i < known.size(); ++i) {
         missed += result.arrivals[i].status != Status::Hit;
@@ -136,8 +136,8 @@ TEST_CASE("method: every method finds a sphere's and a box's hits within what it
   expect_promised(kBox, known_box_hits());
 }
 
-// A relaxed step was taken although it ended behind the surface, when its ball reached back to the last one; the hit
-// was there, up to 0.6 of the last safe radius too far.
+// Regression: the marcher took a relaxed step that ended behind the surface when its sphere overlapped the last one.
+// The hit was reported there, up to 0.6 of the last safe radius too far.
 TEST_CASE("method: a ray straight at a plane does not hit what is behind it", "[march]") {
   const auto scene = scene_of(kPlane);
   const Field field = make_field(scene);
@@ -200,7 +200,7 @@ TEST_CASE("method: relaxed steps take fewer evaluations than plain ones", "[marc
   }
 }
 
-// All that an arrival says of its ray.
+// All members of an arrival, as bits.
 std::tuple<Status, int, std::uint32_t, std::uint32_t, std::uint32_t, std::uint64_t> bits_of(const Arrival& arrival) {
   return {arrival.status,
           arrival.side,
@@ -262,8 +262,8 @@ TEST_CASE("method: the counters add up", "[march]") {
   Random random(25);
   std::vector<Ray> rays;
   for (int i = 0; i < 1000; ++i) rays.push_back(aimed(random, random.uniform(0, 3), 4));
-  rays.push_back({{0, 0, 4}, {0, 0, 0}});      // leads nowhere
-  rays.push_back({{NAN, 0, 4}, {0, 0, -1}});   // comes from nowhere
+  rays.push_back({{0, 0, 4}, {0, 0, 0}});      // no direction
+  rays.push_back({{NAN, 0, 4}, {0, 0, -1}});   // no origin
   rays.push_back({{2, 0.01, -5}, {0, 0, 1}});  // past the plate
   for (const Marching& marching : all_methods(1e-4)) {
     INFO(name_of(marching));
@@ -294,7 +294,7 @@ TEST_CASE("method: the counters add up", "[march]") {
   }
 }
 
-// The worst difference in t, where both hit; FAILs where only one does.
+// Returns the largest difference in t where both hit. FAILs where only one hits.
 double worst_difference(const std::vector<Arrival>& found, const std::vector<Arrival>& truth) {
   double worst = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -304,8 +304,8 @@ double worst_difference(const std::vector<Arrival>& found, const std::vector<Arr
   return worst;
 }
 
-// A bracket that holds both the box's face and the ground under it had its end at the zero inside, where the box's
-// bottom lies in the ground: hits were 7.7e-4 too far.
+// Regression: a bracket that contained both the box's face and the ground below ended at the zero inside the solid,
+// where the box's bottom touches the ground. Hits were 7.7e-4 too far.
 TEST_CASE("method: a box that stands on the ground is hit at its face, just above the ground", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
       {"type": "box", "half_size": [0.6, 0.6, 0.6], "translate": [1.3, -0.4, 0.2]}])");
@@ -322,8 +322,8 @@ TEST_CASE("method: a box that stands on the ground is hit at its face, just abov
   CHECK(worst_difference(march(field, rays).arrivals, truth.arrivals) <= 2e-5);
 }
 
-// Along a ray near its outline a ball is nearly level, and float holds few digits of the root; what it
-// cannot decide is for double, but that is not all.
+// Along a ray near a ball's outline, the field is nearly level, and float resolves few digits of the root. The
+// marcher decides in double where float cannot, but not for all of these rays.
 TEST_CASE("method: grazing hits of a ball are not vague", "[march]") {
   const auto scene = scene_of(kSphere);
   Random random(27);
@@ -341,8 +341,8 @@ TEST_CASE("method: grazing hits of a ball are not vague", "[march]") {
   }
 }
 
-// Nothing is hit here, but copies pressed flat leave only tiny safe steps: the search in double took more than 1e5
-// evaluations for a ray.
+// Regression: these rays hit nothing, but the flat copies leave only tiny safe steps. The search in double took more
+// than 1e5 evaluations per ray.
 TEST_CASE("method: among flat copies rays end in reasonable evaluations", "[march][heavy]") {
   const auto scene = scene_of(R"("objects": [{"type": "repetition", "period": [0.5, 1, 1], "scale": [1, 0.0003, 1],
       "of": {"type": "intersection", "of": [{"type": "box", "half_size": [0.01, 1, 0.2], "translate": [-0.12, 0, 0]},

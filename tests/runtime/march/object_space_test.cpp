@@ -1,4 +1,4 @@
-// Textures in the coordinates of the node that the material was given to: what is moved takes its grain along.
+// Textures in the coordinates of the node that has the material: a transformed body keeps its grain.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -28,7 +28,7 @@ CompiledScene scene_of(const std::string& objects, const std::string& materials 
   return tests::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
 }
 
-// The scene's colour at a place of its surface.
+// Returns the scene's colour at a point of its surface.
 vec3 color_at(const CompiledScene& scene, dvec3 p) {
   RealScratch scratch;
   const Field field = make_field(scene);
@@ -38,7 +38,7 @@ vec3 color_at(const CompiledScene& scene, dvec3 p) {
       .base_color;
 }
 
-// What kGrain says at a place in its own coordinates.
+// Checks the colour at p against kGrain's formula at q, in the object's coordinates.
 void check_grain(const CompiledScene& scene, dvec3 p, dvec3 q) {
   INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
   const vec3 color = color_at(scene, p);
@@ -49,7 +49,7 @@ void check_grain(const CompiledScene& scene, dvec3 p, dvec3 q) {
 
 const std::string kBox = R"("type": "box", "half_size": [0.5, 0.4, 0.3])";
 const dvec3 kOnBox(0.5, 0.1, 0.2);
-// The box scaled by 2, turned a quarter about y (x to -z, z to x) and moved, in one record.
+// The box in one record scaled by 2, rotated by 90 degrees about y (x to -z, z to x) and translated.
 const std::string kPlaced = R"("scale": 2, "rotate": [0, 90, 0], "translate": [3, 1, -2])";
 dvec3 placed(dvec3 q) { return dvec3(2 * q.z, 2 * q.y, -2 * q.x) + dvec3(3, 1, -2); }
 
@@ -66,7 +66,7 @@ TEST_CASE("object space: a body takes its grain along wherever the material stan
     INFO(object);
     check_grain(scene_of(object), placed(kOnBox), kOnBox);
   }
-  // Twice moved, painted before, between and after.
+  // Two transforms, with the material before, between and after them.
   const std::string twice = R"(, "translate": [0, 5, 0])";
   for (const std::string& object :
        {group("{" + kBox + oak + move + "}", twice), group("{" + kBox + move + "}", oak + twice),
@@ -123,7 +123,7 @@ TEST_CASE("object space: mirrors and twists above the material are undone", "[ob
   const CompiledScene mirrored = scene_of(R"({"type": "mirror", "normal": [1, 0, 0], "of": )" + block + "}");
   check_grain(mirrored, kOnBox + dvec3(2, 0, 0), kOnBox);
   check_grain(mirrored, dvec3(-2.5, 0.1, 0.2), kOnBox);
-  // A quarter turn per unit of height: at y = 0.4, the top, by 36 degrees.
+  // A quarter turn per unit of height: 36 degrees at y = 0.4, the top.
   const CompiledScene twisted =
       scene_of(R"({"type": "twist", "turn": 90, "of": {)" + kBox + R"(, "material": "oak"}})");
   const dvec3 q(0.2, 0.4, 0.1);
@@ -157,7 +157,7 @@ TEST_CASE("object space: far from zero the grain is the node's as well", "[objec
   const CompiledScene moved = scene_of("{" + kBox + R"(, "material": "oak", "translate": [100000, 3, 0]})");
   CHECK(moved.origin != dvec3(0));
   check_grain(moved, kOnBox + dvec3(100000, 3, 0), kOnBox);
-  // The union is not moved: its coordinates are the scene's.
+  // The union has no transform, so its coordinates are the scene's.
   const CompiledScene pair =
       scene_of(R"({"type": "union", "material": "oak", "of": [{)" + kBox + R"(, "translate": [100000, 3, 0]}, {)" +
                kBox + R"(, "translate": [100002, 3, 0]}]})");
@@ -174,8 +174,8 @@ TEST_CASE("object space: a scene without it has the programs it had", "[object_s
   CHECK(own.surface.program().words != world.surface.program().words);
 }
 
-// Balls of a lamp and of noise, one alone and two in a blend; what `ball`, `left`, `right` and `lamp` add says where
-// their patterns are.
+// Balls of a lamp and of noise, one alone and two in a blend. `ball`, `left`, `right` and `lamp` are appended to the
+// materials and place their patterns.
 struct Spaces {
   const char *ball, *left, *right, *lamp;
 };
@@ -204,7 +204,7 @@ const Spaces kMoved = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.
                        R"(, "translate": [1.25, 0.5, 0])", R"(, "translate": [1, 1.75, 0.5])"};
 const Spaces kStill = {"", "", "", ""};
 
-// How far the albedos of two pictures are apart at most.
+// Returns the largest difference between the albedos of two images.
 double apart(const Film& a, const Film& b) {
   double most = 0;
   for (int y = 0; y < 32; ++y) {
@@ -213,13 +213,14 @@ double apart(const Film& a, const Film& b) {
   return most;
 }
 
-// As where the patterns were moved along by hand, a material for each body.
+// The reference moves the patterns by hand, with one material per body.
 TEST_CASE("object space: hits, blends and lamps show the patterns of the moved bodies", "[object_space][render]") {
   RenderOptions options;
   options.width = 48, options.height = 32, options.spp = 4, options.threads = 2;
   const Film moved = render(room(kMoved), options).film, still = render(room(kStill), options).film;
   CHECK(apart(moved, still) > 0.1);
-  for (const char* right : {"right", "left"}) {  // of one material both have their own places all the same
+  // With "left", both balls share a material, but each has its own coordinates.
+  for (const char* right : {"right", "left"}) {
     const CompiledScene own = room(kOwn, right);
     CHECK(own.lamps.size() == 1);
     CHECK(apart(moved, render(own, options).film) < 1e-5);
@@ -244,7 +245,7 @@ TEST_CASE("object space: light that is sampled and light that is hit are the sam
   for (int i = 0; i < 3; ++i) CHECK(lights[i] == Approx(hits[i]).epsilon(0.02));
 }
 
-// Many blocks, so that there are regions; every third is blended with the next.
+// Many blocks, so that regions are built. Every third block is blended with a ball.
 std::string blocks(int count) {
   std::string objects;
   for (int i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 // Fields that are 0 over a volume: nothing is solid there (docs/ACCURACY.md). Rays pass such a plateau from outside,
-// and leave a solid where one begins; both in float and in the search, and what the field says along a ray is held
-// against both.
+// and leave a solid where a plateau begins, both in float and in the search in double. The field along each ray is
+// the truth for both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ std::string body_at_origin(test::Random& random) {
   }
 }
 
-// A field that is 0, or nearly so, over a volume.
+// A field that is 0, or nearly 0, over a volume.
 std::string plateau(test::Random& random) {
   const auto formula = [](const std::string& text) {
     return R"J({"type": "expression", "half_size": [1, 1, 1], "formula": ")J" + text + "\"}";
@@ -93,7 +93,7 @@ std::string plateau(test::Random& random) {
   }
 }
 
-// What becomes of it.
+// Returns the node, altered or combined with a ball.
 std::string altered(test::Random& random, const std::string& of) {
   static const char* kWays[] = {R"({{"type": "onion", "thickness": 0.05, "of": {0}}})",
                                 R"({{"type": "round", "radius": 0.04, "of": {0}}})",
@@ -134,13 +134,13 @@ class Truth {
     for (int axis = 0; axis < 3; ++axis) {
       const double a = (field.bound.lo[axis] - origin_[axis]) / direction_[axis],
                    b = (field.bound.hi[axis] - origin_[axis]) / direction_[axis];
-      if (std::isnan(a) || std::isnan(b)) continue;  // within the side of a box, along it
+      if (std::isnan(a) || std::isnan(b)) continue;  // parallel to a side of the box, and in its plane
       begin_ = std::max(begin_, std::min(a, b));
       end_ = std::min(end_, std::max(a, b));
     }
   }
 
-  // Whether the ray passed a solid, or the end of one, that float tells from a touch.
+  // True if the ray passed through a solid, or through the end of a solid, that float distinguishes from a touch.
   bool loses(const Arrival& arrival, RealScratch& scratch) const {
     constexpr int kPlaces = 200;
     const double end = arrival.status == Status::Hit ? arrival.t - 1e-3 : end_;
@@ -155,7 +155,7 @@ class Truth {
     return false;
   }
 
-  // Whether a hit has no other side.
+  // True if a hit has no solid behind it.
   bool is_false_hit(const Arrival& arrival, RealScratch& scratch) const {
     if (arrival.status != Status::Hit || arrival.side < 0) return false;
     for (double beyond = 1e-12; beyond < 0.02; beyond *= 2) {
@@ -179,10 +179,10 @@ class Truth {
 };
 
 struct Tally {
-  // differ: hits in one of float and double, or more than 1e-3 apart.
+  // differ: hits of only one of float and double, or hits more than 1e-3 apart.
   int rays = 0, hits = 0, contacts = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0, differ = 0;
-  std::uint64_t evaluations = 0, searched = 0, most = 0;  // most: of a ray
-  std::string first, report;                              // the scene's first wrong ray; those of several scenes
+  std::uint64_t evaluations = 0, searched = 0, most = 0;  // most: of a single ray
+  std::string first, report;                              // the first wrong ray of a scene; those of all scenes
 
   int wrong() const { return lost + lost_in_double + false_hits + false_in_double; }
 };
@@ -231,7 +231,7 @@ std::vector<Ray> rays_within(const Field& field, std::size_t count, std::uint64_
   }
   RealScratch scratch;
   std::uint64_t instructions = 0;
-  // Where a ray begins on a plateau or at a surface, what it is in is for rounding to say.
+  // Removes rays that begin on a plateau or at a surface: rounding decides which side they begin on.
   std::erase_if(rays,
                 [&](const Ray& ray) { return std::abs(field.evaluate(ray.origin, scratch, instructions)) < 1e-5; });
   return rays;
@@ -252,14 +252,15 @@ void try_scenes(std::uint64_t first, int scenes, std::size_t rays, Tally& tally)
 
 }  // namespace
 
-// Two scenes with a ball behind a plateau, and where the ray (0, 0, -1) through 0.1, 0.1 meets something. Rays were
-// lost in the plateau: those in float at its edge, those in double once their evaluations were spent.
+// Small scenes with a ball behind a plateau. `from`: z at which the ray (0, 0, -1) through x = y = 0.1 starts. `hit`:
+// t of the ray's hit. Regression: rays were lost in the plateau, in float at its edge, in double after spending their
+// evaluations.
 TEST_CASE("plateaus: the smallest scenes whose rays were lost", "[march]") {
   const double ball = 0.3 - std::sqrt(0.3 * 0.3 - 0.02);
   const struct {
     const char* objects;
     double from, hit;
-  } kScenes[] = {// Half a ball pulled apart: 0 over 0.4 between its halves, and nothing above.
+  } kScenes[] = {// A half ball elongated by 0.4: the field is 0 over these 0.4, and nothing is above.
                  {R"({"type": "elongate", "half_size": [0, 0, 0.2], "of": {"type": "intersection", "of": [
           {"type": "sphere", "radius": 0.6}, {"type": "plane", "normal": [0, 0, 1]}]}})",
                   2, 2.2},
@@ -283,7 +284,7 @@ TEST_CASE("plateaus: the smallest scenes whose rays were lost", "[march]") {
   }
 }
 
-// A ray within a solid leaves it where the field becomes 0 for good, but not where two bodies touch.
+// A ray inside a solid leaves it where the field becomes 0 for good, but not where two bodies touch.
 TEST_CASE("plateaus: a solid ends where the field stays 0, not where two solids touch", "[march]") {
   const auto ending = scene_of(R"J("objects": [{"type": "expression", "half_size": [2, 2, 2],
       "formula": "max(min(abs(z) - 0.5, 0), abs(z) - 1)"}])J");
@@ -312,11 +313,11 @@ TEST_CASE("plateaus: rays pass what is 0 over a volume, and leave solids there",
   CHECK(tally.differ == 0);
 }
 
-// Scenes with a ray that was lost. The plateau's derivative was that of what lies about it, so that the search took
-// its budget and passed over what follows; the value of `elongate` was as wide as the stretch; a ray in the plane of
-// a face took its budget, and the rest of it was one step; a solid's end was between two parts that were free; or
-// only in values, each level with 0. One ray took 33 million evaluations: it went on in steps that intervals tell
-// something of, however small.
+// Scenes that lost rays, with these causes. The derivative over a plateau was that of its surroundings, so the search
+// spent its budget and skipped what follows. The interval value of `elongate` was as wide as the interval of t. A ray
+// in the plane of a face spent its budget, and the rest of the ray was one step. A solid's end lay between two
+// intervals without a root. A solid's end showed only in values, each level with 0. One ray took 33 million
+// evaluations, in steps that intervals could decide, however small.
 TEST_CASE("plateaus: scenes whose rays were lost", "[march]") {
   for (const std::uint64_t seed : {7000049u, 7000154u, 1002530u, 1006021u, 1000284u, 2010441u}) {
     Tally tally;

@@ -20,8 +20,8 @@ using test::coated, test::glass, test::matte, test::metal, test::principled, tes
 using test::kCosines, test::kNormal;
 using Case = test::MaterialCase;
 
-// What the material makes of light from everywhere, without the scaling of radiance: the greatest channel of the mean
-// of random samples, and that mean's standard deviation.
+// Albedo under uniform illumination, without the scaling of radiance by refraction. mean: the largest channel of the
+// mean of random samples; deviation: the mean's standard deviation.
 struct Albedo {
   double mean, deviation;
 };
@@ -50,7 +50,7 @@ TEST_CASE("bsdf: Fresnel's equations at their known points", "[runtime]") {
   CHECK(fresnel(1, 1.5f) == Approx(0.04).epsilon(1e-6));
   CHECK(fresnel(1, 1 / 1.5f) == Approx(0.04).epsilon(1e-6));
   CHECK(fresnel(0, 1.5f) == Approx(1));
-  // Brewster's angle: only the perpendicular half is reflected, ((1 - n^2) / (1 + n^2))^2 of it.
+  // Brewster's angle: only the perpendicular polarisation is reflected, by ((1 - n^2) / (1 + n^2))^2.
   const double n = 1.5, brewster = std::cos(std::atan(n)), part = (1 - n * n) / (1 + n * n);
   CHECK(fresnel(static_cast<float>(brewster), 1.5f) == Approx(part * part / 2).epsilon(1e-5));
   // Total internal reflection begins where sin = 1/n.
@@ -120,7 +120,7 @@ TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime
   }
 }
 
-// How often each lobe is drawn holds against its density, for every material from five directions.
+// Tests the frequencies of samples against their density, for every material from five directions.
 void check_densities(int samples, int rows) {
   const std::vector<Case> cases = test::materials();
   const double level = test::sidak(0.01, static_cast<int>(cases.size()) * 5);
@@ -229,7 +229,7 @@ TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]
     REQUIRE(in.through);
     CHECK(in.eta_scale == Approx(2.25).epsilon(1e-5));
     CHECK(in.weight.x == Approx(1 / 2.25).epsilon(1e-5));
-    // The far side of a slab.
+    // At the far side of a slab.
     const BsdfSample out = Bsdf(m, kNormal, -in.wi, 1 / 1.5f, true).sample(0.999f, {0.3f, 0.4f});
     REQUIRE(out.through);
     CHECK(in.weight.x * out.weight.x == Approx(1).epsilon(1e-5));

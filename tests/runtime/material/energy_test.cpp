@@ -66,7 +66,7 @@ TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the me
   }
 }
 
-// So that materials give back at most a thousandth more than they get.
+// Accurate enough that materials return at most a thousandth more than they receive.
 TEST_CASE("energy: what glass loses on leaving it is known to 5e-4", "[runtime]") {
   for (const float alpha : {0.1f, 0.25f, 0.5f, 0.8f}) {
     for (const float cos : {0.05f, 0.2f, 0.5f}) {
@@ -113,7 +113,7 @@ TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
   for (const AlbedoRow& row : rows) CHECK(row.node == rows[0].node);
 }
 
-// Against the definition, by other points.
+// Compares the tables with their definition, at other points.
 TEST_CASE("energy: what a coat takes too much is the mean of what it dims more", "[runtime]") {
   const AlbedoRow coat = smooth_albedo(1.6f);
   Sampler sampler(9, 0, 0, 0);

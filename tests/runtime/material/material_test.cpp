@@ -1,4 +1,4 @@
-// Materials at places: textures evaluated, conversions, mixtures.
+// Materials at points: evaluated textures, conversions, mixtures.
 #include "runtime/material/material.h"
 
 #include <catch2/catch.hpp>
@@ -22,7 +22,7 @@ CompiledScene scene_of(const std::string& material, const std::string& translate
                          translate + "}]}");
 }
 
-// A material by its text, at a place of the scene.
+// Returns the material of this text at a point of the scene.
 MaterialPoint at(const std::string& material, dvec3 place) {
   const CompiledScene scene = scene_of(material);
   vm::Workspace workspace;
@@ -118,8 +118,8 @@ TEST_CASE("material: values out of range are clamped, what is no number is the s
   CHECK(at(text, {0.25, 1.25, 0}).roughness == 0.25f);
   CHECK(at(text, {0.25, 1.25, 0}).ior == 1.25f);
   CHECK(at(text, {0.25, -5, 0}).ior == Approx(1e-3));
-  CHECK(at(text, {0.25, 1, 0}).base_color == vec3(0));   // a negative number
-  CHECK(at(text, {-1, 1, 0}).base_color == vec3(0.8f));  // none
+  CHECK(at(text, {0.25, 1, 0}).base_color == vec3(0));   // a negative colour
+  CHECK(at(text, {-1, 1, 0}).base_color == vec3(0.8f));  // NaN
   CHECK(at(text, {100, 1, 0}).base_color == vec3(1));
 }
 
@@ -135,7 +135,7 @@ TEST_CASE("material: patterns lie where scale, rotate and translate put them", "
   CHECK(grey(R"(, "scale": 2)", {1.5, 0.5, 0.5}) == 0.25f);
   CHECK(grey(R"(, "scale": [4, 1, 1])", {3.5, 1.5, 0.5}) == 0.75f);
   CHECK(grey(R"(, "translate": [1, 0, 0])", {1.5, 0.5, 0.5}) == 0.25f);
-  // Turned a quarter about z, the cube at x in [0,1], y in [0,1] comes to x in [-1,0].
+  // A quarter turn about z moves the cube x in [0,1], y in [0,1] to x in [-1,0].
   CHECK(grey(R"(, "rotate": [0, 0, 90])", {-0.5, 0.5, 0.5}) == 0.25f);
   CHECK(grey(R"(, "rotate": {"axis": [0, 0, 1], "angle": 90})", {0.5, 0.5, 0.5}) == 0.75f);
 }
@@ -178,7 +178,7 @@ TEST_CASE("material: light and priority are known without a place", "[material]"
   CHECK(materials.typical(0).emission == vec3(1));
 }
 
-// One of every type, none with a parameter at its default.
+// One material of every type, with no parameter at its default.
 std::vector<MaterialPoint> all_types() {
   std::vector<MaterialPoint> out;
   const char* texts[] = {R"({"type": "diffuse", "color": [0.1, 0.2, 0.3]})",
@@ -224,7 +224,7 @@ TEST_CASE("material: every type can be principled", "[material]") {
   CHECK(mirror.metalness == 1);
   CHECK(mirror.roughness == 0);
   for (int i = 0; i < 3; ++i) {
-    // F82: the tint times Schlick's approximation there is the mirror's own reflectance.
+    // F82 model: the tint times Schlick's approximation at 82 degrees is the mirror's own reflectance.
     const double f0 = static_cast<double>(mirror.base_color[i]), schlick = f0 + (1 - f0) * std::pow(6.0 / 7, 5);
     CHECK(static_cast<double>(mirror.specular_color[i]) * schlick == Approx(f0).epsilon(1e-6));
   }

@@ -17,7 +17,7 @@ glm::vec3 direction(float cos, float turn) {
 TEST_CASE("microfacet: the facets cover the surface once", "[runtime]") {
   for (float alpha : {0.02f, 0.1f, 0.5f, 1.0f}) {
     const Ggx ggx(alpha);
-    // tan = alpha s / (1 - s) spreads the points as the facets lie.
+    // tan = alpha s / (1 - s) distributes the points as the facets.
     const int n = 20000;
     double sum = 0;
     for (int i = 0; i < n; ++i) {
@@ -76,7 +76,7 @@ TEST_CASE("microfacet: the chi-square test sees a density that is wrong by a few
   setup.columns = 20;
   CHECK(test::chi_square(sample, right, setup).p > 0.01);
   CHECK(test::chi_square(sample, wrong, setup).p < 1e-6);
-  // Tables of the distribution: 5 % of it lies above these.
+  // From tables of the chi-square distribution: the values that 5 % exceed.
   CHECK(test::chi_square_tail(3.841459, 1) == Approx(0.05).epsilon(1e-5));
   CHECK(test::chi_square_tail(18.307038, 10) == Approx(0.05).epsilon(1e-5));
   CHECK(test::chi_square_tail(124.342113, 100) == Approx(0.05).epsilon(1e-5));

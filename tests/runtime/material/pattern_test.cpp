@@ -75,9 +75,9 @@ TEST_CASE("pattern: a gradient is linear between its ends", "[pattern]") {
 TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
   const Pattern::Bricks b{1, 0.5, 0.1, 0.5};
   CHECK(bricks(b, {0.5, 0.25, 0}) == 0);   // the middle of a brick
-  CHECK(bricks(b, {0.02, 0.25, 5}) == 1);  // its side
-  CHECK(bricks(b, {0.5, 0.02, -5}) == 1);  // its bed
-  CHECK(bricks(b, {0.0, 0.75, 0}) == 0);   // a row up the brick is over the joint
+  CHECK(bricks(b, {0.02, 0.25, 5}) == 1);  // the brick's side
+  CHECK(bricks(b, {0.5, 0.02, -5}) == 1);  // the brick's bottom
+  CHECK(bricks(b, {0.0, 0.75, 0}) == 0);   // in the next row, a brick is above the joint
   CHECK(bricks(b, {0.5, 0.75, 0}) == 1);
   CHECK(bricks(b, {0.5, -0.25, 0}) == 1);
   Sampler sampler(1, 0, 0, 0);
@@ -105,7 +105,7 @@ TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pa
     CHECK(least < -0.7);
     CHECK(most > 0.7);
     CHECK(std::abs(mean) < 4 * std::sqrt(square / count) + 2e-3);
-    CHECK(square == Approx(0.0702).margin(0.008));  // the same strength everywhere
+    CHECK(square == Approx(0.0702).margin(0.008));  // the same variance everywhere
   }
   CHECK(gradient_noise({3, -2, 7}, 5) == 0);
   CHECK(gradient_noise({1e30, 0, 0}, 5) == 0);
@@ -116,7 +116,7 @@ TEST_CASE("pattern: noise is continuous with its slope, across cells too", "[pat
   constexpr double kStep = 1e-5;
   for (int i = 0; i < test::few(20000); ++i) {
     dvec3 p = random_point(sampler, 1000);
-    if (i % 2 == 0) p[i / 2 % 3] = std::round(p[i / 2 % 3]);  // on a cell's side
+    if (i % 2 == 0) p[i / 2 % 3] = std::round(p[i / 2 % 3]);  // on a face of a cell
     dvec3 step(0);
     step[i % 3] = kStep;
     const double before = gradient_noise(p - step, 9), here = gradient_noise(p, 9),

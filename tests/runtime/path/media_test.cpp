@@ -1,4 +1,4 @@
-// Light through glass that touches, holds or lies in something else.
+// Light through glass that touches, contains or lies inside another body.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace fathom::runtime::media_test {
 namespace {
 
-// The radiance straight down through slabs that overlap, before an even light.
+// Returns the radiance seen straight down through overlapping slabs, before a uniform light.
 glm::dvec3 seen_through(const std::string& materials, const std::string& objects) {
   RenderOptions options;
   options.width = options.height = 16;
@@ -33,14 +33,14 @@ std::string layer(double top, double bottom, const char* material) {
 }
 
 TEST_CASE("media: absorption says where one medium ends and another begins", "[render][released]") {
-  // Without refraction: through 0.4 of red glass and 0.6 of blue, which overlap.
+  // Without refraction: 0.4 of red glass and 0.6 of blue, which overlap.
   const std::string materials = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1], "priority": 1},
       "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
   const glm::dvec3 seen = seen_through(materials, layer(0.5, 0.1, "red") + "," + layer(0.3, -0.5, "blue"));
   CHECK(seen.x == Approx(2 * std::exp(-2 * 0.6)).epsilon(1e-4));
   CHECK(seen.y == Approx(2 * std::exp(-1 * 0.4 - 1 * 0.6)).epsilon(1e-4));
   CHECK(seen.z == Approx(2 * std::exp(-1 * 0.4)).epsilon(1e-4));
-  // Of equal priority the first in the file fills the overlap.
+  // With equal priority, the first object in the file fills the overlap.
   const std::string equal = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1]},
       "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
   CHECK(seen_through(equal, layer(0.3, -0.5, "blue") + "," + layer(0.5, 0.1, "red")).x ==
@@ -48,11 +48,11 @@ TEST_CASE("media: absorption says where one medium ends and another begins", "[r
 }
 
 TEST_CASE("media: where water meets glass the step of the index is that between the two", "[render][released]") {
-  // Air, glass 1.5, water 1.5 of another name, air: the middle surface reflects nothing, so it is one slab.
+  // Air, glass 1.5, water 1.5 as another material, air: the middle surface reflects nothing, so it is one slab.
   const std::string same = R"("glass": {"type": "transparent"}, "water": {"type": "transparent"})";
   const std::string layers = layer(0.5, -0.1, "glass") + "," + layer(0, -0.5, "water");
   CHECK(seen_through(same, layers).x == Approx(2 * 0.96 / 1.04).epsilon(1e-2));
-  // Three surfaces of reflectances r: without interference they pass (1 + sum of r / (1 - r))^-1.
+  // Three surfaces of reflectance r transmit (1 + sum of r / (1 - r))^-1 without interference.
   const auto r = [](double a, double b) { return (a - b) * (a - b) / ((a + b) * (a + b)); };
   const std::string two =
       R"("glass": {"type": "transparent", "ior": 1.8}, "water": {"type": "transparent", "ior": 1.33})";
@@ -81,24 +81,24 @@ double red_of(const std::string& json) {
   return estimate(render(scene_of(json), options).film).mean;
 }
 
-// Once, all rays began in what fills the camera's own place: of a ball cut by the plane they start from all that
-// missed it were black.
+// Regression: all rays began in the medium at the camera's own position. For a ball cut by the camera's image plane,
+// all rays that missed the ball were black.
 TEST_CASE("media: every camera ray begins in what fills its own place", "[render]") {
   const std::string plane = R"("type": "orthographic", "position": [0.5, 0, 0], "target": [0.5, 0, -1], "width": )";
-  // Half a chord.
+  // The path length is half a chord.
   CHECK(red_of(ball_round(plane + "0.002")) == Approx(std::exp(-std::sqrt(0.75))).epsilon(1e-3));
-  // A disc of half chords s: its mean of exp(-s) is 2 (1 - 2 / e). It has pi of the 16 that are seen.
+  // A disc of half chords s: its mean of exp(-s) is 2 (1 - 2 / e). The disc covers pi of the 16 square units in view.
   const std::string wide = R"("type": "orthographic", "position": [0, 0, 0], "target": [0, 0, -1], "width": 4)";
   const double share = M_PI / 16;
   CHECK(red_of(ball_round(wide)) == Approx(1 - share + share * 2 * (1 - 2 / M_E)).epsilon(2e-3));
-  // A lens half in the ball, half out of it: those that begin outside pass by.
+  // A lens half inside the ball: rays that begin outside miss the ball.
   const std::string lens =
       R"("position": [1, 0, 0], "target": [1, 0, -100], "fov": 0.01, "lens_radius": 0.001, "focus_distance": 100)";
   CHECK(red_of(ball_round(lens)) < 1);
   CHECK(red_of(ball_round(lens)) > 0.95);
 }
 
-// Once, light that came out of the glass on a table went on within the table, for a union has no surface there.
+// Regression: light that left the glass on a table continued inside the table, because a union has no surface there.
 TEST_CASE("media: glass that stands in a table shows the table", "[render]") {
   const std::string materials = R"("glass": {"type": "transparent", "ior": 1},
       "table": {"type": "emissive", "emission": [1, 0.5, 0]})";

@@ -76,7 +76,7 @@ TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "
   CHECK(!camera.has_lens());
   const CameraRay plain = camera.ray(3.7, 11.2), lens = camera.ray(3.7, 11.2, {0.1f, 0.9f});
   CHECK((plain.origin == lens.origin && plain.direction == lens.direction));
-  // As computed before there were lenses.
+  // The direction by the formula without a lens.
   const double sx = (2 * 3.7 / 30 - 1) * tangent(M_PI / 4);
   const double sy = (1 - 2 * 11.2 / 20) * (tangent(M_PI / 4) * (20.0 / 30));
   CHECK(plain.direction ==
@@ -102,8 +102,8 @@ TEST_CASE("camera: what lies in the focus plane is sharp", "[runtime]") {
   }
 }
 
-// The thin lens: a point at distance d makes a circle of confusion c = 2 R f |d - F| / (d (F - f)) wide on the
-// sensor, which is behind the lens by v with 1/f = 1/v + 1/F, and sees the width 2 v tan(fov/2).
+// Thin lens: a point at distance d has a circle of confusion of width c = 2 R f |d - F| / (d (F - f)) on the sensor.
+// The sensor is at distance v behind the lens with 1/f = 1/v + 1/F, and has the width 2 v tan(fov/2).
 TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]") {
   const double radius = 0.03, focus = 4, f = 0.05, v = 1 / (1 / f - 1 / focus);
   compiler::Camera spec = with_lens(radius, focus);
@@ -112,13 +112,13 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
   for (const double d : {1.5, 3.0, 3.9, 5.0, 40.0}) {
     const double circle = 2 * radius * f * std::abs(d - focus) / (d * (focus - f));
     const double pixels = 1000 * circle / (2 * v * tangent(spec.fov / 2));
-    // Of the pixels that see the point through some place of the lens, those the farthest to either side: the ray
-    // there passes the point at the lens's rim, and one beyond it misses.
+    // The furthest pixels to either side that see the point through some place of the lens. Their ray passes the
+    // point at the lens's rim. A ray further out misses the point.
     const glm::dvec3 point = spec.position + d * forward;
     for (const double side : {-1.0, 1.0}) {
       double least = 1e9, least_beyond = 1e9;
       for (int i = 0; i < 4096; ++i) {
-        const glm::vec2 rim(static_cast<float>(i) / 4096, 0.5f);  // along one diameter of the lens, to the right
+        const glm::vec2 rim(static_cast<float>(i) / 4096, 0.5f);  // along the lens's horizontal diameter
         const auto miss = [&](double scale) {
           const CameraRay ray = camera.ray(500 + side * scale * pixels / 2, 400, rim);
           return glm::length(glm::cross(point - ray.origin, ray.direction));
@@ -127,7 +127,7 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
         least_beyond = std::min(least_beyond, miss(1.1));
       }
       CAPTURE(d, side, pixels);
-      const double blur = radius * std::abs(d - focus) / focus;  // of one pixel's rays at the point's distance
+      const double blur = radius * std::abs(d - focus) / focus;  // width of one pixel's rays at the point's distance
       CHECK(least < 2e-3 * blur);
       CHECK(least_beyond > 0.05 * blur);
     }
@@ -142,8 +142,8 @@ TEST_CASE("camera: focal length and f-stop say what a lens of that name does", "
   const glm::dvec3 right = camera.ray(300, 100).direction;
   CHECK(right.x / -right.z == Approx(36.0 / 2 / 50));  // 39.6 degrees
   CHECK(camera.lens_radius() == Approx(0.0125));       // 50 mm over 2, half of that, in metres
-  CHECK(camera.focus_distance() == Approx(5));         // the target
-  // Said by the field of view it is the same lens.
+  CHECK(camera.focus_distance() == Approx(5));         // the distance of the target
+  // The same lens, given by the field of view.
   compiler::Camera by_angle = facing_minus_z();
   by_angle.fov = 2 * std::atan(36.0 / 2 / 50);
   by_angle.f_stop = 2;
@@ -160,7 +160,7 @@ double chi_square(const std::vector<int>& counts, double expected) {
 
 TEST_CASE("camera: a round lens is lit evenly", "[runtime]") {
   const Camera camera(with_lens(2, 5), 10, 10);
-  // Rings and sectors of equal area: 16 x 16.
+  // 16 x 16 cells: rings and sectors of equal area.
   std::vector<int> counts(256);
   Sampler sampler(3, 0, 0, 0);
   const int n = 1 << 17;
@@ -187,7 +187,8 @@ TEST_CASE("camera: blades make a regular polygon, lit evenly", "[runtime]") {
     int inner = 0;
     for (int i = 0; i < n; ++i) {
       const glm::dvec2 p = camera.lens_point(sampler.next2());
-      // From the corner that is up: in the polygon, and by sectors and shells of equal area.
+      // The point must be inside the polygon. Cells of equal area are sectors, counted from the upper corner, and
+      // shells.
       const double turn = std::atan2(-p.x, p.y) / (2 * M_PI), sector = (turn < 0 ? turn + 1 : turn) * blades;
       const double within = (sector - std::floor(sector) - 0.5) * 2 * M_PI / blades;
       const double shell = glm::length(p) * std::cos(within) / apothem;
@@ -197,13 +198,13 @@ TEST_CASE("camera: blades make a regular polygon, lit evenly", "[runtime]") {
                static_cast<std::size_t>(static_cast<int>(sector) % blades * 8 / blades)];
     }
     CAPTURE(blades);
-    // A disk within takes its share of the polygon's area.
+    // A disc inside the polygon gets its share of the polygon's area.
     const double share = M_PI * apothem * apothem / 4 / area;
     CHECK(inner / static_cast<double>(n) == Approx(share).margin(4 * std::sqrt(share / n)));
     std::vector<int> shells(8);
     for (std::size_t i = 0; i < 64; ++i) shells[i / 8] += counts[i];
     CHECK(chi_square(shells, n / 8.0) < 7 + 4 * std::sqrt(14.0));
-    // A corner is up; turned by 90 degrees it is to the left.
+    // A corner is at the top. A rotation by 90 degrees moves it to the left.
     CHECK(camera.lens_point({0, 0.999999f}).y == Approx(1).margin(1e-5));
     spec.blade_rotation = M_PI / 2;
     CHECK(Camera(spec, 10, 10).lens_point({0, 0.999999f}).x == Approx(-1).margin(1e-5));
@@ -213,7 +214,7 @@ TEST_CASE("camera: blades make a regular polygon, lit evenly", "[runtime]") {
 TEST_CASE("camera: a panorama shows all directions, level, the target in its middle", "[runtime]") {
   compiler::Camera spec = facing_minus_z();
   spec.projection = compiler::Camera::Projection::Panorama;
-  spec.target = {0, -3, 0};  // below: the horizon stays level
+  spec.target = {0, -3, 0};  // below the camera: the horizon stays level
   spec.up = {0, 2, 0};
   const Camera camera(spec, 400, 200);
   const auto close = [](glm::dvec3 a, glm::dvec3 b) { return glm::length(a - b) < 1e-14; };

@@ -13,7 +13,7 @@ namespace {
 constexpr FilterKind kFilters[] = {FilterKind::Box, FilterKind::Tent, FilterKind::Gaussian,
                                    FilterKind::BlackmanHarris, FilterKind::Mitchell};
 
-// Of f(|x| / radius) from x = a to b, by Simpson's rule.
+// Integrates g over f(|x| / radius) from x = a to b, by Simpson's rule.
 template <typename Function>
 double integral(FilterKind kind, double a, double b, double radius, const Function& g) {
   const int steps = 4000;
@@ -28,7 +28,7 @@ double integral(FilterKind kind, double a, double b, double radius, const Functi
 
 TEST_CASE("filter: the shapes are those of the books") {
   CHECK(filter_value(FilterKind::Gaussian, 1) == Approx(0).margin(1e-6));
-  // Standard deviation: a third of the radius.
+  // The standard deviation is a third of the radius.
   CHECK(filter_value(FilterKind::Gaussian, 1.0 / 3) == Approx(std::exp(-0.5) - std::exp(-4.5)).epsilon(1e-5));
   CHECK(filter_value(FilterKind::BlackmanHarris, 0) == Approx(1));
   CHECK(filter_value(FilterKind::BlackmanHarris, 1) == Approx(6e-5).epsilon(1e-3));
@@ -36,7 +36,7 @@ TEST_CASE("filter: the shapes are those of the books") {
   CHECK(filter_value(FilterKind::Mitchell, 0.5) == Approx(1.0 / 18));
   CHECK(filter_value(FilterKind::Mitchell, 1) == Approx(0).margin(1e-15));
   CHECK(filter_value(FilterKind::Mitchell, 0.7) < 0);
-  // Whole pixels apart the Mitchell filter's values add up to 1 everywhere.
+  // The Mitchell filter's values at points one pixel apart add up to 1 everywhere.
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
     double sum = 0;
     for (int i = -3; i <= 3; ++i) {
@@ -97,11 +97,11 @@ TEST_CASE("filter: offsets are as dense as the filter's magnitude says") {
   }
 }
 
-// Means of weight, weight * offset and weight * offset^2 along an axis, over a grid of u so fine that what it misses,
-// a step where the sign changes, is below 2e-5.
+// Means of weight, weight * offset and weight * offset^2 along an axis. The grid of u is so fine that its error, from
+// the step where the sign changes, is below 2e-5.
 std::array<double, 3> moments(const Filter& filter, int axis) {
   const int n = 1 << 18;
-  // A sample's weight is a product; this is the other axis's factor.
+  // A sample's weight is a product. This is the factor of the other axis.
   const double other = std::sqrt(static_cast<double>(filter.sample({0.5f, 0.5f}).weight));
   std::array<double, 3> sums{};
   for (int i = 0; i < n; ++i) {

@@ -26,7 +26,7 @@ TEST_CASE("sampler: every part of the key matters", "[runtime]") {
   CHECK(seen.size() == 6);
 }
 
-// Chi-square over a 16 x 16 grid with 255 degrees of freedom: mean 255, standard deviation sqrt(510).
+// Chi-square over a 16 x 16 grid: 255 degrees of freedom, mean 255, standard deviation sqrt(510).
 double chi_square(const std::vector<int>& counts, double expected) {
   double sum = 0;
   for (int count : counts) sum += (count - expected) * (count - expected) / expected;
@@ -95,21 +95,21 @@ TEST_CASE("sampler: what a bounce draws does not depend on what was drawn before
     busy.start_bounce(2);
     idle.start_bounce(2);
     CHECK(busy.next2() == idle.next2());
-    // A single number is the first of a pair.
+    // next() returns the first number of a pair.
     idle.start_bounce(2);
     busy.start_bounce(2);
     CHECK(idle.next() == busy.next2().x);
-    // Bounces do not share pairs.
+    // No two bounces share a pair.
     std::set<float> seen;
     for (int bounce = 0; bounce < 20; ++bounce) {
       idle.start_bounce(bounce);
       for (int i = 0; i < Sampler::kPairsPerBounce; ++i) seen.insert(idle.next());
     }
-    CHECK(seen.size() >= 20 * Sampler::kPairsPerBounce - 1);  // two of 320 may well be equal in 24 bits
+    CHECK(seen.size() >= 20 * Sampler::kPairsPerBounce - 1);  // two of 320 numbers may be equal in 24 bits
   }
 }
 
-// Whether every rectangle 2^-i by 2^-(bits-i), i = 0 .. bits, has one of the 2^bits points.
+// True if every rectangle 2^-i by 2^-(bits-i), i = 0 .. bits, contains one of the 2^bits points.
 bool is_net(const std::vector<glm::vec2>& points, int bits) {
   for (int i = 0; i <= bits; ++i) {
     std::vector<bool> taken(points.size(), false);
@@ -130,7 +130,7 @@ TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair o
       const int count = 1 << bits;
       for (int pixel = 0; pixel < fathom::test::few(6); ++pixel) {
         for (const int bounce : {-1, 0, 3}) {
-          // The second run, too, of twice as many samples; and with the seed and the place changed.
+          // The plan has twice as many samples: the second run is a net, too. Seed and position vary.
           const SamplePlan plan{kind, static_cast<std::uint64_t>(pixel), 2 * count};
           std::vector<glm::vec2> first, second;
           for (int i = 0; i < count; ++i) {
@@ -145,13 +145,13 @@ TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair o
       }
     }
   }
-  // The test can tell.
+  // Control: independent samples are not a net.
   std::vector<glm::vec2> random;
   for (std::uint32_t i = 0; i < 64; ++i) random.push_back(pair_of({SamplerKind::Independent, 0, 64}, 0, 0, i, -1));
   CHECK(!is_net(random, 6));
 }
 
-// The pixels of an aligned square of 2^k a side have together the samples of one run.
+// The pixels of an aligned square of 2^k per side together have the samples of one run.
 TEST_CASE("sampler: of the kind blue aligned squares of pixels are nets, too") {
   for (const int spp : {1, 2, 4, 16}) {
     for (int level = 1; level <= 3; ++level) {
@@ -184,7 +184,7 @@ TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixel
       const auto u = static_cast<std::uint32_t>(i);
       const SamplePlan plan{kind, u, 8};
       ++of_seeds[cell(pair_of(plan, 1, 2, 3, -1))];
-      // Far apart: neighbours share out the square.
+      // The pixels are far apart, because neighbours divide the square among themselves.
       ++of_pixels[cell(pair_of({kind, 1, 1}, (u % 256) * 251, (u / 256) * 241, 0, 0))];
       ++of_bounces[cell(pair_of({kind, 1, 8}, 3, 4, 5, i))];
       Sampler sampler(PixelKey(plan, 7, 7), 6);
@@ -194,7 +194,7 @@ TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixel
     CAPTURE(kind);
     CHECK(chi_square(of_seeds, n / 256.0) < limit);
     CHECK(chi_square(of_pixels, n / 256.0) < limit);
-    // Independent numbers do not know of bounces.
+    // Independent samples do not depend on the bounce.
     if (kind != SamplerKind::Independent) CHECK(chi_square(of_bounces, n / 256.0) < limit);
     CHECK(chi_square(across_pairs, n / 256.0) < limit);
   }

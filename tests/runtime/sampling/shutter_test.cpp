@@ -1,4 +1,4 @@
-// When a shutter sees the scene, and by which random numbers frames are drawn.
+// The moments at which a shutter sees the scene, and the seeds of frames.
 #include "runtime/sampling/shutter.h"
 
 #include <catch2/catch.hpp>
@@ -46,7 +46,8 @@ TEST_CASE("shutter: runs are as long as each other where they can be") {
     CHECK((run.samples.size() == 6 || run.samples.size() == 8));
 }
 
-// A mean of n numbers that are even in [0,1) is off by 1/sqrt(12 n); five times that is met once in 1.7 million.
+// The mean of n uniform numbers in [0,1) has the standard deviation 1/sqrt(12 n). A deviation of five times this
+// occurs once in 1.7 million.
 TEST_CASE("shutter: moments are even in their share, and differ by seed, frame and run") {
   std::set<double> times;
   double sum = 0;

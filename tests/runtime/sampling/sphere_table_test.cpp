@@ -1,5 +1,5 @@
-// A table of directions: longitude and latitude there and back, cells by their chance. Chi-square:
-// environment_test.cpp.
+// A table of directions: conversion to longitude and latitude and back, cells sampled by probability. Chi-square
+// test: environment_test.cpp.
 #include "runtime/sampling/sphere_table.h"
 
 #include <catch2/catch.hpp>

@@ -10,7 +10,7 @@ namespace fathom::runtime::warp_test {
 namespace {
 
 TEST_CASE("warp: cosine hemisphere passes a chi-square test against its density", "[runtime]") {
-  // Cells of equal cos^2 and equal angle are equally likely: cos^2 theta is uniform under cos/pi.
+  // Cells of equal cos^2 and equal angle are equally likely: cos^2 theta is uniform for the density cos/pi.
   const int n = 1000000, rows = 20, columns = 40;
   std::vector<int> counts(rows * columns);
   Sampler sampler(1, 0, 0, 0);

@@ -21,7 +21,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 TEST_CASE("slice: the views are right-handed, pixels are met at their centres", "[slice]") {
   Slice slice{Axis::Z, 7, {-2, 10}, {2, 14}, 4, 2};
-  CHECK(slice.point(0, 0) == glm::dvec3(-1.5, 13, 7));  // top left: least x, most y
+  CHECK(slice.point(0, 0) == glm::dvec3(-1.5, 13, 7));  // top left: smallest x, largest y
   CHECK(slice.point(3, 1) == glm::dvec3(1.5, 11, 7));
   slice.axis = Axis::Y;  // up is -z
   CHECK(slice.point(0, 0) == glm::dvec3(-1.5, 7, 11));
@@ -95,7 +95,7 @@ TEST_CASE("slice: bands have round steps", "[slice]") {
 
 TEST_CASE("slice: a picture of distances tells inside from outside, the surface and what is not a number",
           "[slice]") {
-  // Distances along a row from a surface in the middle, a pixel a tenth of a band.
+  // A row of distances with a surface in the middle. One pixel is a tenth of a band.
   constexpr int kWidth = 41;
   std::vector<float> field;
   for (int i = 0; i < kWidth; ++i) field.push_back(static_cast<float>(i - 20) * 0.1f);

@@ -17,10 +17,13 @@ using compiler::Kind;
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr int kGrid = 16;                // nodes a side; two minima of one patch are never nearer than two cells
-constexpr double kSmallestStep = 1e-12;  // of the patch's side: what is left of it is below 1e-10 of the distance
+// Grid nodes per side: two minima on one patch are always at least two cells apart.
+constexpr int kGrid = 16;
+// Relative to the patch's side: smaller steps change less than 1e-10 of the distance.
+constexpr double kSmallestStep = 1e-12;
 
-// Least |map(u,v) - p| near (u, v): try the eight neighbours at a step, halve the step when none is nearer.
+// Minimises |map(u,v) - p| near (u, v): tries the eight neighbours at the current step and halves the step when none
+// of them is nearer.
 template <typename Map>
 double polish(const Map& map, dvec3 p, double u, double v) {
   const auto distance2 = [&](double s, double t) {
@@ -41,7 +44,7 @@ double polish(const Map& map, dvec3 p, double u, double v) {
   return std::sqrt(best);
 }
 
-// The part of a sphere between two polar angles (from +y), as a profile in (rho, y).
+// Arc of a circle between two polar angles (from +y), as a profile in (rho, y).
 std::function<dvec2(double)> arc(double rho, double y, double radius, double from, double to) {
   return [=](double t) {
     const double angle = from + t * (to - from);
@@ -97,8 +100,8 @@ double BruteForce::distance(dvec3 p) const {
   return (inside_(p) ? -best : best) - thickness_;
 }
 
-// Polishes every node that no neighbour beats and whose cells could still win. Equal neighbours (the poles of a
-// parametrisation) are all polished: each can only reach its own side.
+// Polishes every grid node that is no farther than its neighbours and whose cells could still improve on `best`.
+// Equal neighbours (the poles of a parametrisation) are all polished, because each can only reach its own side.
 double BruteForce::distance_to(const Patch& patch, dvec3 p, double best) {
   double d[kGrid + 1][kGrid + 1];
   for (int i = 0; i <= kGrid; ++i) {
@@ -126,8 +129,9 @@ void BruteForce::revolve(std::function<dvec2(double t)> profile) {
   });
 }
 
-// Six faces, and for a rounded box twelve quarter cylinders and eight octants: one piece for each sign of each axis,
-// 0 for "along the inner box". A piece is the inner box's face, edge or corner plus the rounding along its normals.
+// Six faces; a rounded box also has twelve quarter cylinders and eight octants. There is one piece per sign of each
+// axis, where 0 means "along the inner box". A piece is the inner box's face, edge or corner plus the rounding along
+// its normals.
 void BruteForce::build_box(dvec3 half, double rounding) {
   const dvec3 inner = half - rounding;
   for (int piece = 0; piece < 27; ++piece) {
@@ -135,7 +139,7 @@ void BruteForce::build_box(dvec3 half, double rounding) {
     const int fixed = std::abs(sign[0]) + std::abs(sign[1]) + std::abs(sign[2]);
     if (fixed == 0 || (fixed > 1 && rounding == 0)) continue;
     add([=](double u, double v) {
-      const double a = u * kPi / 2, b = v * kPi / 2;  // normals that fan out between the fixed axes
+      const double a = u * kPi / 2, b = v * kPi / 2;  // angles of the normals that fan out between the fixed axes
       const double fan[4][3] = {{},
                                 {1, 0, 0},
                                 {std::cos(a), std::sin(a), 0},
@@ -152,7 +156,7 @@ void BruteForce::build_box(dvec3 half, double rounding) {
       return point;
     });
   }
-  // Inside when no axis, or pair, or triple of axes overshoots the inner box by more than the rounding.
+  // Inside when the overshoot over the inner box, as a vector over the axes, is shorter than the rounding.
   inside_ = [=](dvec3 p) {
     double overshoot2 = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -169,8 +173,9 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
     revolve(arc(0, 0, k[0], 0, kPi));
     inside_ = [r = k[0]](dvec3 p) { return glm::dot(p, p) < r * r; };
   } else if (kind == Kind::Torus) {
-    // Its quartic (|p|^2 + R^2 - r^2)^2 = 4 R^2 rho^2, with the root taken so that a spindle's lens counts as inside.
-    // A spindle's boundary is the part of the circle that stays on its side of the axis: sin(angle) >= -R/r.
+    // Inside test by the torus quartic (|p|^2 + R^2 - r^2)^2 = 4 R^2 rho^2, with the root chosen so that a spindle's
+    // lens counts as inside. A spindle's boundary is the part of the circle that stays on its side of the axis:
+    // sin(angle) >= -R/r.
     const double beyond = k[1] > k[0] ? std::asin(k[0] / k[1]) : kPi / 2;
     revolve(arc(k[0], 0, k[1], -beyond, kPi + beyond));
     inside_ = [R = k[0], r = k[1]](dvec3 p) {
@@ -193,7 +198,7 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
     revolve(segment({radius - e, h}, {0, h}));
     revolve(arc(radius - e, h - e, e, 0, kPi / 2));
     revolve(arc(radius - e, -h + e, e, kPi / 2, kPi));
-    inside_ = [=](dvec3 p) {  // at height y the cross section is a disc, smaller near the caps
+    inside_ = [=](dvec3 p) {  // the cross section at height y is a disc, smaller near the caps
       const double into_cap = std::abs(p.y) - (h - e);
       if (into_cap >= e) return false;
       const double at = into_cap > 0 ? radius - e + std::sqrt(e * e - into_cap * into_cap) : radius;
@@ -202,8 +207,8 @@ void BruteForce::build_revolved(Kind kind, std::span<const double> k) {
   }
 }
 
-// Two spherical caps and the cone that touches both balls where the normal's slope is s = (bottom - top) / height
-// (similar triangles); one ball alone when it holds the other.
+// Two spherical caps and the cone that touches both balls, where the normal's slope is s = (bottom - top) / height
+// (similar triangles). One ball alone when it contains the other.
 void BruteForce::build_round_cone(double bottom, double top, double height) {
   const double s = (bottom - top) / height;
   if (s >= 1) {
@@ -216,7 +221,8 @@ void BruteForce::build_round_cone(double bottom, double top, double height) {
     revolve(arc(0, height, top, 0, touch));
     revolve(segment(arc(0, 0, bottom, touch, touch)(0), arc(0, height, top, touch, touch)(0)));
   }
-  // In a ball of the family, whose radius and height go together; ternary search for the one that reaches farthest.
+  // Inside when one ball of the family contains p. The balls' radii vary linearly with their height. A ternary search
+  // finds the ball with the smallest clearance.
   inside_ = [=](dvec3 p) {
     const auto clearance = [&](double t) {
       return glm::length(p - dvec3(0, t * height, 0)) - (bottom + t * (top - bottom));
@@ -230,7 +236,7 @@ void BruteForce::build_round_cone(double bottom, double top, double height) {
   };
 }
 
-// A square of the plane, large enough for points within 64 of the origin.
+// Square of the plane, large enough for points within 64 of the origin.
 void BruteForce::build_plane(dvec3 normal, double offset) {
   const dvec3 n = normal / std::sqrt(glm::dot(normal, normal));
   const dvec3 e = glm::normalize(glm::cross(n, std::abs(n.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
@@ -239,7 +245,7 @@ void BruteForce::build_plane(dvec3 normal, double offset) {
   inside_ = [=](dvec3 p) { return glm::dot(p - n * offset, n) < 0; };
 }
 
-// Triangle (a degenerate bilinear patch) or quad, unsigned.
+// Triangle (a degenerate bilinear patch) or quadrilateral, with unsigned distance.
 void BruteForce::build_sheet(std::span<const double> corners, double thickness) {
   const dvec3 a = vec3_at(corners, 0), b = vec3_at(corners, 3), c = vec3_at(corners, 6);
   const dvec3 d = corners.size() == 12 ? vec3_at(corners, 9) : c;

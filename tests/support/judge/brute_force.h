@@ -1,10 +1,11 @@
-// True distances to primitives by brute force: the boundary as parametrised patches, searched on a grid and then by a
-// shrinking compass, and an inside test that shares nothing with it. About 1e-10 of the size of the solid.
+// True distances to primitives by brute force. The boundary is a list of parametrised patches, searched on a grid and
+// then by a shrinking compass search. The inside test shares no code with that search. Accuracy: about 1e-10 of the
+// size of the solid.
 //
 //     BruteForce truth(Kind::Cone, params);
 //     truth.distance(p)      // negative inside
 //
-// Not for fractals, whose boundary nobody can parametrise, nor for other fields that are not exact.
+// Not for fractals, whose boundary cannot be parametrised, nor for other fields that are not exact distances.
 // Tested by: tests/compiler/shapes/shapes_test.cpp
 #pragma once
 
@@ -26,11 +27,11 @@ class BruteForce {
   bool inside(glm::dvec3 p) const { return inside_(p); }
 
  private:
-  using Map = std::function<glm::dvec3(double u, double v)>;  // [0,1]^2 onto a part of the boundary
+  using Map = std::function<glm::dvec3(double u, double v)>;  // maps [0,1]^2 onto a part of the boundary
   struct Patch {
     Map map;
-    std::vector<glm::dvec3> nodes;  // [u][v] of a grid
-    double cell;                    // longest diagonal of its cells, scene units
+    std::vector<glm::dvec3> nodes;  // grid points: [u][v]
+    double cell;                    // longest cell diagonal, scene units
   };
 
   void add(Map map);
@@ -41,7 +42,7 @@ class BruteForce {
   void build_round_cone(double bottom, double top, double height);
   void build_plane(glm::dvec3 normal, double offset);
   void build_sheet(std::span<const double> corners, double thickness);
-  // The solids of brute_force_solids.cpp; false for all others.
+  // Builds a solid of brute_force_solids.cpp. Returns false for all other primitives.
   bool build_solid(compiler::Kind kind, std::span<const double> k);
   void build_box_frame(glm::dvec3 half, double thickness);
   void build_capped_torus(double major, double minor, double degrees);
@@ -52,7 +53,8 @@ class BruteForce {
 
   std::vector<Patch> patches_;
   std::function<bool(glm::dvec3)> inside_;
-  double thickness_ = 0;  // the solid is this much thicker than the patches (triangle and quad)
+  // Added to the solid around the patches (triangle and quad).
+  double thickness_ = 0;
 };
 
 }  // namespace fathom::test

@@ -15,7 +15,7 @@ namespace {
 using glm::dvec2;
 
 constexpr int kNodes = 48;
-const dvec2 kRay(std::cos(0.3), std::sin(0.3));  // along nothing that shapes have
+const dvec2 kRay(std::cos(0.3), std::sin(0.3));  // parallel to no edge of the tested shapes
 double height(dvec2 v) { return kRay.x * v.y - kRay.y * v.x; }
 
 }  // namespace
@@ -27,7 +27,7 @@ BruteForceOutline::BruteForceOutline(compiler::Kind kind, std::span<const double
       continue;
     }
     const dvec2 cosine(piece.radii.x, 0), sine(0, piece.radii.y);
-    // Height is a wave in t, least and greatest half a turn apart.
+    // Height is a sine wave in t, with its minimum and maximum half a turn apart. Curves are split at those extrema.
     const double peak = std::atan2(height(sine), height(cosine));
     double from = piece.from;
     for (double turn = peak - 8 * std::numbers::pi; turn < piece.to; turn += std::numbers::pi) {
@@ -83,7 +83,7 @@ bool BruteForceOutline::inside(dvec2 p) const {
   for (const Curve& curve : curves_) {
     const bool up = height(curve.nodes.back() - p) > 0;
     if ((height(curve.nodes.front() - p) > 0) == up) continue;
-    double lo = curve.from, hi = curve.to;  // the ray's line crosses between
+    double lo = curve.from, hi = curve.to;  // the line of the ray crosses the curve between them
     for (int i = 0; i < 100; ++i) {
       const double t = (lo + hi) / 2;
       ((height(curve.at(t) - p) > 0) == up ? hi : lo) = t;

@@ -1,7 +1,8 @@
-// True distances to outlines by brute force: the boundary's pieces as curves, searched at many points and then by a
-// shrinking compass; inside where a ray crosses the boundary an odd number of times. Shares the list of pieces with
-// the judge, and neither its distances nor its inside tests: a piece too many or too few is noticed. Tested by:
-// tests/compiler/shapes/shapes_test.cpp
+// True distances to outlines by brute force. The pieces of the boundary are curves, searched at many points and then
+// by a shrinking compass search. A point is inside if a ray from it crosses the boundary an odd number of times. The
+// list of pieces is shared with the judge, the distances and inside tests are not, so a missing or superfluous piece
+// is noticed.
+// Tested by: tests/compiler/shapes/shapes_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -20,13 +21,14 @@ class BruteForceOutline {
   bool inside(glm::dvec2 p) const;
 
  private:
-  // On none is the height over the ray's direction greatest or least but at an end.
+  // Curve on which the height over the ray's direction has its extrema at the ends only.
   struct Curve {
-    glm::dvec2 base, cosine, sine;  // base + cosine * cos t + sine * sin t, or base + cosine * t when straight
+    // base + cosine * cos t + sine * sin t, or base + cosine * t when straight.
+    glm::dvec2 base, cosine, sine;
     bool straight;
     double from, to;
     std::vector<glm::dvec2> nodes;
-    double longest;  // distance between neighbouring nodes, scene units
+    double longest;  // max distance between neighbouring nodes, scene units
     glm::dvec2 at(double t) const;
   };
   void add(Curve curve);

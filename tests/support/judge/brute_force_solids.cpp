@@ -1,4 +1,4 @@
-// Brute force for the solids of judge_solids.cpp: their flat faces and swept arcs as patches.
+// Brute force for the solids of judge_solids.cpp: flat faces and swept arcs as patches.
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -17,7 +17,7 @@ using glm::dvec3;
 
 constexpr double kGolden = std::numbers::phi;
 
-// Corners and face normals of a regular polyhedron up to scale: the normals are the corners of its dual.
+// Corners and face normals of a regular polyhedron, up to scale. The normals are the corners of the dual polyhedron.
 struct Directions {
   std::vector<dvec3> corners, normals;
 };
@@ -50,7 +50,7 @@ void BruteForce::add_quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
   add([=](double u, double v) { return (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * d + u * c); });
 }
 
-// Of each face a fan of triangles around its middle, one for each pair of neighbouring corners.
+// Each face is a fan of triangles around its centre, one per pair of neighbouring corners.
 void BruteForce::build_polyhedron(Kind kind, double radius) {
   Directions solid = directions(kind);
   for (dvec3& corner : solid.corners) corner *= radius / glm::length(corner);
@@ -94,8 +94,8 @@ void BruteForce::build_pyramid(double w, double h) {
   };
 }
 
-// For each axis and each of its two ends: the face's four sides between the box's and the window's edges, and the
-// window's four walls.
+// For each axis and each of its two ends: the four sides of the face between the edges of the box and of the window,
+// and the four walls of the window.
 void BruteForce::build_box_frame(dvec3 half, double thickness) {
   const dvec3 window = half - 2 * thickness;
   for (int side = 0; side < 24; ++side) {
@@ -123,8 +123,8 @@ void BruteForce::build_box_frame(dvec3 half, double thickness) {
   };
 }
 
-// The tube along the arc, and half a ball at each end unless the ring is whole. Where the ends overlap some of these
-// lie within the solid, and depths are not found.
+// The tube along the arc, and half a ball at each end unless the ring is whole. If the ends overlap, parts of these
+// patches lie inside the solid, so distances inside the solid are wrong.
 void BruteForce::build_capped_torus(double major, double minor, double degrees) {
   const double angle = degrees * kPi / 180;
   add([=](double u, double v) {
@@ -151,7 +151,7 @@ void BruteForce::build_capped_torus(double major, double minor, double degrees) 
 }
 
 bool BruteForce::build_solid(Kind kind, std::span<const double> k) {
-  constexpr double kFar = 128;  // for points within 64 of the origin
+  constexpr double kFar = 128;  // large enough for points within 64 of the origin
   const auto line = [](dvec2 a, dvec2 b) { return [=](double t) { return (1 - t) * a + t * b; }; };
   switch (kind) {
     case Kind::BoxFrame:
@@ -166,7 +166,7 @@ bool BruteForce::build_solid(Kind kind, std::span<const double> k) {
       return true;
     case Kind::InfiniteCone: {
       const double slope = std::tan(k[0] * kPi / 180), far = kFar / std::hypot(1, slope);
-      // In eighths of a turn: near the tip only the right direction leads down.
+      // Eight patches of an eighth turn each: near the tip the compass search only descends in the right direction.
       for (int i = 0; i < 8; ++i) {
         add([=](double u, double v) {
           const double turn = kPi / 4 * (i + v), rho = u * far * slope;

@@ -28,8 +28,8 @@ using glm::dvec3;
 
 dvec2 half_plane(dvec3 p) { return {std::hypot(p.x, p.z), p.y}; }
 
-// A solid of revolution with a straight profile from (bottom, -h) to (top, h): its boundary is three segments of the
-// half-plane, and a point is inside when it lies between the caps and nearer to the axis than the slanted line.
+// Solid of revolution with a straight profile from (bottom, -h) to (top, h). Its boundary is three segments of the
+// half-plane. A point is inside when it lies between the caps and nearer to the axis than the slanted line.
 double frustum(dvec3 p, double bottom, double top, double h) {
   const dvec2 q = half_plane(p);
   const double to_boundary = std::min({distance_to_segment(q, dvec2(0, -h), dvec2(bottom, -h)),
@@ -40,18 +40,18 @@ double frustum(dvec3 p, double bottom, double top, double h) {
   return inside ? -to_boundary : to_boundary;
 }
 
-// The points within `minor` of the circle of radius `major` around the y axis (the definition of a torus). The
-// nearest point of the circle has p's azimuth; on the axis every point of it is equally near.
+// All points within `minor` of the circle of radius `major` around the y axis (the definition of a torus). The
+// nearest point of the circle has p's azimuth. From the axis all points of the circle are equally near.
 double torus(dvec3 p, double major, double minor) {
   const double rho = std::hypot(p.x, p.z);
   const dvec3 nearest = rho > 0 ? dvec3(p.x / rho * major, 0, p.z / rho * major) : dvec3(major, 0, 0);
   return glm::length(p - nearest) - minor;
 }
 
-// The union of the balls of centre (0, t h, 0) and radius bottom + t (top - bottom), t in [0,1]; the distance is the
-// least of g(t) = sqrt(rho^2 + (y - t h)^2) - radius(t). g is convex, and g' = 0 where (y - t h) / |p - c| = s with
-// s = (bottom - top) / h, that is y - t h = rho s / sqrt(1 - s^2). For |s| >= 1 g is monotonous. The balls' envelope
-// has its normals through their centres, so the same minimum is exact inside.
+// Union of the balls of centre (0, t h, 0) and radius bottom + t (top - bottom), t in [0,1]. The distance is the
+// minimum of g(t) = sqrt(rho^2 + (y - t h)^2) - radius(t). g is convex, and g' = 0 where (y - t h) / |p - c| = s with
+// s = (bottom - top) / h, that is y - t h = rho s / sqrt(1 - s^2). For |s| >= 1 g is monotonic. The normals of the
+// balls' envelope pass through the balls' centres, so the same minimum is exact inside.
 double round_cone(dvec3 p, double bottom, double top, double h) {
   const dvec2 q = half_plane(p);
   const double s = (bottom - top) / h;
@@ -61,9 +61,9 @@ double round_cone(dvec3 p, double bottom, double top, double h) {
 }
 
 // Distance estimate 0.5 ln|w| |w| / |w'| of the escaping orbit of w -> w^n + p in White and Nylander's triplex
-// algebra, polar axis y; the derivative's length follows |w'| -> n |w|^(n-1) |w'| + 1. Source: Hart, Sandin,
-// Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989, equation 8, with ln|w| = ln(|w|^2) / 2. Far out, where
-// the estimate grows like |p| ln|p|, the distance to the ball of radius 2^(1/(n-1)) limits it: beyond that ball |w^n
+// algebra, polar axis y. The derivative's length follows |w'| -> n |w|^(n-1) |w'| + 1. Source: Hart, Sandin,
+// Kauffman, "Ray Tracing Deterministic 3-D Fractals", 1989, equation 8, with ln|w| = ln(|w|^2) / 2. Far out the
+// estimate grows like |p| ln|p|, so the distance to the ball of radius 2^(1/(n-1)) limits it: outside that ball |w^n
 // + p| >= |p|^n - |p| > |p|, so every orbit escapes.
 double mandelbulb(dvec3 p, double power, int iterations, double bailout) {
   dvec3 w = p;
@@ -89,7 +89,7 @@ double primitive(Kind kind, Params k, dvec3 p) {
     case Kind::Box:
       return distance_to_box(p, vec3_at(k, 0));
     case Kind::RoundBox:
-      return distance_to_box(p, vec3_at(k, 0) - k[3]) - k[3];  // an inner box, all within `radius` of it
+      return distance_to_box(p, vec3_at(k, 0) - k[3]) - k[3];  // all points within `radius` of an inner box
     case Kind::Torus:
       return torus(p, k[0], k[1]);
     case Kind::Plane:
@@ -116,7 +116,7 @@ double primitive(Kind kind, Params k, dvec3 p) {
   }
 }
 
-// The innermost paint around a node, and the evaluated point in its coordinates.
+// Innermost paint around a node, and the evaluated point in the coordinates of that paint.
 struct Coat {
   std::uint32_t surface;
   dvec3 place;
@@ -124,7 +124,7 @@ struct Coat {
 
 Verdict visit(const Graph& graph, NodeId node, dvec3 p, const Coat& coat);
 
-// A formula's nodes: libm's functions of the operands, which may be distances.
+// Value of a formula's node: libm's functions of the operands, which may be distances.
 double judge_number(const Graph& graph, NodeId node, dvec3 p) {
   const auto operands = graph.children(node);
   const auto operand = [&](std::size_t i) { return visit(graph, operands[i], p, {0, p}).distance; };
@@ -209,8 +209,8 @@ double judge_number(const Graph& graph, NodeId node, dvec3 p) {
   }
 }
 
-// The blend of a and b: the least of h a + (1-h) b - k h (1-h) over the weights h in [0,1]. It is a parabola in h
-// with its minimum at h = 1/2 + (b-a) / (2k); k = 0 leaves the lesser of a and b. Known as the quadratic polynomial
+// Blend of a and b: the minimum of h a + (1-h) b - k h (1-h) over the weights h in [0,1]. The expression is a
+// parabola in h with its minimum at h = 1/2 + (b-a) / (2k); k = 0 gives min(a, b). Known as the quadratic polynomial
 // smooth minimum (Quilez, "Smooth minimum", 2013).
 double blend(double a, double b, double k) {
   if (k == 0) return std::min(a, b);
@@ -218,15 +218,15 @@ double blend(double a, double b, double k) {
   return h * a + (1 - h) * b - k * h * (1 - h);
 }
 
-// Stairs from (r, 0) to (0, r) in the quadrant of the two distances: `steps` + 1 teeth with corners on a + b = r,
-// each surface a saw-tooth of slopes along a and along b about it.
+// Stairs from (r, 0) to (0, r) in the quadrant of the two distances: `steps` + 1 teeth with corners on a + b = r. The
+// surface is a saw-tooth about that line whose edges are parallel to the a and b axes.
 double stairs(double a, double b, double r, double steps) {
   const double step = r / steps, along = std::abs(b - a) - r + step;
   const double tooth = std::abs(along - 2 * step * std::floor(along / (2 * step)) - step);
   return std::min({a, b, (a + b - r + tooth) / 2});
 }
 
-// How far two operands are joined; their union without.
+// How a combinator joins two operands; Hard is the plain union.
 enum class Join { Hard, Smooth, Chamfer, Round, Stairs };
 
 double joined(Join join, double a, double b, Params k) {
@@ -234,9 +234,9 @@ double joined(Join join, double a, double b, Params k) {
   switch (join) {
     case Join::Smooth:
       return blend(a, b, k[0]);
-    case Join::Chamfer:  // the plane a + b = r, where it is lower
+    case Join::Chamfer:  // the plane a + b = r, where that is lower
       return std::min(std::min(a, b), (a + b - k[0]) / 2);
-    case Join::Round: {  // the circle of radius r about (r, r), where both are nearer than r
+    case Join::Round: {  // the circle of radius r about (r, r), where both distances are below r
       if (a < k[0] && b < k[0]) return k[0] - std::hypot(k[0] - a, k[0] - b);
       return std::min(a, b);
     }
@@ -247,7 +247,8 @@ double joined(Join join, double a, double b, Params k) {
 
 struct Combination {
   Join join;
-  bool complement, subtract;  // of the operands; of all but the first not
+  // complement: the operands are complemented. subtract: all operands except the first stay as they are.
+  bool complement, subtract;
 };
 Combination combination(Kind kind) {
   const auto offset = [kind](Kind first) { return static_cast<int>(kind) - static_cast<int>(first); };
@@ -259,12 +260,12 @@ Combination combination(Kind kind) {
   return of(Join::Stairs, offset(Kind::StairsUnion));
 }
 
-// In an odd number of the operands; between two of them.
+// Distance of the exclusive or of two operands. Points inside an odd number of operands are inside.
 double xor_of(double a, double b) { return std::max(std::min(a, b), -std::max(a, b)); }
 
-// Every other combinator is a joined union of its operands or of their complements: A intersected with B is the
-// complement of the union of the complements, A minus B the intersection of A with B's complement. All fold from the
-// left.
+// Every other combinator is a joined union of its operands or of their complements. A intersected with B is the
+// complement of the union of the complements; A minus B is the intersection of A with B's complement. All fold from
+// the left.
 Verdict combinator(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
   const Kind kind = graph.kind(node);
   const Params params = graph.params(node);
@@ -283,7 +284,7 @@ Verdict combinator(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
     const double a = sum.distance, b = next.distance, gap = std::abs(b - a);
     if (special) {
       const double margin = std::min({sum.margin, next.margin, gap, std::abs(a + b)});
-      // Of an xor the operand whose distance it is: the lesser, or the greater turned inside out.
+      // The winner of an xor is the operand that gives the distance: the smaller distance, or the larger one negated.
       const bool second = kind == Kind::Xor && ((a + b > 0) == (b < a));
       const double value = kind == Kind::Xor ? xor_of(a, b) : (1 - params[0]) * a + params[0] * b;
       sum = {value, second ? next.surface : sum.surface, margin, second ? next.place : sum.place};
@@ -317,7 +318,7 @@ Verdict alteration(const Graph& graph, NodeId node, dvec3 p, const Coat& coat) {
   }
   const double value = altered(kind, k, p, least.distance);
   const bool folds = kind == Kind::Onion || kind == Kind::Complement;
-  // Where the way to what is left out decides, the value is no surface's.
+  // When the lower bound for omitted copies or omitted space decides, the value belongs to no surface.
   const bool limited = kind == Kind::Repetition || kind == Kind::PolarRepetition || kind == Kind::Bend;
   if (limited && value != least.distance) least.margin = 0;
   const double margin = folds ? std::min(least.margin, std::abs(least.distance)) : least.margin;

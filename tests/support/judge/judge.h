@@ -1,6 +1,6 @@
-// The judge: what a scene graph means, in plain doubles and with formulas of its own. It is the one list of meanings
-// that is written twice on purpose, since evaluators that share a meaning cannot catch a wrong one. Slow, obvious,
-// recursive; never shipped.
+// The judge: the meaning of a scene graph, in plain double arithmetic and with its own formulas. The judge is the one
+// list of meanings that is written twice on purpose: evaluators that share a meaning cannot detect a wrong one. The
+// judge is slow, obvious, recursive and never shipped.
 //
 //     Verdict v = judge(scene.graph, scene.root, p);      // v.distance, v.surface, v.margin
 //
@@ -18,10 +18,12 @@
 namespace fathom::test {
 
 struct Verdict {
-  double distance;        // of the node's field, in the space of p
-  std::uint32_t surface;  // number of the innermost paint around the winning primitive; 0 when there is none
-  double margin;          // from the nearest tie between operands, scene units; infinite without choices
-  glm::dvec3 place{0};    // p in the coordinates of that paint; p itself when there is none
+  double distance;  // value of the node's field, in the space of p
+  // Number of the innermost paint around the winning primitive; 0 without paint.
+  std::uint32_t surface;
+  // Gap to the nearest tie between operands, scene units; infinite without choices.
+  double margin;
+  glm::dvec3 place{0};  // p in the coordinates of that paint; p itself without paint
 };
 
 Verdict judge(const compiler::Graph& graph, compiler::NodeId node, glm::dvec3 p);

@@ -21,29 +21,29 @@ dvec3 turned_about_y(dvec3 p, double angle) {
   return {p.x * std::cos(angle) + p.z * std::sin(angle), p.y, p.z * std::cos(angle) - p.x * std::sin(angle)};
 }
 
-// The nearest point within a tube of radius r about the y axis.
+// Nearest point of a tube of radius r about the y axis.
 dvec3 into_tube(dvec3 p, double r) {
   const double rho = std::hypot(p.x, p.z);
   return rho > r ? dvec3(p.x / rho * r, p.y, p.z / rho * r) : p;
 }
 
-// The part of p outside [lo, hi].
+// Signed distance from a to the interval [lo, hi]; 0 inside.
 double outside(double a, double lo, double hi) { return a - std::clamp(a, lo, hi); }
 
-// Two bodies measured at right angles: the distance of their intersection.
+// Distance to the intersection of two bodies whose surfaces are orthogonal, given the distances to each.
 double met(double a, double b) {
   if (a <= 0 || b <= 0) return std::max(a, b);
   return std::hypot(a, b);
 }
 
-// Exact inside and outside.
+// Signed distance to a box, exact inside and outside.
 double box_distance(dvec3 p, dvec3 lo, dvec3 hi) {
   const dvec3 beyond = glm::max(lo - p, p - hi);
   const double inside = std::max({beyond.x, beyond.y, beyond.z});
   return inside <= 0 ? inside : glm::length(glm::max(beyond, dvec3(0)));
 }
 
-// One of 289 shifts for each cell: the permutation n -> n (34 n + 1) mod 289 in whole numbers.
+// One of 289 shifts per cell: the permutation n -> n (34 n + 1) mod 289 in integer arithmetic.
 long permuted(long n) {
   const long m = ((n % 289) + 289) % 289;
   return m * (34 * m + 1) % 289;
@@ -53,7 +53,8 @@ dvec3 shift(long i, long j, long l) {
   return {x / 144.0 - 1, y / 144.0 - 1, z / 144.0 - 1};
 }
 
-// Parameters of a repetition: period, count, jitter; derived: copies to either side, apart, reach, the child's box.
+// Parameters of a repetition: period, count, jitter. Derived: copies to either side, margin (`apart`), reach, the
+// child's box.
 struct Axis {
   double period, count;
   bool repeated() const { return period > 0; }
@@ -61,7 +62,7 @@ struct Axis {
   long first() const { return count > 0 ? -static_cast<long>(count) / 2 : -8388608; }
   long last() const { return count > 0 ? first() + static_cast<long>(count) - 1 : 8388607; }
   double middle(long number) const { return (static_cast<double>(number) + half()) * period; }
-  // The number of the copy whose middle is nearest.
+  // Returns the number of the copy whose centre is nearest.
   long nearest(double a) const {
     const auto number = static_cast<long>(std::llround(a / period - half()));
     return std::clamp(number, first(), last());
@@ -72,7 +73,7 @@ Axis axis_of(Params k, std::size_t i) { return {k[i], k[3 + i]}; }
 std::vector<long> numbers(Params k, std::size_t i, double a) {
   const Axis axis = axis_of(k, i);
   if (!axis.repeated()) return {0};
-  // All copies where the machine evaluates all; else one more to either side than it does.
+  // The judge visits all copies where the machine evaluates all, else one more to either side than the machine does.
   const bool all = k[9 + i] < 0;
   const long at = axis.nearest(a), around = all ? static_cast<long>(axis.count) : 1 + static_cast<long>(k[9 + i]);
   std::vector<long> result;
@@ -94,7 +95,7 @@ std::vector<dvec3> repeated(Params k, dvec3 p) {
   return points;
 }
 
-// The way to the copies left out, along any axis of which some are.
+// Lower bound on the distance to the omitted copies, along each axis that has omitted copies.
 double repetition_limit(Params k, dvec3 p) {
   dvec3 out(0);
   for (int i = 0; i < 3; ++i) {
@@ -117,7 +118,8 @@ double repetition_limit(Params k, dvec3 p) {
   return limit * k[15];
 }
 
-// Parameters: count; derived: sides, middle, apart, reach, y range, farthest and nearest. All copies are asked.
+// Parameters: count. Derived: sides, middle, apart, reach, y range, max and min distance from the axis. The judge
+// evaluates all copies.
 std::vector<dvec3> around(Params k, dvec3 p) {
   std::vector<dvec3> points;
   for (int i = 0; i < static_cast<int>(k[0]); ++i) {
@@ -135,7 +137,7 @@ double polar_value(Params k, dvec3 p, double child) {
   return std::max(std::min(child, limit), box_distance(p, {-k[7], k[5], -k[7]}, {k[7], k[6], k[7]}));
 }
 
-// Parameters: turn; derived: radius, side, inner radius, Lipschitz constant, ... (compiler/shapes/domain.cpp).
+// Parameters: turn. Derived: radius, side, inner radius, Lipschitz constant, ... (compiler/shapes/domain.cpp).
 dvec3 bent(Params k, dvec3 p) {
   const double up = p.y * k[2], rho = std::max(k[3], std::hypot(p.x, k[1] - up));
   return {k[1] * std::atan2(p.x, k[1] - up), k[2] * (k[1] - rho), p.z};
@@ -158,7 +160,7 @@ double tube_met(double child, dvec3 p, double radius, double lipschitz) {
   return met(child, lipschitz * (std::hypot(p.x, p.z) - radius));
 }
 
-// In the middle block of a body pulled apart along all axes the way to the block's faces adds depth.
+// In the middle block of a body elongated along all axes, the distance to the block's faces is added to the depth.
 double pulled_apart(Params k, dvec3 p, double child) {
   const bool all = k[0] > 0 && k[1] > 0 && k[2] > 0;
   if (!all || child >= 0) return child;
@@ -171,7 +173,7 @@ double box_met(Params k, dvec3 p, double child) { return met(child, k[6] * box_d
 
 std::vector<dvec3> child_points(Kind kind, Params k, dvec3 p) {
   switch (kind) {
-    case Kind::Transform:  // the row-major 3x4 matrix takes p to the child's space
+    case Kind::Transform:  // the row-major 3x4 matrix maps p to the child's space
       return {{glm::dot(vec3_at(k, 0), p) + k[3], glm::dot(vec3_at(k, 4), p) + k[7], glm::dot(vec3_at(k, 8), p) + k[11]}};
     case Kind::Elongate:
       return {{outside(p.x, -k[0], k[0]), outside(p.y, -k[1], k[1]), outside(p.z, -k[2], k[2])}};

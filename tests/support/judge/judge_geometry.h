@@ -1,4 +1,4 @@
-// What the judge and brute force share: parameters as vectors, distances to segments and flat polygons.
+// Geometry shared by the judge and brute force: parameters as vectors, distances to segments and flat polygons.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline double radians(double degrees) { return degrees * kPi / 180; }
 inline glm::dvec2 vec2_at(Params k, std::size_t first) { return {k[first], k[first + 1]}; }
 inline glm::dvec3 vec3_at(Params k, std::size_t first) { return {k[first], k[first + 1], k[first + 2]}; }
 
-// The foot of p on the line through a and b is a + t(b - a) with t = <p-a, b-a> / |b-a|^2; the nearest point of the
+// The foot of p on the line through a and b is a + t(b - a) with t = <p-a, b-a> / |b-a|^2. The nearest point of the
 // segment has t clamped, since |p - a - t(b-a)|^2 is a parabola in t.
 template <typename V>
 double distance_to_segment(V p, V a, V b) {
@@ -36,8 +36,8 @@ double distance_to_segment(V p, V a, V b) {
   return glm::length(p - nearest);
 }
 
-// Distance to a planar convex polygon: to its plane where p projects into it (left of every edge, seen from the side
-// the normal points to), else to its nearest edge. Newell's sum gives the normal.
+// Distance to a planar convex polygon: to the plane if p projects into the polygon (left of every edge, seen from the
+// side the normal points to), else to the nearest edge. The normal is Newell's sum.
 inline double distance_to_polygon(glm::dvec3 p, const std::vector<glm::dvec3>& v) {
   glm::dvec3 normal(0);
   for (std::size_t i = 0; i < v.size(); ++i) normal += glm::cross(v[i] - v[0], v[(i + 1) % v.size()] - v[0]);
@@ -52,14 +52,14 @@ inline double distance_to_polygon(glm::dvec3 p, const std::vector<glm::dvec3>& v
   return projects_inside ? std::abs(glm::dot(p - v[0], normal)) : to_edge;
 }
 
-// Outside, the nearest point of a box is p clamped to it; inside, the nearest face is an axis away.
+// Outside, the nearest point of a box is p clamped to the box. Inside, the nearest face lies along one axis.
 inline double distance_to_box(glm::dvec3 p, glm::dvec3 half) {
   const glm::dvec3 outside = p - glm::clamp(p, -half, half);
   if (outside != glm::dvec3(0)) return std::hypot(outside.x, outside.y, outside.z);
   return -std::min({half.x - p.x, half.x + p.x, half.y - p.y, half.y + p.y, half.z - p.z, half.z + p.z});
 }
 
-// The solids of judge_solids.cpp; nullopt for all other primitives.
+// Distance to a solid of judge_solids.cpp; nullopt for all other primitives.
 std::optional<double> judge_solid(compiler::Kind kind, std::span<const double> params, glm::dvec3 p);
 
 }  // namespace fathom::test

@@ -20,7 +20,7 @@ using glm::dvec2;
 constexpr double kSqrt2 = std::numbers::sqrt2;
 
 
-// At a distance from the origin, `angle` radians from +y towards +x.
+// Point at distance `radius` from the origin, `angle` radians from +y towards +x.
 dvec2 polar(double radius, double angle) { return {radius * std::sin(angle), radius * std::cos(angle)}; }
 
 Piece line(dvec2 a, dvec2 b) { return {true, a, b, {}, {}, 0, 0}; }
@@ -28,9 +28,9 @@ Piece arc(dvec2 centre, double radius, double from, double to) {
   return {false, {}, {}, centre, dvec2(radius), from, to};
 }
 Piece circle(double radius) { return arc(dvec2(0), radius, 0, 2 * kPi); }
-// About +y, `angle` to either side.
+// Arc around +y, `angle` to either side.
 Piece arc_about_y(double radius, double angle) { return arc(dvec2(0), radius, kPi / 2 - angle, kPi / 2 + angle); }
-// Below the points at `angle` from +x and from -x.
+// The part of a circle below its points at `angle` above +x and above -x.
 Piece arc_below(dvec2 centre, double radius, double angle) {
   return arc(centre, radius, kPi - angle, 2 * kPi + angle);
 }
@@ -54,7 +54,7 @@ std::vector<Piece> closed(const std::vector<dvec2>& corners) {
   return pieces;
 }
 
-// Corners of those that have nothing but straight edges; none of others.
+// Corners of a shape with straight edges only; empty for other shapes.
 std::vector<dvec2> corners(Kind kind, Params k) {
   std::vector<dvec2> v;
   switch (kind) {
@@ -99,7 +99,7 @@ bool within_polygon(const std::vector<dvec2>& v, dvec2 p) {
   return inside;
 }
 
-// The direction in which a round cone's side faces: it touches both disks.
+// Normal of the straight side of an uneven capsule, which touches both disks.
 dvec2 side_normal(Params k) {
   const double s = (k[0] - k[1]) / k[2];
   return {std::sqrt((1 - s) * (1 + s)), s};
@@ -110,7 +110,7 @@ dvec2 moon_corner(Params k) {
   return {std::sqrt((k[0] - y) * (k[0] + y)), y};
 }
 
-// The side of an egg is an arc about (-c, 0).
+// The side of an egg is an arc about (-c, 0); returns c.
 double egg_centre(Params k) {
   const double less = k[0] - k[1];
   return (k[2] * k[2] - less * less) / (2 * less);
@@ -214,8 +214,8 @@ bool inside(Kind kind, Params k, dvec2 p) {
   }
 }
 
-// The nearest point of an ellipse: David Eberly, "Distance from a Point to an Ellipse" (geometrictools.com), by
-// bisection.
+// Distance to an ellipse, by bisection. Source: David Eberly, "Distance from a Point to an Ellipse"
+// (geometrictools.com).
 double to_ellipse(dvec2 radii, dvec2 p) {
   long double a = radii.x, b = radii.y, x = std::abs(p.x), y = std::abs(p.y);
   if (a < b) std::swap(a, b), std::swap(x, y);
@@ -314,7 +314,7 @@ double distance_to(const Piece& piece, dvec2 p) {
     const double length2 = glm::dot(ab, ab);
     const double t = length2 > 0 ? std::clamp(glm::dot(p - piece.a, ab) / length2, 0.0, 1.0) : 0.0;
     if (t == 0 || t == 1) return glm::length(p - (t == 0 ? piece.a : piece.b));
-    // Off the ends the distance is that of the line: no foot to be rounded.
+    // Between the ends, the distance to the line needs no foot point, which would be rounded.
     return std::abs(ab.x * (p.y - piece.a.y) - ab.y * (p.x - piece.a.x)) / std::sqrt(length2);
   }
   const dvec2 v = p - piece.centre;
@@ -329,7 +329,7 @@ double distance_to(const Piece& piece, dvec2 p) {
 }
 
 double judge_outline(Kind kind, Params k, dvec2 p) {
-  // By its definition, of which the inside is a lower bound where round ends overlap.
+  // Arcs are judged by their definition. If the round ends overlap, the value inside is only a lower bound.
   if (kind == Kind::Arc) return distance_to(arc_about_y(k[0], radians(k[1])), p) - k[2];
   double nearest = std::numeric_limits<double>::infinity();
   for (const Piece& piece : outline_boundary(kind, k)) nearest = std::min(nearest, distance_to(piece, p));

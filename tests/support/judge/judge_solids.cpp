@@ -1,4 +1,4 @@
-// The judge of frames, arcs, unbounded solids, polyhedra and fractals: by explicit bars, corners, faces and cells.
+// The judge of frames, arcs, unbounded solids, polyhedra and fractals, by explicit bars, corners, faces and cells.
 #include <array>
 #include <complex>
 #include <glm/common.hpp>
@@ -16,8 +16,8 @@ using glm::dvec3;
 
 
 
-// Twelve bars, boxes 2 thickness wide. What is not the frame is the outside of the box and three shafts through it:
-// within the frame the way out leads to the nearest of them.
+// Twelve bars: boxes 2 thickness wide. The complement of the frame is the outside of the box and three shafts through
+// the box. Inside the frame, the distance is that to the nearest of these four.
 double box_frame(dvec3 p, dvec3 half, double thickness) {
   double to_bars = kInfinity, way_out = -distance_to_box(p, half);
   for (int axis = 0; axis < 3; ++axis) {
@@ -36,8 +36,8 @@ double box_frame(dvec3 p, dvec3 half, double thickness) {
   return to_bars < 0 ? -way_out : to_bars;
 }
 
-// All within `minor` of an arc: the nearest point of a circle has p's direction; of an arc, the nearer end when that
-// direction is not on it.
+// All points within `minor` of an arc. The nearest point of a full circle has p's direction. The nearest point of an
+// arc is the nearer end when that direction is not on the arc.
 double capped_torus(dvec3 p, double major, double minor, double angle) {
   const double direction = std::atan2(p.x, p.y), reach = radians(angle);
   const double nearest = std::clamp(direction, -reach, reach);
@@ -52,10 +52,11 @@ double infinite_cone(dvec3 p, double angle) {
   return std::atan2(q.x, -q.y) < radians(angle) ? -to_side : to_side;
 }
 
-using Polyhedron = std::vector<std::vector<dvec3>>;  // faces, corners in order, counter-clockwise seen from outside
+// Faces: corners in order, counter-clockwise seen from outside.
+using Polyhedron = std::vector<std::vector<dvec3>>;
 
-// The faces of the hull of some points around the origin: every plane through three of them that has all others on
-// one side, with its points in the order of their directions from their middle.
+// Faces of the convex hull of points around the origin: each plane through three points that has all other points on
+// one side. The corners of a face are sorted by their direction from the face's centre.
 Polyhedron hull(const std::vector<dvec3>& points) {
   Polyhedron faces;
   std::vector<dvec3> normals;
@@ -99,7 +100,7 @@ double polyhedron(dvec3 p, const Polyhedron& faces, double scale) {
   return to_planes < 0 ? to_planes : to_faces;
 }
 
-// All (+-x, +-y, +-z) and, when turning, their turns (z, x, y), (y, z, x).
+// Adds all points (+-x, +-y, +-z) and, if `turning`, their cyclic permutations (z, x, y), (y, z, x).
 void add_corners(std::vector<dvec3>& to, dvec3 corner, bool turning) {
   for (int turn = 0; turn < (turning ? 3 : 1); ++turn) {
     for (int signs = 0; signs < 8; ++signs) {
@@ -147,7 +148,7 @@ double pyramid(dvec3 p, double w, double h) {
   return polyhedron(p, faces, 1);
 }
 
-// Products of sines and cosines as sums of sines of sums, over sqrt 3 radians per unit.
+// The products of sines and cosines written as sums of sines of sums, divided by sqrt(3) k for k radians per unit.
 double periodic(Kind kind, dvec3 p, double period) {
   const double k = 2 * std::numbers::pi / period;
   const dvec3 a = p * k;
@@ -164,8 +165,9 @@ double periodic(Kind kind, dvec3 p, double period) {
   return sum / (std::sqrt(3.0) * k);
 }
 
-// Level by level: the cell of 3^level a side that p is in or nearest to, and in it the square holes along its axes,
-// in the measure of the larger coordinate. The field is the largest of the cube's and the negated holes'.
+// For each level: find the cell, of 3^level per side, that contains p or is nearest to p, and the square holes along
+// the cell's axes (distance to an axis in the maximum norm). The field is the max of the cube's distance and the
+// negated distances of the holes.
 double menger_sponge(dvec3 p, double half, int iterations) {
   double d = distance_to_box(p, dvec3(half)), cells = 1;
   for (int level = 0; level < iterations; ++level) {
@@ -182,8 +184,8 @@ double menger_sponge(dvec3 p, double half, int iterations) {
   return d;
 }
 
-// q = u + v j for complex u and v, so that q^2 = u^2 - |v|^2 + (u + conj(u)) v j. The estimate |q| ln(|q|/R) / (2
-// |q'|) between the distance to the ball of radius R and, beyond 2 R, that distance.
+// q = u + v j for complex u and v, so that q^2 = u^2 - |v|^2 + (u + conj(u)) v j. The estimate is |q| ln(|q|/R) / (2
+// |q'|), but at least the distance to the ball of radius R. Beyond 2 R the field is that distance.
 double julia(dvec3 p, Params k) {
   using Complex = std::complex<double>;
   const double c = std::sqrt(k[0] * k[0] + k[1] * k[1] + k[2] * k[2] + k[3] * k[3]);

@@ -54,7 +54,7 @@ class Drawer {
 
   std::string odd_name() { return kOddNames[static_cast<std::size_t>(random_.below(kOddNames.size()))]; }
 
-  // Names of parameters are those of formulas.
+  // Random parameters. The parameters' names must be valid in formulas. Some names are words of the language.
   Value params() {
     RecordMaker record{Span{}};
     for (const char* name : {"r", "t1", "gap", "diffuse", "ball", "for", "in"}) {
@@ -85,7 +85,7 @@ class Drawer {
     return record.take();
   }
 
-  // A record of the table's properties, about half of those it may do without.
+  // Random record of the table's properties, with about half of the optional ones.
   Value row(const RecordSpec& spec, std::string_view key) {
     RecordMaker record{Span{}};
     if (!key.empty() && (!spec.type.empty() && (spec.find(key)->required || random_.chance(0.7)))) {
@@ -133,7 +133,7 @@ class Drawer {
     }
   }
 
-  // Within each other for a while.
+  // Random pattern. Patterns nest up to a depth limit.
   Value pattern() {
     ++patterns_;
     Value made = row(pick(pattern_records()), "pattern");
@@ -153,7 +153,7 @@ class Drawer {
     return {{}, std::move(list)};
   }
 
-  // A number, or a formula as a string.
+  // Random number, or a formula as a string.
   Value number(bool may_vary) {
     if (random_.chance(0.75)) return {{}, plain()};
     return {{}, expression(3, may_vary)};
@@ -163,13 +163,13 @@ class Drawer {
     return kPlain[static_cast<std::size_t>(random_.below(kPlain.size()))];
   }
 
-  // As parameters are.
+  // Random finite number, or a formula of constants, as parameters require.
   Value finite() {
     if (random_.chance(0.5)) return {{}, plain()};
     return {{}, fmt::format("{}/2 + ({} - 1)/4", atom(false), atom(false))};
   }
 
-  // One line, or definitions and a line.
+  // One expression, or definitions followed by an expression.
   Value formula() {
     if (random_.chance(0.6)) return {{}, expression(4, true)};
     List lines;
@@ -253,11 +253,11 @@ class Drawer {
   }
 
   Random& random_;
-  int patterns_ = 0;  // that surround what is drawn
+  int patterns_ = 0;  // nesting depth of patterns at the current record
   std::vector<std::string> params_, locals_, node_names_, material_names_, light_names_;
 };
 
-// "2.50" as a string is the number.
+// Parses a string that is entirely a number: "2.50" counts as the number.
 std::optional<double> whole_number(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -1,6 +1,6 @@
 // Seeded random scene documents as a front end reads them: every node, material, pattern, light and background of the
-// tables, with formulas of parameters and of x, y and z, and with names that no language would choose. Their
-// properties are those of the tables; what the numbers mean together nobody has looked at.
+// tables, with formulas of parameters and of x, y and z, and with names that no language would choose. The properties
+// follow the tables. The values are not checked for consistency with each other.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace fathom::test {
 
 compiler::syntax::File random_document(Random& random);
 
-// The tree with the properties of each record in one order, without blanks in strings: equal for documents that say
-// the same.
+// Prints the tree with the properties of each record sorted and strings without blanks. Equal for documents with the
+// same meaning.
 std::string canonical(const compiler::syntax::Value& value);
 
 }  // namespace fathom::test

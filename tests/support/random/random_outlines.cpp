@@ -13,7 +13,7 @@ using compiler::Kind;
 
 double size(Random& random) { return random.length(0.05, 1.5); }
 
-// Degrees; among them quarter turns, and a half turn when it is allowed.
+// Random angle in degrees, sometimes a quarter turn, and a half turn if `closed`.
 double angle(Random& random, bool closed) {
   const double special[] = {90, 45, 30, 135, 180};
   if (random.chance(0.4)) return special[random.below(closed ? 5 : 4)];
@@ -26,7 +26,8 @@ double share(Random& random, double outer) {
   return rounded(outer * part[random.below(6)]);
 }
 
-// Its round ends do not overlap: there brute force finds the true depth, and the row promises a bound only.
+// Arc whose round ends do not overlap. With overlap brute force would find the true depth, but the row promises only
+// a bound.
 std::vector<double> arc(Random& random) {
   const double radius = random.length(0.2, 1.5), half = angle(random, true);
   const double ends = half > 90 && half < 180 ? radius * std::sin(half * std::numbers::pi / 180) : radius;
@@ -40,7 +41,7 @@ std::vector<double> horseshoe(Random& random) {
   return {radius, half, length, rounded(thickness)};
 }
 
-// Radii about a middle distance, in all directions: a simple polygon whichever way its corners go.
+// Corners in all directions at radii about a mean: a simple polygon, clockwise or counter-clockwise.
 std::vector<double> polygon(Random& random) {
   const int n = 3 + random.below(10);
   const bool reversed = random.chance(0.5);

@@ -16,7 +16,7 @@ using vm::Source;
 
 constexpr std::uint32_t kLocals = 5;
 
-// The heights of the stacks so far, and the locals that have a value.
+// Builds a program while tracking the heights of the stacks and the locals that have been written.
 class Builder {
  public:
   explicit Builder(Random& random) : random_(random) {

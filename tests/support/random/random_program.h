@@ -1,4 +1,5 @@
-// Seeded random programs that verify: every opcode, mode and source, with numbers from all of float.
+// Seeded random programs that verify: every opcode, mode and operand source, with constants from the whole range of
+// float.
 #pragma once
 
 #include "tests/support/random/random_scene.h"
@@ -6,10 +7,10 @@
 
 namespace fathom::test {
 
-// About `instructions` of them.
+// Returns a program of about `instructions` instructions.
 vm::VerifiedProgram random_program(Random& random, int instructions);
 
-// A number that rounds to a finite f32: whole, of few digits, or of any magnitude.
+// Returns a number that rounds to a finite f32: an integer, a number of few digits, or one of any magnitude.
 double random_constant(Random& random);
 
 }  // namespace fathom::test

@@ -17,7 +17,7 @@ using compiler::Kind;
 using compiler::NodeId;
 using glm::dvec3;
 
-// Builds nodes bottom up; remembers what it made, to share some of it.
+// Builds nodes bottom up and remembers them, so that some are shared.
 class Maker {
  public:
   Maker(Graph& graph, Random& random, const GraphOptions& options)
@@ -87,7 +87,7 @@ class Maker {
     return transform(child);
   }
 
-  // Moved in and out by a formula, if that is nowhere too steep to be proved.
+  // Displaces the child's surface by a formula. Returns the child itself if the compiler cannot prove a slope bound.
   NodeId displaced(NodeId child) {
     const std::vector<NodeId> operands = {child, random_formula(maker_, random_)};
     const NodeId id = compiler::make_field(maker_, Kind::Displacement, {}, operands, {});
@@ -181,10 +181,10 @@ NodeId random_formula(compiler::NodeMaker& maker, Random& random) {
   const auto times = [&](NodeId a, double by) { return of(Kind::Multiply, {a, number(by)}); };
   const auto wave = [&] { return of(Kind::Sin, {times(coordinate(), random.length(0.5, 8))}); };
   NodeId formula = 0;
-  Random other = random;  // what it says of noise changes nothing that is drawn after it
+  Random other = random;  // a copy: draws for noise leave the later draws unchanged
   switch (random.below(4)) {
     case 0: {
-      // Finding the slope of noise takes a hundred times as long as of the others.
+      // Rare, because bounding the slope of noise takes a hundred times as long as bounding other formulas.
       const bool noisy = other.chance(0.5) && other.chance(0.3);
       const NodeId a = wave(), b = wave(), c = wave();
       formula = noisy ? of(Kind::Noise, {times(a, 3), b, c}) : of(Kind::Add, {a, of(Kind::Multiply, {b, c})});
@@ -251,7 +251,7 @@ NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId chi
   }
   const NodeId only[] = {child};
   if (maker.complaint(kind, params, only)) return child;
-  // A program grows by the copies; these are enough to test with.
+  // The program grows with the number of copies; 16 are enough for tests.
   const compiler::NodeSpec& row = compiler::spec(kind);
   if (kind == Kind::Repetition) {
     const compiler::Knowledge known[] = {maker.known(child)};

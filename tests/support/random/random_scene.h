@@ -1,8 +1,8 @@
-// Seeded random shapes, graphs and points: every kind of node, with the extremes that formulas trip over (tips of
+// Seeded random shapes, graphs and points: every kind of node, with the extremes at which formulas fail (tips of
 // cones, fat and thin rings, balls of nearly equal reach, blends of width 0, squashed spaces).
 //
-// Parameters of shapes are exact in float, so that a float evaluator is judged on the same solid. One seed gives the
-// same scene everywhere: no distribution of the standard library is used.
+// Parameters of shapes are exact in float, so that a float evaluator is judged on the same solid. A seed gives the
+// same scene on every platform, because no distribution of the standard library is used.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace fathom::test {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  // The first draws are functions of two bytes each, in order: who changes a byte changes one draw.
+  // The first draws are functions of two bytes each, in order, so that changing a byte changes one draw.
   explicit Random(std::span<const std::uint8_t> draws) : state_(draws.size()), draws_(draws) {}
   std::uint64_t bits();
   double uniform(double lo, double hi);  // [lo, hi)
@@ -35,10 +35,11 @@ class Random {
   std::span<const std::uint8_t> draws_;
 };
 
-// The primitives that are nodes of a graph, of one sort; estimates (Mandelbulbs and their like) only when asked for.
+// Primitives of one sort that are nodes of a graph. Distance estimates (Mandelbulbs and similar fractals) are
+// included only if `estimates`.
 std::vector<compiler::Kind> primitive_kinds(compiler::Sort sort, bool estimates);
 
-// Valid parameters of a primitive of size about 1.
+// Returns valid parameters for a primitive of size about 1.
 std::vector<double> random_params(compiler::Kind kind, Random& random);
 
 struct GraphOptions {
@@ -46,23 +47,25 @@ struct GraphOptions {
   bool mandelbulbs = false;
   bool planes = true;    // unbounded parts
   bool paints = true;    // surface numbers 1 .. 6
-  bool squash = true;    // three different scales
-  bool outlines = true;  // drawn out and turned
+  bool squash = true;    // non-uniform scales
+  bool outlines = true;  // extruded and revolved
   bool formulas = true;  // formulas as solids and as displacements
-  bool bends = true;     // what folds, repeats or bends space, and joins at an edge
+  // Nodes that fold, repeat or bend space, and combinators that join operands at an edge.
+  bool bends = true;
 };
 compiler::Scene random_scene(Random& random, const GraphOptions& options = {});
 
-// A formula in x, y and z, of slopes from a thousandth to about twenty near the origin.
+// Returns a formula in x, y and z, with slopes from a thousandth to about twenty near the origin.
 compiler::NodeId random_formula(compiler::NodeMaker& maker, Random& random);
 
-// One of what folds, repeats or bends space, over `child`; `child` itself where that is not possible.
+// Returns a random node that folds, repeats or bends space, over `child`; `child` itself where the node would be
+// invalid.
 compiler::NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, compiler::NodeId child);
 
-// Rows of a Transform: the child is scaled, turned by `angle` (radians) about `axis`, then moved.
+// Rows of a Transform: the child is scaled, rotated by `angle` (radians) about `axis`, then translated.
 std::vector<double> transform_params(glm::dvec3 scale, glm::dvec3 axis, double angle, glm::dvec3 translate);
 
-// A graph of one primitive.
+// Returns a graph of one primitive.
 compiler::Scene single(compiler::Kind kind, const std::vector<double>& params);
 
 }  // namespace fathom::test

@@ -1,5 +1,5 @@
-// Seeded random primitives, with the extremes that formulas trip over: tips of cones, fat and thin rings, half turns,
-// touching circles, needles, roundings of nothing and of everything. Parameters are exact in float.
+// Seeded random primitives, with the extremes at which formulas fail: tips of cones, fat and thin rings, half turns,
+// touching circles, needles, roundings of zero and of the whole size. Parameters are exact in float.
 #pragma once
 
 #include <vector>

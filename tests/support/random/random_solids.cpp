@@ -10,7 +10,7 @@ namespace {
 using compiler::Kind;
 using glm::dvec3;
 
-// Rings from a wire to nearly a ball with a pinhole, and a spindle.
+// Rings from a thin wire to nearly a ball with a pinhole, and spindle tori.
 std::vector<double> torus(Random& random) {
   const double major = random.length(0.2, 1.5);
   const double ratio[] = {1.5, 1, 0.999, 0.5, 0.1, 0.01};
@@ -31,7 +31,7 @@ std::vector<double> cone(Random& random) {
   }
 }
 
-// Among them balls whose reach nearly or just touches: |r1 - r2| = height (1 - tiny).
+// Random balls, some of whose reaches nearly or exactly touch: |r1 - r2| = height (1 - tiny).
 std::vector<double> round_cone(Random& random) {
   const double height = random.length(0.1, 1.5), small = random.length(0.05, 1);
   const double difference[] = {1, 1 - 1e-6, 0.99, 0.5, 0};
@@ -44,7 +44,7 @@ std::vector<double> round_cone(Random& random) {
 double eighths(Random& random, int reach) { return (random.below(2 * reach + 1) - reach) / 8.0; }
 dvec3 corner(Random& random) { return {eighths(random, 12), eighths(random, 12), eighths(random, 12)}; }
 
-// Corners on a grid of eighths, far enough from collinear; the fourth is a + s u + t v, exactly in the plane and
+// Corners on a grid of eighths, far from collinear. The fourth corner is a + s u + t v, exactly in the plane, and
 // convex for s, t > 0, s + t > 1.
 std::vector<double> sheet(Random& random, bool quad) {
   dvec3 a, u, v;
@@ -66,7 +66,7 @@ std::vector<double> sheet(Random& random, bool quad) {
 
 std::vector<double> random_solid_params(Kind kind, Random& random) {
   const auto size = [&] { return random.length(0.05, 1.5); };
-  // A rounding within `outer`, sometimes none and sometimes all of it.
+  // Rounding radius up to `outer`, sometimes 0 and sometimes all of `outer`.
   const auto rounding = [&](double outer) {
     const double share[] = {0, 1, 0.5, 0.1};
     return rounded(outer * share[random.below(4)]);

@@ -1,4 +1,5 @@
-// A listing reads back to the program it was made of; what is no listing is refused where it goes wrong.
+// Tests of the assembler: a listing reads back as the program it was made from, and an error in a listing is reported
+// at its position.
 #include "vm/encoding/assemble.h"
 
 #include <catch2/catch.hpp>
@@ -22,7 +23,7 @@ vm::Program assembled(const std::string& text) {
   return std::get<vm::Program>(std::move(result));
 }
 
-// The text at fault, and why.
+// Checks that assembling `text` fails at the substring `at`, for a reason that contains `reason`.
 void refused(const std::string& text, const std::string& at, const std::string& reason) {
   const auto result = vm::assemble(text);
   const auto* error = std::get_if<vm::AssembleError>(&result);
@@ -113,7 +114,7 @@ TEST_CASE("escaped texts lie on one line and read back", "[assemble]") {
     std::string back;
     CHECK(vm::escape(text).find('\n') == std::string::npos);
     CHECK(vm::escape(text).find("\xC2\x9F") ==
-          std::string::npos);  // for a terminal the begin of a command, as others
+          std::string::npos);  // like other C1 controls, U+009F begins a command to a terminal
     CHECK(vm::unescape(vm::escape(text), back));
     CHECK(back == text);
   }

@@ -1,5 +1,5 @@
-// Programs as bytes: read back to the bit; what a stranger changed is refused, whatever byte it is, or is another
-// sound program.
+// Programs as bytes: they read back bit for bit. If any byte is changed, the reader refuses the bytes or returns
+// another valid program.
 #include "vm/encoding/binary.h"
 
 #include <catch2/catch.hpp>
@@ -70,7 +70,7 @@ TEST_CASE("of a program's bytes every cut is refused, and every changed byte is 
       vm::ByteReader in(changed);
       const auto read = vm::read_program(in);
       if (const auto* program = std::get_if<vm::VerifiedProgram>(&read); program && in.left() == 0) {
-        // What is accepted is what its own bytes say, and the machine survives it.
+        // An accepted program encodes to the same bytes, and the machine survives it.
         CHECK((bytes_of(*program) == changed));
         if (program->cost() < 100000) (void)vm::evaluate_distance(*program, glm::dvec3(0.1, 0.2, 0.3), workspace);
       }
@@ -83,7 +83,7 @@ TEST_CASE("what the bytes declare must be what the code is", "[binary]") {
   program.append(vm::Opcode::Sphere, 0, {0.1}, {});
   const auto verified = vm::verify(program);
   const std::vector<std::uint8_t> bytes = bytes_of(std::get<vm::VerifiedProgram>(verified));
-  // locals, values, points, words, 2 words, unrounded constants, {word, f64}
+  // Layout: locals, values, points, words, 2 words, unrounded constants, {word, f64}.
   REQUIRE(bytes.size() == 16 + 8 + 4 + 12);
   const auto changed = [&](std::size_t at, std::uint8_t value) {
     std::vector<std::uint8_t> copy = bytes;
@@ -97,8 +97,9 @@ TEST_CASE("what the bytes declare must be what the code is", "[binary]") {
   CHECK_THAT(changed(39, 0xff), Catch::Matchers::Contains("not finite") || Catch::Matchers::Contains("in the code"));
 }
 
-// A file says for which machine its programs are. When this fails, some opcode means another thing than before: raise
-// the number of kMachine in vm/encoding/binary.cpp, so that files of the old machine are refused, and put the new digest here.
+// Compiled files record the version of the machine that their programs are for. If this test fails, some opcode
+// computes something else than before: increment kMachine in vm/encoding/binary.cpp, so that files of the old machine
+// are refused, and put the new digest here.
 TEST_CASE("the machine is the one whose number files carry", "[binary]") {
   vm::Workspace workspace;
   vm::ByteWriter values;
@@ -121,7 +122,7 @@ TEST_CASE("the machine is the one whose number files carry", "[binary]") {
     const auto verified = std::get<vm::VerifiedProgram>(vm::verify(program));
     for (const glm::dvec3 point : {glm::dvec3(0.3, 0.7, -0.2), glm::dvec3(-1.5, 0.4, 2.25), glm::dvec3(3, -2, 1)}) {
       const double value = vm::evaluate_distance(verified, point, workspace);
-      values.f64(std::isnan(value) ? 0.5 : value);  // there are many NaNs
+      values.f64(std::isnan(value) ? 0.5 : value);  // NaN has many bit patterns
     }
   }
   CHECK(vm::digest(values.bytes()).text() == "8096df856faa4c989fb82170d633ec46");

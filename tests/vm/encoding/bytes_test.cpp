@@ -1,5 +1,5 @@
-// What is written as bytes is read back; what is cut short, too long or too many fails where it is, and digests are
-// those of the specification.
+// Tests of the byte writer and reader: written values read back, and data that are cut short, too long or too many
+// fail at their position. Digests match the specification.
 #include "vm/encoding/bytes.h"
 
 #include <bit>
@@ -18,7 +18,7 @@ TEST_CASE("what is written as bytes is read back", "[bytes]") {
   out.f64(-0.0);
   out.text("ball");
   out.raw(std::vector<std::uint8_t>{1, 2});
-  CHECK(out.bytes()[1] == 4);  // the lowest byte first
+  CHECK(out.bytes()[1] == 4);  // little endian
 
   vm::ByteReader in(out.bytes());
   CHECK(in.u8() == 250);
@@ -42,7 +42,7 @@ TEST_CASE("a reader never leaves its bytes", "[bytes]") {
     CHECK(in.u32() == 0);
     CHECK(in.failed());
     CHECK(in.offset() == 4);
-    CHECK(in.u8() == 0);  // nothing is read after a failure, though there are bytes
+    CHECK(in.u8() == 0);  // after a failure the reader returns 0 although bytes are left
   }
   SECTION("a text longer than what is left") {
     vm::ByteReader in(out.bytes());
@@ -68,7 +68,7 @@ TEST_CASE("a reader never leaves its bytes", "[bytes]") {
 }
 
 TEST_CASE("digests are those of XXH3", "[bytes]") {
-  // Of nothing, from the reference implementation's xxhsum -H2.
+  // Digest of the empty string, from the reference implementation's xxhsum -H2.
   CHECK(vm::digest(std::string_view()).text() == "99aa06d3014798d86001c324468d497f");
   CHECK(vm::digest("ball") == vm::digest("ball"));
   CHECK_FALSE(vm::digest("ball") == vm::digest("balL"));

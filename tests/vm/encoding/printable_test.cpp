@@ -17,7 +17,7 @@ TEST_CASE("printable: neither commands to a terminal nor bytes that are no text 
   CHECK(printable(std::string_view("\0a", 2)) == "\uFFFDa");
 }
 
-// Overlong forms and surrogates came through: no decoder of UTF-8 takes them.
+// Regression: overlong forms and surrogates passed through, although no UTF-8 decoder accepts them.
 TEST_CASE("printable: what comes through is UTF-8", "[vm]") {
   CHECK(printable("\xc0\x80 \xc1\xbf") == "\uFFFD\uFFFD \uFFFD\uFFFD");
   CHECK(printable("\xe0\x9f\xbf") == "\uFFFD\uFFFD\uFFFD");

@@ -1,5 +1,5 @@
-// The evaluators against each other (the same bits on every instruction set, in every place of a block) and against
-// the judge (ranges contain, surfaces agree).
+// Compares the evaluators with each other (same bits on every instruction set and at every position in a block) and
+// with the judge (ranges contain the values, surfaces agree).
 #include "vm/interpret/evaluate.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using glm::dvec3;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Ordinary points with, every so often, a coordinate from the edge of what floats can say.
+// Ordinary points. Every so often a coordinate is an extreme or special float.
 Cloud spicy_cloud(Random& random, std::size_t count) {
   static const float kSpice[] = {0.f, -0.f, 1e-45f, -1e-39f, 1e-20f, 1e19f, -1e30f, 3.4e38f, kInf, -kInf, kNan};
   Cloud cloud;
@@ -38,7 +38,7 @@ Cloud spicy_cloud(Random& random, std::size_t count) {
   return cloud;
 }
 
-// All that evaluate_surface gives, one word each: distance, gradient, convex, surface. [point][6]
+// Results of evaluate_surface, one word each: distance, gradient, convex, surface. [point][6]
 std::vector<std::uint32_t> surface_bits(const vm::VerifiedProgram& program, vm::Points points, std::size_t count,
                                         vm::Workspace& workspace) {
   std::vector<float> d(count), gx(count), gy(count), gz(count), convex(count);
@@ -181,10 +181,10 @@ TEST_CASE("an unknown instruction set is refused", "[evaluate][isa]") {
 
 namespace {
 
-enum class Judged { No, Yes };  // the judge takes most of the time
+enum class Judged { No, Yes };  // Yes: also compare with the judge, which takes most of the time
 
-// Samples of 20 boxes in each of `count` primitives and graphs, `points` of every box, against the ranges over the
-// boxes; how many samples there were.
+// Checks that ranges over boxes contain sampled values: 20 boxes in each of `count` primitives and graphs, `points`
+// samples per box. Returns the number of samples.
 long check_ranges(std::uint64_t first_seed, std::uint64_t count, int points, Judged judged) {
   vm::Workspace workspace;
   const double sides[] = {0, 1e-9, 1e-3, 0.05, 0.3, 1, 4};
@@ -215,7 +215,7 @@ long check_ranges(std::uint64_t first_seed, std::uint64_t count, int points, Jud
         }
         if (judged == Judged::No) continue;
         const double truth = judge_distance(scene.graph, scene.root, p);
-        const double slack = 1e-12 * std::max(1.0, std::abs(truth));  // of the judge's own rounding
+        const double slack = 1e-12 * std::max(1.0, std::abs(truth));  // for the judge's rounding errors
         if (!(truth >= range.lo - slack && truth <= range.hi + slack)) {
           FAIL_CHECK("judged " << truth << " not in " << range.lo << " .. " << range.hi << " at " << p.x << ' ' << p.y
                                << ' ' << p.z);
@@ -292,8 +292,8 @@ TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][
   CHECK(named > few(10000));
 }
 
-// Once, a Mandelbulb's point exactly at the bailout went on iterating when a neighbour did, and overflowing
-// derivatives came out as NaN.
+// Regression: a Mandelbulb's point exactly at the bailout went on iterating when a neighbouring lane did, and
+// overflowing derivatives became NaN.
 TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[evaluate]") {
   const IsaGuard guard;
   compiler::Scene scene;

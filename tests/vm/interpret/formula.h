@@ -1,5 +1,5 @@
-// Formulas for the tests of scalar mathematics: programs of leaves, functions of one, two and three numbers, at
-// random or by hand.
+// Formulas for the tests of scalar mathematics: programs of leaves and of functions of one, two and three numbers,
+// random or written by hand.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline vm::VerifiedProgram formula(const std::vector<Step>& steps) {
   return verified(std::move(code));
 }
 
-// A random tree with about `size` operations over x, y, z and constants, in the order of evaluation.
+// Appends a random tree with about `size` operations over x, y, z and constants, in the order of evaluation.
 inline void append_random_formula(Random& random, int size, std::vector<Step>& steps) {
   using vm::Opcode;
   static const Opcode kUnary[] = {Opcode::Abs,  Opcode::Square, Opcode::Sqrt, Opcode::Sin,    Opcode::Cos,
@@ -75,10 +75,10 @@ inline std::string text_of(const std::vector<Step>& steps) {
   return text;
 }
 
-// The programs of all subexpressions, leaves aside: a formula is defined where each of them is finite.
+// Returns the programs of all subexpressions except leaves. A formula is defined where all of them are finite.
 inline std::vector<vm::VerifiedProgram> subexpressions(const std::vector<Step>& steps) {
   std::vector<vm::VerifiedProgram> programs;
-  std::vector<std::size_t> starts;  // of the operands on the stack
+  std::vector<std::size_t> starts;  // first step of each operand on the stack
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const vm::Form form = vm::info(steps[i].opcode).form;
     if (form == vm::Form::Shape) {

@@ -1,5 +1,5 @@
-// Random formulas on every evaluator: the same bits on every instruction set, ranges that contain, gradients that
-// match differences, bounds of slope and float error that hold.
+// Random formulas on every evaluator: same bits on every instruction set, ranges that contain the values, gradients
+// that match difference quotients, bounds of slope and float error that hold.
 #include "tests/vm/interpret/formula.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ glm::vec3 float_point(Random& random, dvec3 lo, dvec3 hi) {
   return p;
 }
 
-// A box with corners at floats, sides from 0 to 4.
+// Random box with corners at floats and sides from 0 to 4.
 void random_box(Random& random, dvec3& lo, dvec3& hi) {
   static const double kSides[] = {0, 1e-3, 0.05, 0.3, 1, 4};
   for (int axis = 0; axis < 3; ++axis) {
@@ -189,7 +189,7 @@ TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") 
 TEST_CASE("a blend of what is not below 0 may be", "[formula][slope]") {
   vm::Workspace workspace;
   const double k = 0.5;
-  // Of |x| and |y| at 0 the blend is -k / 4, below the constant it is then joined with.
+  // At x = y = 0 the blend of |x| and |y| is -k / 4, below the constant in the min that follows.
   const auto program = formula({{Opcode::X},
                                 {Opcode::Abs},
                                 {Opcode::Y},

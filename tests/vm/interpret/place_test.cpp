@@ -1,4 +1,4 @@
-// Points in the coordinates of the nodes that surfaces were given to.
+// Tests of evaluate_place: the point in the coordinates of the node that carries the surface's paint.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -29,7 +29,7 @@ Scene painted_scene(int seed) {
   return compiler::level(random_scene(random, options));
 }
 
-// As the surface program is made: by all passes but the one that removes paint.
+// Compiles the surface program: runs all passes except the one that removes paint.
 vm::VerifiedProgram surface_program(Scene scene) {
   for (const compiler::Pass& pass : compiler::passes()) {
     if (pass.run != compiler::unpaint) scene = pass.run(scene);
@@ -37,7 +37,7 @@ vm::VerifiedProgram surface_program(Scene scene) {
   return verified(compiler::fuse(*compiler::lower(scene, compiler::Source{}, 100000)));
 }
 
-// How far the place that the program finds is from the judge's, for the size of the numbers.
+// Distance between the program's place and the judge's, relative to the size of the coordinates.
 double error_of(const vm::SurfacePlace& found, const Verdict& verdict) {
   return glm::length(found.place - verdict.place) / std::max(1.0, glm::length(verdict.place));
 }
@@ -55,11 +55,11 @@ TEST_CASE("place: of random graphs it is the point at the innermost paint of wha
     for (int i = 0; i < 30; ++i) {
       const dvec3 p = random.in_box(3);
       const Verdict verdict = judge(scene.graph, scene.root, p);
-      // What culling leaves out is of no importance at the surface, but may be the nearest inside.
+      // Culling may remove the nearest part at a point inside a solid, because only the surface matters.
       if (!(verdict.margin > 1e-8) || verdict.surface == 0 || verdict.distance < 0) continue;
       INFO("at " << p.x << ' ' << p.y << ' ' << p.z);
       const vm::SurfacePlace found = vm::evaluate_place(program, p, workspace);
-      if (found.surface != verdict.surface) {  // culled, and farther than what is left
+      if (found.surface != verdict.surface) {  // the judge's surface was culled: the remaining ones are farther
         CHECK(vm::evaluate_distance(program, p, workspace) >= verdict.distance - 1e-9);
         continue;
       }

@@ -1,4 +1,5 @@
-// The polygon against brute force, and the rules of instructions with a variable number of immediates.
+// Compares the polygon opcode with brute force, and checks the rules of instructions with a variable number of
+// immediates.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,7 +14,7 @@ using glm::dvec2;
 using glm::dvec3;
 using vm::Opcode;
 
-// A star-shaped polygon: corners at growing angles, so that it is simple.
+// Star-shaped polygon: corners at increasing angles, so that the polygon is simple.
 std::vector<double> star(Random& random, int corners, bool clockwise) {
   std::vector<double> xy;
   for (int i = 0; i < corners; ++i) {
@@ -24,7 +25,7 @@ std::vector<double> star(Random& random, int corners, bool clockwise) {
   return xy;
 }
 
-// Nearest point over all edges; inside by the winding angle.
+// Distance to the nearest point over all edges; inside by the winding angle.
 double brute_force(const std::vector<double>& xy, dvec2 p) {
   const std::size_t n = xy.size() / 2;
   double nearest = 1e300, winding = 0;

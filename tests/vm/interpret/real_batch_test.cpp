@@ -1,4 +1,5 @@
-// Many points in double against one at a time: the same bits on every instruction set, in every place of a block.
+// Compares evaluation of many points in double with evaluation of one point at a time: same bits on every instruction
+// set and at every position in a block.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -25,7 +26,7 @@ struct RealCloud {
   vm::RealPoints from(std::size_t first) const { return {x.data() + first, y.data() + first, z.data() + first}; }
 };
 
-// Ordinary points with, every so often, a coordinate from the edge of what doubles can say.
+// Ordinary points. Every so often a coordinate is an extreme or special double.
 RealCloud spicy_cloud(Random& random, std::size_t count) {
   constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
   static const double kSpice[] = {0.,   -0.,  5e-324, -1e-310, 1e-200, 1.5,   0x1.fffffffffffffp-1,
@@ -40,12 +41,12 @@ RealCloud spicy_cloud(Random& random, std::size_t count) {
   return cloud;
 }
 
-// IEEE 754 leaves the sign and payload of a NaN to the processor; they count as one.
+// Bits of a double. All NaNs count as equal, since IEEE 754 leaves their sign and payload to the processor.
 std::uint64_t real_bits(double d) {
   return std::bit_cast<std::uint64_t>(std::isnan(d) ? std::numeric_limits<double>::quiet_NaN() : d);
 }
 
-// On every instruction set, from several places on and for several counts.
+// Checks a program on every instruction set, from several start indices and for several counts.
 void check_bits(const vm::VerifiedProgram& program, std::uint64_t seed, std::size_t points = 150) {
   const IsaGuard guard;
   Random random(seed);

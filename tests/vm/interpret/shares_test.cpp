@@ -1,4 +1,4 @@
-// Shares of surfaces where blends mix them.
+// Tests of the shares of surfaces where blends mix them.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -18,7 +18,7 @@ compiler::CompiledScene blend_of(const std::string& combinator) {
         {"type": "sphere", "radius": 1, "translate": [9, 0, 0], "material": "c"}]})");
 }
 
-// A digit for each surface.
+// One digit per surface: 1 if a blend mixes the surface.
 std::string mixed(const compiler::CompiledScene& scene) {
   std::string digits;
   for (const compiler::Surface& surface : scene.surfaces) digits += surface.mixed ? '1' : '0';

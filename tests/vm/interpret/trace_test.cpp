@@ -1,4 +1,4 @@
-// A trace shows the stacks as the verifier counts them, and ends with what the machine makes of the point.
+// Tests of traces: the stack heights are the verifier's, and the last value is the machine's result at the point.
 #include "vm/interpret/trace.h"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TEST_CASE("a trace shows what each instruction leaves", "[trace]") {
   CHECK(steps[3].points.size() == 1);
 }
 
-// y + sqrt(x): of an operand below 0 the root is at fault, not what takes it.
+// y + sqrt(x) with x < 0: the root is at fault, not the sum that takes the root's value.
 TEST_CASE("a trace finds the first instruction without a finite value", "[trace]") {
   vm::Program code;
   code.append(vm::Opcode::Y, 0, {}, {});

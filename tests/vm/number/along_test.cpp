@@ -1,5 +1,5 @@
-// Value and derivative along a line: what happens at points is within the bounds, for every opcode; and where the
-// answer is known the bounds are close to it.
+// Value and derivative along a line: sampled values and slopes lie within the bounds for every opcode. The bounds are
+// close to the exact answer, if that is known.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -29,7 +29,7 @@ struct Stretch {
   dvec3 at(double t) const { return origin + t * direction; }
 };
 
-// Through the middle of things, along an axis every so often; from a point to several units.
+// Random segment of a line through the scene, sometimes along an axis; length from zero to several units.
 Stretch random_stretch(Random& random) {
   static const double kLengths[] = {0, 1e-6, 1e-3, 0.05, 0.3, 1, 4};
   dvec3 direction = random.direction() * random.length(0.25, 4);
@@ -46,8 +46,8 @@ bool finite(vm::Range range) { return std::isfinite(range.lo) && std::isfinite(r
 
 std::string print(vm::Range range) { return std::to_string(range.lo) + " .. " + std::to_string(range.hi); }
 
-// Samples of a stretch are within `line`, and so are the slopes between them; those where `defined` says so. How many
-// slopes were held against finite bounds.
+// Checks that samples of the segment, and the slopes between them, lie within `line`. Samples at which `defined` is
+// false are skipped. Returns the number of slopes compared with finite bounds.
 template <class Value, class Defined>
 int check_samples(const vm::AlongLine& line, const Stretch& s, Random& random, int samples, const Value& value,
                   const Defined& defined) {
@@ -61,7 +61,7 @@ int check_samples(const vm::AlongLine& line, const Stretch& s, Random& random, i
     if (!defined(t)) continue;
     if (!(f >= line.value.lo && f <= line.value.hi)) FAIL_CHECK(f << " not in " << print(line.value) << " at " << t);
     const double dt = std::abs(t - last_t), slope = (f - last) / (t - last_t);
-    // Values are a few roundings off, each.
+    // Each value is off by a few roundings.
     const double slack = 1e-12 * std::max({1.0, std::abs(f), glm::length(s.at(t))}) / dt;
     if (dt > 0 && std::isfinite(last)) {
       compared += finite(line.derivative);
@@ -82,11 +82,11 @@ void add_opcodes(const vm::VerifiedProgram& program, std::set<Opcode>& seen) {
 
 struct Sample {
   vm::VerifiedProgram program;
-  std::vector<vm::VerifiedProgram> parts;  // where all of them are finite the program is defined
+  std::vector<vm::VerifiedProgram> parts;  // subexpressions: the program is defined where all of them are finite
   std::string name;
 };
 
-// A primitive, every kind in turn, or a graph, or a formula.
+// Returns a primitive (every kind in turn), a graph or a formula.
 Sample sample(std::uint64_t seed, Random& random) {
   const std::string number = "seed " + std::to_string(seed);
   if (seed % 3 == 0) return {plain_lowering(random_scene(random)), {}, number};
@@ -103,7 +103,7 @@ Sample sample(std::uint64_t seed, Random& random) {
           number + ": " + std::string(compiler::spec(kind).name)};
 }
 
-// The graph's root over these children.
+// Returns the program of a `kind` node over these children.
 vm::VerifiedProgram over(Kind kind, const std::vector<double>& params,
                          const std::vector<std::pair<Kind, std::vector<double>>>& children) {
   compiler::Scene scene;
@@ -155,7 +155,7 @@ TEST_CASE("along a line: values are the judge's", "[along]") {
     const vm::AlongLine line = along(program, s, workspace);
     for (int i = 0; i < 8; ++i) {
       const double t = random.uniform(s.begin, s.end), judged = judge_distance(scene.graph, scene.root, s.at(t));
-      const double slack = 1e-12 * std::max(1.0, std::abs(judged));  // of the judge's own rounding
+      const double slack = 1e-12 * std::max(1.0, std::abs(judged));  // for the judge's rounding errors
       INFO("seed " << seed << " at " << t << ": " << judged << " in " << print(line.value));
       CHECK((judged >= line.value.lo - slack && judged <= line.value.hi + slack));
     }
@@ -166,7 +166,7 @@ TEST_CASE("along a line: past a sphere's centre the derivative is nearly what it
   vm::Workspace workspace;
   const vm::VerifiedProgram ball = primitive_program(Kind::Sphere, {1});
   for (const double miss : {0.0, 0.5, 2.0}) {
-    const auto exact = [&](double t) { return t / std::hypot(t, miss); };  // it rises with t
+    const auto exact = [&](double t) { return t / std::hypot(t, miss); };  // increases with t
     for (double t = -4; t < 4; t += 0.25) {
       for (const double width : {1e-6, 1e-3, 0.1}) {
         if (miss == 0 && t <= 0 && t + width >= 0) continue;
@@ -180,7 +180,7 @@ TEST_CASE("along a line: past a sphere's centre the derivative is nearly what it
       }
     }
   }
-  // All the way in the field falls, all the way out it rises, and it is nowhere faster than the line.
+  // The field decreases all the way in, increases all the way out, and never changes faster than the point moves.
   CHECK(along(ball, {{0, 0.5, 0}, {1, 0, 0}, -10, -1e-3}, workspace).derivative.hi < 0);
   CHECK(along(ball, {{0, 0.5, 0}, {1, 0, 0}, 1e-3, 10}, workspace).derivative.lo > 0);
   const vm::AlongLine through = along(ball, {{0, 0, 0}, {2, 0, 0}, -3, 3}, workspace);
@@ -201,7 +201,7 @@ TEST_CASE("along a line: the derivative of a blend is between its operands'", "[
     CHECK(line.derivative.hi >= 0.75);
     CHECK(line.derivative.lo >= 0.25 - 1e-12);
     CHECK(line.derivative.hi <= 0.75 + 1e-12);
-    // Where one operand is far below the other it has the field to itself.
+    // If one operand is far below the other, the blend is that operand.
     const vm::AlongLine away = along(blend, {{5, 0, 0}, {0.75, 0.25, 0}, -1, 1}, workspace);
     const double alone = kind == Kind::SmoothUnion ? 0.25 : 0.75;
     INFO(print(line.derivative) << ", away " << print(away.derivative));

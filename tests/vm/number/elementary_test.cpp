@@ -1,5 +1,5 @@
-// The elementary functions against libm: f32 kernels against double, double kernels against long double; and their
-// values at the edges.
+// Compares the elementary functions with libm: f32 kernels with double, double kernels with long double. Also checks
+// their values at the edges of their domains.
 #include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -21,7 +21,7 @@ struct Kernel {
   Opcode opcode;
   double (*truth)(double);
   long double (*long_truth)(long double);
-  double limit;  // of |x|: the bar holds up to here
+  double limit;  // max |x| for which the error bound holds
 };
 
 const Kernel kKernels[] = {
@@ -32,7 +32,7 @@ const Kernel kKernels[] = {
     {Opcode::Sqrt, std::sqrt, std::sqrt, 1e39},
 };
 
-// How many ulps of the true value `value` is off. Infinite when one is NaN or infinite and the other not.
+// Error of `value` in ulps of the true value. Infinite when exactly one of them is NaN or infinite.
 double ulps(float value, double truth) {
   const float nearest = static_cast<float>(truth);
   if (std::isnan(truth) || std::isinf(nearest)) {
@@ -48,7 +48,7 @@ struct Worst {
   float at = 0;
 };
 
-// Over the floats whose bits are first, first + stride, ... below `end`.
+// Worst error over the floats whose bit patterns are first, first + stride, ... below `end`.
 Worst worst_of(const Kernel& kernel, std::uint64_t first, std::uint64_t end, std::uint64_t stride) {
   const vm::VerifiedProgram program = formula({{Opcode::X}, {kernel.opcode}});
   vm::Workspace workspace;
@@ -94,7 +94,7 @@ TEST_CASE("float kernels are within 4 ulp, on a sample", "[elementary]") {
   }
 }
 
-// Ten minutes: build/release/tests/fathom_tests "[exhaustive]"
+// Takes ten minutes: build/release/tests/fathom_tests "[exhaustive]"
 TEST_CASE("float kernels are within 4 ulp, on every float", "[.][exhaustive]") {
   for (const Kernel& kernel : kKernels) {
     constexpr std::uint64_t kParts = 4, kAll = std::uint64_t{1} << 32;

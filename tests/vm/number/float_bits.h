@@ -1,5 +1,5 @@
-// What the tests of the evaluators in float need: many points, the bits of results, a way back from other instruction
-// sets.
+// Helpers for the tests of the float evaluators: clouds of points, bits of results, and a guard that restores the
+// instruction set.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace fathom::test {
 
-// Points as three arrays.
+// Points as three arrays, one per coordinate.
 struct Cloud {
   std::vector<float> x, y, z;
 
@@ -23,7 +23,7 @@ struct Cloud {
   vm::Points from(std::size_t first) const { return {x.data() + first, y.data() + first, z.data() + first}; }
 };
 
-// The bits of a float; every NaN counts as the same, since IEEE 754 leaves its sign and payload to the processor.
+// Bits of a float. All NaNs count as equal, since IEEE 754 leaves their sign and payload to the processor.
 inline std::uint32_t bits_of(float f) {
   return std::bit_cast<std::uint32_t>(std::isnan(f) ? std::numeric_limits<float>::quiet_NaN() : f);
 }
@@ -37,7 +37,7 @@ inline std::vector<std::uint32_t> distance_bits(const vm::VerifiedProgram& progr
   return bits;
 }
 
-// Restores the instruction set when a test that forces others ends.
+// Restores the instruction set at the end of a test that forces others.
 struct IsaGuard {
   std::string before{vm::isa_name()};
   ~IsaGuard() { vm::force_isa(before); }

@@ -1,4 +1,4 @@
-// Gradient noise against its definition, its range and slope proved, what is said of it over boxes, and its edges.
+// Gradient noise: compared with its definition; a proof of its range and max slope; its bounds over boxes; its edges.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -23,7 +23,8 @@ using vm::Opcode;
 
 vm::VerifiedProgram noise_program() { return formula({{Opcode::X}, {Opcode::Y}, {Opcode::Z}, {Opcode::Noise}}); }
 
-// Points within `reach` of the origin; of every other one some coordinates are whole or next to it.
+// Points within `reach` of the origin. In every other point some coordinates are integers or the floats next to an
+// integer.
 Cloud noise_points(Random& random, double reach, std::size_t count) {
   Cloud cloud;
   for (std::size_t i = 0; i < count; ++i) {
@@ -39,7 +40,7 @@ Cloud noise_points(Random& random, double reach, std::size_t count) {
   return cloud;
 }
 
-// A pair of bounds, rounded outwards by what its arithmetic here can err.
+// Interval. The arithmetic does not round outwards: is_proved() keeps a margin of 1e-9 instead.
 struct Bounds {
   double lo, hi;
 };
@@ -53,13 +54,13 @@ double largest(Bounds a) { return std::max(std::abs(a.lo), std::abs(a.hi)); }
 double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 double fade_slope(double t) { return 30 * t * t * (1 - t) * (1 - t); }
 
-// A part of the eighth of a cell next to the origin, and of the directions (1, a, b): the others are mirror images,
-// since the twelve directions of corners are the same after any of the cube's symmetries.
+// Part of the octant of a cell next to the origin, and of the directions (1, a, b). All other octants and directions
+// are mirror images, because the twelve gradients at corners are invariant under the symmetries of the cube.
 struct Piece {
   std::array<Bounds, 3> at = {{{0, 0.5}, {0, 0.5}, {0, 0.5}}};
   Bounds a = {-1, 1}, b = {-1, 1};
 
-  // Halves along the longest side; a direction's is felt less.
+  // Halves the piece along its longest side. Sides of the directions count a quarter, because they matter less.
   std::array<Piece, 2> halves(bool of_directions) const {
     std::array<Piece, 2> made = {*this, *this};
     const auto sides = [&](Piece& piece) {
@@ -78,18 +79,19 @@ struct AxisWeights {
   Bounds weight[2], slope[2], from[2];  // of the corners at 0 and 1
 };
 AxisWeights weights(Bounds t) {
-  const Bounds w{fade(t.lo), fade(t.hi)}, s{fade_slope(t.lo), fade_slope(t.hi)};  // both rise up to the middle
+  const Bounds w{fade(t.lo), fade(t.hi)}, s{fade_slope(t.lo), fade_slope(t.hi)};  // both increase up to 1/2
   return {{{1 - w.hi, 1 - w.lo}, w}, {{-s.hi, -s.lo}, s}, {t, {t.lo - 1, t.hi - 1}}};
 }
-// The largest |g . v| over the twelve directions.
+// Max |g . v| over the twelve gradients g.
 double most_of_directions(const Bounds (&v)[3]) {
   const double x = largest(v[0]), y = largest(v[1]), z = largest(v[2]);
   return x + y + z - std::min({x, y, z});
 }
 
-// The largest value for the worst directions is the sum over corners of weight times the two largest of |p - corner|.
-// Its bound is what the middle of the piece has and what the derivatives, of which next to a maximum most cancels,
-// can add on the way from there.
+// Upper bound of the noise value on a piece, for the worst gradients. The value is then the sum over corners of
+// weight times the two largest of |p - corner|. The bound is the value at the piece's centre plus what the
+// derivatives can add on the way from there. The derivatives are summed over the corners first, because near a
+// maximum most of the sum cancels.
 double most_value(const Piece& piece) {
   const AxisWeights axes[3] = {weights(piece.at[0]), weights(piece.at[1]), weights(piece.at[2])};
   Bounds rises[3] = {{0, 0}, {0, 0}, {0, 0}};
@@ -118,7 +120,7 @@ double most_value(const Piece& piece) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t j = (axis + 1) % 3, k = (axis + 2) % 3;
       const Bounds turn = axes[axis].slope[at[axis]] * (axes[j].weight[at[j]] * axes[k].weight[at[k]]);
-      // Whether this coordinate is one of the two largest.
+      // `can`, `must`: 1 if this coordinate may be, or is certain to be, one of the two largest.
       const double can = size[axis].hi < size[j].lo && size[axis].hi < size[k].lo ? 0 : 1;
       const double must = size[axis].lo > std::min(size[j].hi, size[k].hi) ? 1 : 0;
       const Bounds rise = at[axis] == 0 ? Bounds{must, can} : Bounds{-can, -must};
@@ -128,8 +130,9 @@ double most_value(const Piece& piece) {
   return middle + half[0] * largest(rises[0]) + half[1] * largest(rises[1]) + half[2] * largest(rises[2]);
 }
 
-// Of the derivative along a direction. Along s it is the sum over corners of g . ((s . grad w) (p - corner) + w s),
-// whose largest is convex in s: over a square of directions it is largest in a corner of it.
+// Upper bound of the derivative along a direction on a piece. Along s the derivative is the sum over corners of g .
+// ((s . grad w) (p - corner) + w s). Its maximum over g is convex in s, so over a square of directions it is largest
+// in a corner of the square.
 double most_slope(const Piece& piece) {
   const AxisWeights x = weights(piece.at[0]), y = weights(piece.at[1]), z = weights(piece.at[2]);
   double most = 0;
@@ -151,7 +154,7 @@ double most_slope(const Piece& piece) {
   return most / std::sqrt(1 + least(piece.a) + least(piece.b));
 }
 
-// Whether `most` is at most `bound` all over the piece; gives up after so many parts of it.
+// True if `most` is at most `bound` on the whole piece. Gives up after `pieces` parts.
 template <class Most>
 bool is_proved(const Piece& whole, double bound, bool of_directions, int pieces, const Most& most) {
   std::vector<Piece> open = {whole};
@@ -189,14 +192,15 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
 TEST_CASE("noise is within its range, and no steeper than its slope, whatever the hash", "[noise][released]") {
   CHECK(is_proved({}, kNoiseRange, false, 3'000'000, most_value));
   CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, most_slope));
-  // Little less is true: in the middle of a cell the directions can be such that the slope is 3.75.
+  // The bounds are nearly tight: in the middle of a cell the gradients can be such that the slope is 3.75.
   CHECK_FALSE(is_proved({}, 1.0363, false, 100'000, most_value));
   CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, most_slope));
 }
 
 TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", "[noise][heavy]") {
   for (std::size_t i = 0; i < vm::kNoiseSlopes.size(); ++i) {
-    // The coordinate that is near a whole number is the one along which the direction leads most, or another.
+    // Axis 0: the coordinate near an integer is the dominant axis of the direction. Axis 1: the coordinate is
+    // another.
     for (const std::size_t axis : {0, 1}) {
       Piece piece;
       piece.at[axis] = {static_cast<double>(i) / 16, static_cast<double>(i + 1) / 16};
@@ -221,7 +225,7 @@ TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[
     const auto below2 = vm::evaluate_surface(program, p - 2.0 * step, workspace);
     const auto above2 = vm::evaluate_surface(program, p + 2.0 * step, workspace);
     CHECK(std::abs(above.distance - below.distance) <= 2e-7 * kNoiseSlope);
-    const double curvature = 40;  // no second derivative is larger
+    const double curvature = 40;  // upper bound of all second derivatives
     CHECK(glm::length(above.gradient - below.gradient) <= 2e-7 * curvature);
     const dvec3 curve_below = (below.gradient - below2.gradient) / 1e-7;
     const dvec3 curve_above = (above2.gradient - above.gradient) / 1e-7;
@@ -326,7 +330,7 @@ TEST_CASE("what is said of noise over boxes holds, and of small ones it is close
     double least = 9, most = -9, steepest = 0;
     for (int i = 0; i < 40; ++i) {
       dvec3 t{random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
-      if (i % 4 == 0) t = dvec3(t.x);  // on the line, too
+      if (i % 4 == 0) t = dvec3(t.x);  // every fourth point lies on the line
       const dvec3 p = lo + t * (hi - lo);
       const auto here = vm::evaluate_surface(program, p, workspace);
       const double slope = glm::length(here.gradient), along = glm::dot(here.gradient, hi - lo);
@@ -365,7 +369,8 @@ TEST_CASE("enclosures of noise hold every float, and of small boxes they are sma
     const Enclosed result = enclosed(program, boxes, workspace);
     const Cloud cloud = points_in(boxes, random, 24);
     count_outside(distances(program, cloud, workspace), cloud, result.lo, result.hi, "noise");
-    for (std::size_t i = 1; i < kEnclosedBoxes; i += 2) {  // far from the origin middles are rounded, too
+    // not the far boxes: there the boxes' centres are rounded, too
+    for (std::size_t i = 1; i < kEnclosedBoxes; i += 2) {
       const dvec3 side(boxes.hi[0][i] - boxes.lo[0][i], boxes.hi[1][i] - boxes.lo[1][i],
                        boxes.hi[2][i] - boxes.lo[2][i]);
       CHECK(result.hi[i] - result.lo[i] <= std::min(2 * kNoiseRange, kNoiseSlope * glm::length(side)) + 1e-4);

@@ -1,4 +1,4 @@
-// The opcodes that join and alter values, one at a time: against what they are defined to be, and against each other.
+// The opcodes that join and alter values, one at a time: compared with their definitions and with each other.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,16 +15,17 @@ using compiler::Kind;
 using glm::dvec3;
 using vm::Opcode;
 
-// The values of two operands are the point's x and y: planes whose distance is a coordinate.
+// The two operands are the point's x and y: planes whose distance is a coordinate.
 TEST_CASE("unary and binary opcodes on a grid", "[evaluate][opcodes]") {
   const double k = 0.5;
   struct Row {
     Opcode opcode;
     std::vector<double> immediates;
     double (*truth)(double a, double b);
-    double units;  // allowed error, 2^-24 of the largest of |a|, |b|, k and the result
+    double units;  // allowed error in units of 2^-24 of max(|a|, |b|, k, result)
   };
-  const auto dip = [](double a, double b) {  // of the blend of width 0.5
+  // How far the blend of width 0.5 lies below the minimum of its operands.
+  const auto dip = [](double a, double b) {
     const double h = std::max(0.0, 0.5 - std::abs(a - b));
     return h * h / 2;
   };
@@ -94,7 +95,7 @@ TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][op
 }
 
 TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs", "[evaluate][opcodes]") {
-  // The die of scenes/showcase.json had gradients of length sqrt 2.5 on its diagonal planes.
+  // Regression: the die of scenes/showcase.json had gradients of length sqrt 2.5 on its diagonal planes.
   for (const Kind kind : {Kind::SmoothUnion, Kind::SmoothIntersection, Kind::SmoothSubtraction}) {
     CAPTURE(static_cast<int>(kind));
     compiler::Scene scene;
@@ -102,7 +103,8 @@ TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs
     const compiler::NodeId planes[] = {scene.graph.add(Kind::Plane, along_x, {}),
                                        scene.graph.add(Kind::Plane, along_y, {})};
     scene.root = scene.graph.add(kind, k, planes);
-    const double y = kind == Kind::SmoothSubtraction ? -0.25 : 0.25;  // the cut's complement counts
+    // the subtracted operand counts with its sign changed
+    const double y = kind == Kind::SmoothSubtraction ? -0.25 : 0.25;
     vm::Workspace workspace;
     const dvec3 gradient = vm::evaluate_surface(plain_lowering(scene), {0.25, y, 3}, workspace).gradient;
     CHECK(gradient.x == 0.5);

@@ -1,5 +1,6 @@
-// The compiler's own mistake that -fno-tree-slp-vectorize is there for: g++ 12 at -O2 drops the rounding of
-// double -> float -> double for two of three adjacent struct members, just what a float ray compared in double does.
+// Canary for the compiler bug that -fno-tree-slp-vectorize works around: g++ 12 at -O2 drops the rounding of double
+// -> float -> double for two of three adjacent struct members. A float ray compared in double does exactly that
+// conversion.
 #include <catch2/catch.hpp>
 
 namespace fathom::test::rounding_test {

@@ -1,5 +1,5 @@
-// What programs tell of how far around a point the solid is convex (vm/number/convex-inl.h), against the definition
-// of a convex function: no chord lies below it.
+// Compares the convexity radius that programs compute (vm/number/convex-inl.h) with the definition of a convex
+// function: no chord lies below the function.
 #include "vm/program/convexity.h"
 
 #include <algorithm>
@@ -40,7 +40,8 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
     for (const Kind kind : primitive_kinds(sort, false)) {
       for (int round = 0; round < 20; ++round) {
         const vm::VerifiedProgram program = plain_lowering(single(kind, random_params(kind, random)));
-        // Of the shapes of several instructions some are convex in every part, and not all are as a whole.
+        // Some shapes of several instructions are convex in every part but not as a whole. The test skips these
+        // shapes.
         if (program.instructions() > 1 || vm::convex_share(program) < 1) continue;
         seen.merge(convex_shapes_of(program));
         CHECK(std::isinf(vm::evaluate_surface(program, random.in_box(2), workspace).convex));
@@ -60,8 +61,8 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
   CHECK(seen.size() >= 26);
 }
 
-// Three points of a line within reach of p: where all are nearer to the solid than the rest can come, the middle
-// one's value is no more than the chord's.
+// Takes three points on a line within the convexity radius of p. If all three are nearer to the solid than any
+// non-convex part can come, the value at the middle point is at most the chord's.
 TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
   vm::Workspace workspace;
   int far_reaching = 0, tried = 0;

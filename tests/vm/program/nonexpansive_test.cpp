@@ -1,4 +1,4 @@
-// Which rows never change faster than their point moves: is_nonexpansive() says of none that it does not.
+// Checks the opcodes for which is_nonexpansive() is true: their result never changes faster than their point moves.
 #include <set>
 
 #include "tests/support/effort.h"
@@ -10,7 +10,7 @@ namespace {
 
 using vm::Opcode;
 
-// An instruction of its own, from one of random programs. [word]
+// One instruction of a random program, as a program of its own.
 struct Row {
   vm::Program code;
   std::string name;
@@ -35,7 +35,7 @@ std::vector<Row> rows_of(const vm::VerifiedProgram& program, vm::Form form) {
   return rows;
 }
 
-// The row's value at p, or the point it makes of p.
+// Value of the row at p, or the point that the row maps p to.
 glm::dvec3 image_of(const std::vector<vm::VerifiedProgram>& parts, glm::dvec3 p, vm::Workspace& workspace) {
   glm::dvec3 image(0);
   for (std::size_t i = 0; i < parts.size(); ++i) {

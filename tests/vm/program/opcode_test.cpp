@@ -1,4 +1,4 @@
-// The table of opcodes agrees with itself.
+// Consistency tests of the opcode table.
 #include "vm/program/opcode.h"
 
 #include <catch2/catch.hpp>
@@ -48,7 +48,7 @@ TEST_CASE("the columns at hand are the table's, and count the words of every ins
     CHECK((at_hand.opcode == row.opcode && at_hand.form == row.form));
     CHECK(at_hand.choice == (row.choice != Choice::None));
     CHECK((at_hand.immediates == row.immediates && at_hand.cost == row.cost));
-    // All sources of both operands with and without a local; moved and joined; up to 63 groups.
+    // Operands: all sources of both operands with and without a local; moved and joined; up to 63 groups.
     for (std::uint32_t operand = 0; operand < 128; ++operand) {
       const std::uint32_t word = vm::opcode_word(row.opcode, operand);
       CHECK(1 + vm::immediates_of(word) == vm::instruction_length(word));

@@ -1,13 +1,13 @@
-// The verifier's rules, each broken alone: tests/golden/verifier/*.txt hold a program as words, and after the line
-// "----- expected" where it is refused and why. Words are written
+// Golden tests of the verifier's rules, each broken alone. tests/golden/verifier/*.txt hold a program as words and,
+// after the line "----- expected", where and why the verifier refuses the program. Words are written
 //
 //     mnemonic:operand    an opcode word; without operand 0
-//     f=1  f=1/1.5        a float immediate, and its unrounded constant where that is another
+//     f=1  f=1/1.5        a float immediate, and its unrounded constant if that differs
 //     i=8  #000000ff      an integer immediate; any word
 //     locals 2            what the program declares
 //     limit stack 2       a limit other than the machine's: words, stack, locals
 //
-// FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the second part.
+// FATHOM_UPDATE_GOLDEN=1 in the environment rewrites the expected part.
 #include <fmt/format.h>
 
 #include <bit>

@@ -1,4 +1,4 @@
-// Each of the verifier's rules broken alone, by the smallest program that breaks it; and each limit at its edge.
+// Tests of the verifier: each rule broken alone, by the smallest program that breaks it, and each limit at its edge.
 #include "vm/program/verify.h"
 
 #include <bit>
@@ -47,7 +47,7 @@ void refused(Program program, std::uint32_t offset, const std::string& reason, c
   CHECK_THAT(error->reason, Contains(reason));
 }
 
-// The limits with one of them changed.
+// The default limits, modified by `change`.
 template <typename Change>
 vm::Limits limits_with(const Change& change) {
   vm::Limits limits;
@@ -186,7 +186,7 @@ TEST_CASE("integer immediates are in the opcode's range", "[verify]") {
   refused(bulb(2, 0), 0, "mandelbulb: iterations is 0, not in 1..256");
   refused(bulb(2, 257), 0, "mandelbulb: iterations is 257, not in 1..256");
   const vm::OpcodeInfo& row = vm::info(Opcode::Mandelbulb);
-  CHECK(vm::largest_integer(row, 2) == 0);  // its bailout
+  CHECK(vm::largest_integer(row, 2) == 0);  // immediate 2 is the bailout, not an integer
   CHECK(vm::largest_integer(row, 99) == 0);
 }
 

@@ -1,4 +1,5 @@
-// The operands of choices over boxes: within their bounds, the same in fused programs, and telling where they can.
+// Bounds of the operands of choice instructions over boxes: they contain the operands, are equal in fused programs,
+// and decide a choice where they can.
 #include "compiler/compile.h"
 #include "tests/support/compiled.h"
 #include "tests/vm/range/boxes.h"
@@ -8,8 +9,9 @@ namespace {
 
 using vm::Opcode;
 
-// The program up to the word `end`, then what makes its result the upper of the two values there, or the lower: one
-// is copied to a local; what is left on the stack is made into a number of no account, and the copy added or taken.
+// Returns a program whose result is the top value on the stack at the word `end` (`upper`), or the value below the
+// top. The program runs `whole` up to `end` and copies the value to a local. Whatever is left on the stack becomes a
+// non-zero number, and `and` of that number and the local is the local.
 vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_t end, bool upper) {
   const vm::Program& from = whole.program();
   vm::Program code;
@@ -22,7 +24,8 @@ vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_
     values += effect.values_change, points += effect.points_change;
   }
   const std::uint32_t local = from.locals;
-  const auto below_all = [&] {  // the top value becomes -3.4e38 or -infinity, whatever it was
+  // The top value becomes -3.4e38 or -infinity, whatever it was.
+  const auto below_all = [&] {
     code.append(Opcode::Constant, 0, {-kLargest}, {});
     code.append(Opcode::Min, 0, {}, {});
   };
@@ -30,7 +33,7 @@ vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_
     below_all();
     code.append(Opcode::Sign, 0, {}, {});
     code.append(Opcode::Constant, 0, {1}, {});
-    code.append(Opcode::Add, 0, {}, {});  // 0
+    code.append(Opcode::Add, 0, {}, {});  // the sum is 0
     code.append(Opcode::Add, 0, {}, {});
     --values;
   }
@@ -38,7 +41,7 @@ vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_
   for (; values > 1; --values) code.append(Opcode::Min, 0, {}, {});
   below_all();
   code.append(Opcode::Load, local, {}, {});
-  code.append(Opcode::And, 0, {}, {});  // the second, as the first is not 0
+  code.append(Opcode::And, 0, {}, {});  // the local, since the first operand is not 0
   for (; points > 1; --points) code.append(Opcode::Drop, 0, {}, {});
   return verified(std::move(code));
 }

@@ -1,5 +1,5 @@
-// Skeletons: parts come out of a pool as they were put in, and many of them evaluated side by side have the distances
-// they have alone.
+// Skeletons: parts come out of a pool as they were put in. Many parts evaluated side by side have the same distances
+// as each alone.
 #include "vm/prune/skeleton.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr float kFarAway = std::numeric_limits<float>::infinity();
 constexpr std::size_t kParts = vm::kEnclosedBoxes;
 
-// Parts of one program, in boxes here and there.
+// Parts of one program, in boxes at random positions.
 std::vector<vm::Part> parts_of(const vm::Code& code, Random& random) {
   alignas(64) float lo[3][kParts], hi[3][kParts];
   for (std::size_t i = 0; i < kParts; ++i) {
@@ -55,7 +55,7 @@ struct Packed {
   std::vector<std::uint32_t> pool, at;
 };
 
-// How many of the distances of random points, a point in each part by turns, are not the part's own.
+// Evaluates random points in random parts. Returns the number of distances that differ from those of the part alone.
 std::size_t wrong_distances(const Packed& packed, const std::vector<vm::Part>& parts, std::size_t count,
                             Random& random) {
   std::vector<float> alone(count), together(count);
@@ -133,7 +133,8 @@ TEST_CASE("skeletons: small shapes are one, whichever they are and whatever surf
   const Packed packed(scene.surface, parts);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const vm::Skeleton& skeleton = packed.skeletons[packed.pool[packed.at[i]]];
-    CHECK(skeleton.instructions == parts[i].choices + 1);  // a joined shape each: no tags, no minima of their own
+    // one joined shape per choice: no tags and no separate minima
+    CHECK(skeleton.instructions == parts[i].choices + 1);
     for (std::size_t j = 0; j < i; ++j) {
       const bool same = packed.pool[packed.at[i]] == packed.pool[packed.at[j]];
       CHECK(same == (parts[i].choices == parts[j].choices));

@@ -1,5 +1,6 @@
-// Parts of programs: in the box they were cut for they give the whole program's bits, wherever the value is within
-// the limits they were cut for, and beyond the limits they are beyond them, too.
+// Parts of programs, specialised for a box and for limits of the value. In the box a part has the whole program's
+// bits wherever the value is within the limits. If the whole program is beyond a limit, the part is beyond that
+// limit, too.
 #include "vm/prune/specialise.h"
 
 #include <bit>
@@ -22,7 +23,7 @@ namespace fathom::test::specialise_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kPoints = 24;  // in each box
+constexpr std::size_t kPoints = 24;  // per box
 
 struct BoxSet {
   float lo[3][vm::kEnclosedBoxes], hi[3][vm::kEnclosedBoxes];
@@ -61,7 +62,7 @@ PointSet points_in(const BoxSet& boxes, std::size_t box, Random& random) {
   return points;
 }
 
-// A program of the part's words, for the verifier to judge.
+// The part's words as a program, for the verifier.
 vm::Program as_program(const vm::Part& part) {
   vm::Program program;
   program.words = part.words, program.wide = part.wide, program.locals = part.locals;
@@ -83,7 +84,7 @@ struct Tally {
   std::size_t compared = 0, wrong = 0, cut = 0;
 };
 
-// Whether a part's value may stand for the whole one's: the same, but for the sign of a zero, or beyond the same
+// True if a part's value may replace the whole program's: equal (ignoring the sign of zero), or beyond the same
 // limit.
 bool agrees(float whole, float part, float least, float most) {
   if (whole < least) return part < least;
@@ -104,7 +105,7 @@ void compare(const vm::Code& whole, const vm::Part& part, const BoxSet& boxes, s
   }
 }
 
-// Cuts a program for random boxes and limits, and the parts again for boxes within.
+// Specialises a program for random boxes and limits, and each part again for a smaller box.
 void cut(const vm::Code& whole, Random& random, Tally& tally) {
   const vm::Part first = vm::whole(whole);
   vm::Workspace workspace;
@@ -137,7 +138,7 @@ void cut(const vm::Code& whole, Random& random, Tally& tally) {
   }
 }
 
-// Formulas joined by what chooses, so that there is something to cut.
+// Formulas joined by choice instructions, so that there is something to prune.
 std::vector<Step> random_choices(Random& random, int count) {
   using vm::Opcode;
   std::vector<Step> steps;
@@ -175,7 +176,7 @@ glm::vec3 float_point_in(Random& random, glm::dvec3 lo, glm::dvec3 hi) {
   return p;
 }
 
-// Numbers of which some are close to each other, some infinite.
+// Random number from a set in which some are close to each other and some are infinite.
 float random_end(Random& random) {
   static const float kEnds[] = {-kInfinity, -1, -0.5f, 0, 0.25f, 0.5f, 1, kInfinity};
   return kEnds[random.below(8)] + static_cast<float>(random.below(3)) * 0x1p-24f;
@@ -224,7 +225,7 @@ TEST_CASE("specialise: parts by bounds of the exact function equal it, in double
     INFO("seed " << seed << ": " << text_of(steps));
     REQUIRE(sound(part));
     cut += part.words.size() < whole.words.size();
-    // What is known of the part is known of the whole, and is no less.
+    // The part's bounds are valid for the whole program and at least as tight.
     const vm::SlopeBound same = vm::evaluate_slope(program, lo, hi, workspace);
     CHECK((bound.lipschitz == same.lipschitz && bound.float_error == same.float_error));
     const vm::SlopeBound again = vm::evaluate_slope(part, lo, hi, workspace);
@@ -249,7 +250,8 @@ TEST_CASE("specialise: parts by bounds of the exact function equal it, in double
   CHECK(compared > 8000);
 }
 
-// Two planes a width apart that double and float round to either side: what the exact blend still mixes must stay.
+// Two planes whose gap is about the blend's width, which double and float round to different sides of the width. The
+// specialiser must keep the operands that the exact blend still mixes.
 TEST_CASE("specialise: operands that only float holds apart are kept for the exact function", "[specialise][slope]") {
   vm::Workspace workspace;
   const double k = 0.1 + 1e-9;  // float rounds it down to 0.1f
@@ -266,8 +268,8 @@ TEST_CASE("specialise: operands that only float holds apart are kept for the exa
   }
 }
 
-// min(sqrt(x), y): where x is negative the choice is y, which is beyond the limit. Once the root was left alone, and
-// what was beyond the limit was NaN.
+// min(sqrt(x), y): where x is negative the value is y, which is beyond the limit. Regression: the specialiser kept
+// only the root, so the value beyond the limit became NaN.
 TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[specialise]") {
   using vm::Opcode;
   const std::vector<std::vector<Step>> programs = {
@@ -330,7 +332,7 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
   CHECK(cut > 3000);
 }
 
-// Once, a drop with no value on the stack wrote before the beginning of the reader's own.
+// Regression: a drop with no value on the stack wrote before the beginning of the reader's own stack.
 TEST_CASE("a program that drops a point at which nothing was computed is no expression", "[specialise]") {
   vm::Program program;
   program.append(vm::Opcode::Translate, 0, {1, 0, 0}, {});
@@ -360,7 +362,8 @@ TEST_CASE("any sound program can be read as an expression or is refused", "[spec
   CHECK(expressions > 10);
 }
 
-// Once, each moved shape of a program with locals was compared with all before it: minutes for what takes no time.
+// Regression: the reader compared each moved shape of a program with locals with all earlier ones, which took
+// minutes.
 TEST_CASE("places that are met again are found among a hundred thousand", "[specialise]") {
   vm::Program program;
   program.locals = 1;

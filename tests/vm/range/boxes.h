@@ -1,4 +1,4 @@
-// What the tests of enclosures need: boxes of many sorts, points in them, programs of many sorts.
+// Helpers for the tests of enclosures: boxes of all kinds, points in them, programs of all kinds.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct BoxSet {
   vm::Boxes view() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 
-// From points to a hundred units, flat ones and unbounded ones too, about where shapes are.
+// Random boxes about where the shapes are: from points to a hundred units wide, some flat or unbounded.
 inline BoxSet random_boxes(Random& random) {
   static const double kSizes[] = {0, 1e-6, 1e-3, 0.05, 0.3, 1, 4, 100};
   BoxSet boxes;
@@ -41,7 +41,7 @@ inline BoxSet random_boxes(Random& random) {
   return boxes;
 }
 
-// A float of [lo, hi]: its ends, or anything between; where there is no end, of any size.
+// Random float in [lo, hi]: an end, or any number between. If an end is infinite, the number may have any magnitude.
 inline float random_within(Random& random, float lo, float hi) {
   const int pick = random.below(6);
   if (pick == 0) return std::max(lo, -kLargest);
@@ -59,7 +59,7 @@ inline bool holds(float lo, float hi, float value) {
   return lo <= hi && (std::isnan(value) ? lo == -kInf && hi == kInf : lo <= value && value <= hi);
 }
 
-// `count` points of each box, one box after the other.
+// `count` points per box, box after box.
 inline Cloud points_in(const BoxSet& boxes, Random& random, int count) {
   Cloud cloud;
   for (std::size_t i = 0; i < kEnclosedBoxes; ++i) {
@@ -79,7 +79,7 @@ inline std::vector<float> distances(const vm::VerifiedProgram& program, const Cl
   return d;
 }
 
-// How many values, of points_in(), are not within [lo, hi] of their box. Reports the first.
+// Returns how many values at the points of points_in() lie outside [lo, hi] of their box. Reports the first.
 inline int count_outside(const std::vector<float>& values, const Cloud& cloud, const float* lo, const float* hi,
                          const std::string& name) {
   int outside = 0;
@@ -110,7 +110,7 @@ struct BoxSample {
   std::string name;
 };
 
-// A primitive, every kind in turn, or a graph, or a formula.
+// Returns a primitive (every kind in turn), a graph or a formula.
 inline BoxSample sample(std::uint64_t seed, Random& random) {
   const std::string number = "seed " + std::to_string(seed);
   if (seed % 3 == 0) {

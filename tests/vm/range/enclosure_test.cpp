@@ -1,5 +1,5 @@
-// Enclosures: whatever the f32 machine computes in a box is within the bounds, of every opcode, and the bounds are
-// close where what they should be is known.
+// Enclosures: every value that the f32 machine computes in a box lies within the bounds, for every opcode. The bounds
+// are close to the exact range, if that is known.
 #include <bit>
 #include <cstdint>
 #include <set>
@@ -17,7 +17,7 @@ void add_opcodes(const vm::VerifiedProgram& program, std::set<Opcode>& seen) {
     seen.insert(static_cast<Opcode>(words[i] & 0xff));
 }
 
-// Boxes whose x ranges over `steps` floats from one of any size on, or from -2 to 2.
+// Boxes whose x interval spans `steps` floats, from a start of any magnitude or between -2 and 2.
 BoxSet runs_of_floats(Random& random, std::uint32_t steps) {
   BoxSet boxes{};
   for (std::size_t i = 0; i < kEnclosedBoxes; ++i) {
@@ -31,7 +31,7 @@ BoxSet runs_of_floats(Random& random, std::uint32_t steps) {
       for (std::uint32_t n = 0; n < steps; ++n) hi = std::nextafter(hi, kInf);
     }
     boxes.lo[0][i] = lo, boxes.hi[0][i] = std::min(hi, kLargest);
-    // Of the second operand: a point, a small range, a large one.
+    // y, the second operand: a point, a small range or a large one.
     boxes.lo[1][i] = static_cast<float>(random.chance(0.3) ? random.below(9) - 4 : random.uniform(-4, 4));
     boxes.hi[1][i] = boxes.lo[1][i] + static_cast<float>(random.chance(0.5) ? 0 : random.length(1e-6, 2));
   }
@@ -52,7 +52,7 @@ std::vector<double> enlarged(compiler::Kind kind, std::vector<double> params, do
   return params;
 }
 
-// What a program gives in a box.
+// Enclosure of a program's values in a box.
 vm::Range range_in(const vm::VerifiedProgram& program, glm::vec3 lo, glm::vec3 hi) {
   vm::Workspace workspace;
   BoxSet boxes;
@@ -102,7 +102,7 @@ TEST_CASE("enclosures hold of shapes of a thousand units, whose errors are those
       for (int n = 0; n < 6; ++n) {
         const auto program = primitive_program(kind, enlarged(kind, random_params(kind, random), 1024));
         BoxSet boxes = random_boxes(random);
-        for (std::size_t i = 0; i < kEnclosedBoxes; i += 2) {  // every other one about as far out
+        for (std::size_t i = 0; i < kEnclosedBoxes; i += 2) {  // every other box lies about as far out as the shape
           for (int axis = 0; axis < 3; ++axis) {
             const float by = static_cast<float>(random.uniform(-2000, 2000));
             boxes.lo[axis][i] += by, boxes.hi[axis][i] += by;
@@ -134,7 +134,7 @@ TEST_CASE("enclosures of functions hold every float of short runs", "[enclosure]
       const BoxSet boxes = runs_of_floats(random, kSteps[n % 7]);
       const Enclosed result = enclosed(program, boxes, workspace);
       Cloud cloud = points_in(boxes, random, 64);
-      if (const std::uint32_t run = kSteps[n % 7]; run <= 64) {  // each float in turn
+      if (const std::uint32_t run = kSteps[n % 7]; run <= 64) {  // each float of the run in turn
         for (std::size_t at = 0; at < cloud.size(); ++at) {
           const std::size_t box = at / 64;
           cloud.x[at] = at % 64 == 0 ? boxes.lo[0][box] : std::nextafter(cloud.x[at - 1], boxes.hi[0][box]);
@@ -193,7 +193,8 @@ TEST_CASE("enclosures where the answer is known", "[enclosure]") {
   const auto product = formula({{Opcode::X}, {Opcode::Y}, {Opcode::Multiply}});
   CHECK(is(range_in(product, {-kInf, 0, 0}, {kInf, 0, 0}), 0, 0));  // points are finite
   CHECK(is(range_in(product, {1, 2, 0}, {kInf, 3, 0}), 2, kInf));   // and products may overflow
-  // A number that may be NaN stays one through min and max, unless it is the first operand: then it is the second.
+  // If the second operand of min or max is NaN, the result is NaN. If the first operand is NaN, the result is the
+  // second operand.
   const auto after = [](Opcode opcode, bool first) {
     std::vector<Step> steps = {{Opcode::X}, {Opcode::Sqrt}};
     steps.insert(first ? steps.end() : steps.begin(), Step{Opcode::Constant, {5}});

@@ -1,5 +1,5 @@
-// The recorded formulas, run again: the machine's values, from the listing as recorded and with its loop found again.
-// What is printed of them is compiled in tests/compiler/emit/emitted_cpp_test.cpp.
+// Runs the recorded formulas, both as recorded and with their loop recovered, and compares the results with the
+// machine's. tests/compiler/emit/emitted_cpp_test.cpp compiles the emitted source.
 #include "vm/record/record.h"
 
 #include <catch2/catch.hpp>
@@ -20,7 +20,7 @@ using vm::Ref;
 
 float run_recorded(const RecordedFunction& function, const std::vector<float>& parameters);
 
-// Masks are 1 and 0.
+// Executes one operation. Masks are 1 and 0.
 float apply(Operation operation, float a, float b, float c) {
   switch (operation) {
     case Operation::Add:
@@ -68,7 +68,7 @@ float run_recorded(const RecordedFunction& function, const std::vector<float>& p
     if (ref.kind == Ref::Kind::Parameter) return parameters[ref.index];
     return ref.kind == Ref::Kind::Carried ? carried[ref.index] : static_cast<float>(ref.number);
   };
-  // The value of a test that ends the loop is 0.
+  // Runs statements [begin, end). Returns false if the test that ends the loop is 0.
   const auto run = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [operation, operands] = function.statements[i];
@@ -93,7 +93,8 @@ float run_recorded(const RecordedFunction& function, const std::vector<float>& p
   return value(function.results[0]);
 }
 
-// Both listings against the machine at some hundred points, near and far; the loop has `passes`.
+// Compares both listings with the machine at some hundred points, near and far. The recovered loop must have `passes`
+// passes.
 void check_loop(Opcode opcode, const std::vector<double>& immediates, std::size_t passes) {
   vm::Program program;
   program.append(opcode, 0, immediates, {});
@@ -135,7 +136,7 @@ TEST_CASE("a recorded function of a single pass, or without a test, stays as it 
 }
 
 TEST_CASE("passes that differ are not taken for a loop", "[emit]") {
-  // v = x; three times: test v < 1; v = v + y -- but v - y in the last.
+  // v = x; three passes: test v < 1; v = v + y. Later the last pass becomes v - y.
   const auto statement = [](std::uint32_t index) { return Ref{Ref::Kind::Statement, index}; };
   const Ref x{Ref::Kind::Parameter, 0}, y{Ref::Kind::Parameter, 1}, one{Ref::Kind::Number, 0, 1};
   RecordedFunction function;
@@ -151,10 +152,11 @@ TEST_CASE("passes that differ are not taken for a loop", "[emit]") {
   REQUIRE(rolled.loop);
   CHECK(rolled.loop->carried.size() == 1);
   CHECK(run_recorded(rolled, {0.f, 0.25f}) == 0.75f);
-  CHECK(run_recorded(rolled, {0.5f, 0.75f}) == 1.25f);  // ends after the first
+  CHECK(run_recorded(rolled, {0.5f, 0.75f}) == 1.25f);  // ends after the first pass
   function.statements.back().operation = Operation::Subtract;
   CHECK_FALSE(vm::reroll(function).loop);
-  function.statements.back() = {Operation::Add, {v = statement(2), y}};  // of the pass before the one before
+  // uses the result of the first pass instead of the second
+  function.statements.back() = {Operation::Add, {v = statement(2), y}};
   CHECK_FALSE(vm::reroll(function).loop);
 }
 

@@ -1,4 +1,5 @@
-// From the scene as written to the graph: names, materials, transforms, defaults. Messages: tests/golden/diagnostics.
+// Elaboration from the scene's syntax to the graph: names, materials, transforms, defaults. Messages:
+// tests/golden/diagnostics.
 #include "compiler/frontend/elaborate/elaborate.h"
 
 #include <fmt/format.h>
@@ -57,7 +58,8 @@ TEST_CASE("defaults are those of the documentation", "[elaborate]") {
 }
 
 TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
-  // A scene without a record keeps the struct's defaults, one with an empty record takes the table's.
+  // A scene without the record has the struct's defaults, and a scene with an empty record has the table's. These
+  // defaults must agree.
   CHECK(film_record().find("width")->fallback[0] == Film().width);
   CHECK(film_record().find("height")->fallback[0] == Film().height);
   CHECK(film_record().find("exposure")->fallback[0] == Film().exposure);
@@ -131,7 +133,7 @@ TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
                  "blades": 6, "blade_rotation": 90},
       "film": {"filter": "mitchell", "filter_width": 3.5}, "render": {"sampler": "independent"})");
   CHECK((e.camera.focal_length == 50.0 && e.camera.sensor_width == 24 && e.camera.f_stop == 1.4));
-  CHECK(e.camera.focus_distance.value() == 4);  // along the view
+  CHECK(e.camera.focus_distance.value() == 4);  // measured along the view direction
   CHECK((e.camera.blades == 6 && e.camera.blade_rotation == Approx(std::numbers::pi / 2)));
   CHECK((e.film.filter == FilterKind::Mitchell && e.film.filter_width == 3.5));
   CHECK(e.settings.sampler == SamplerKind::Independent);
@@ -269,7 +271,8 @@ TEST_CASE("the transform undoes scale, then rotate, then translate", "[elaborate
       CHECK(back == Approx(p[static_cast<int>(i)]).margin(1e-12));
     }
   }
-  // About an axis: the axis stays, the rest turns counter-clockwise as the axis points at the viewer.
+  // Rotation about an axis: the axis stays fixed, and the rest turns counter-clockwise as seen with the axis pointing
+  // at the viewer.
   const glm::dmat3 r = rotation_about({1, 1, 1}, 120);
   CHECK(glm::length(r * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)) < 1e-15);
   CHECK(glm::length(r * glm::dvec3(1, 1, 1) - glm::dvec3(1, 1, 1)) < 1e-15);
@@ -290,7 +293,7 @@ TEST_CASE("forty doublings take linear time and space", "[elaborate]") {
 }
 
 TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
-  // Each `onion` is one level of JSON, each `union` two.
+  // Each `onion` adds one level of JSON, each `union` two.
   const auto nested = [](int depth, const std::string& open, const std::string& close) {
     std::string text;
     for (int i = 0; i < depth; ++i) text += open;

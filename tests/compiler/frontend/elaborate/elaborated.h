@@ -1,4 +1,4 @@
-// Scenes as elaborate() and derive() make them of JSON text, and short ways to look at them.
+// Scenes that elaborate() and derive() make of JSON text, and helpers to inspect them.
 #pragma once
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ inline compiler::Elaborated of_objects(const std::string& objects, const std::st
   return elaborated(R"({"version": 1, "objects": [)" + objects + "]" + rest + "}");
 }
 
-// The listing without the places.
+// The graph's listing without source locations.
 inline std::string listing(const compiler::Elaborated& e) {
   const std::string text = compiler::print_graph(e.scene, compiler::Source());
   std::string out;

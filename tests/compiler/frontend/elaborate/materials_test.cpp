@@ -1,4 +1,4 @@
-// What the front end makes of materials: OpenPBR's names and defaults, presets, textures.
+// Materials as the front end reads them: OpenPBR's names and defaults, presets, textures.
 #include "compiler/frontend/elaborate/materials.h"
 
 #include <algorithm>
@@ -92,7 +92,7 @@ TEST_CASE("materials: gold reflects as its refractive index says, and what is gi
   const Material gold = material_of(R"({"type": "principled", "preset": "gold"})");
   CHECK(gold.metalness == 1);
   CHECK(gold.roughness == 0.3);
-  // ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)
+  // Reflectance at normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
   CHECK(gold.color.x == Approx(0.945).margin(2e-3));
   CHECK(gold.color.y == Approx(0.776).margin(2e-3));
   CHECK(gold.color.z == Approx(0.373).margin(2e-3));
@@ -128,10 +128,11 @@ TEST_CASE("materials: presets are known properties within their ranges", "[mater
 }
 
 TEST_CASE("materials: a conductor's reflectance is Fresnel's", "[materials]") {
-  // Without absorption a dielectric's: 4 % of glass head-on, all of it at grazing.
+  // Without absorption the formula is a dielectric's: glass reflects 4 % at normal incidence and everything at
+  // grazing incidence.
   CHECK(conductor_reflectance(1, 1.5, 0) == Approx(0.04));
   CHECK(conductor_reflectance(0, 1.5, 0) == Approx(1));
-  // At Brewster's angle, tan = n, half of the perpendicular part: ((n^2 - 1) / (n^2 + 1))^2.
+  // At Brewster's angle, tan = n, only the perpendicular half reflects: ((n^2 - 1) / (n^2 + 1))^2.
   CHECK(conductor_reflectance(1 / std::sqrt(1 + 1.5 * 1.5), 1.5, 0) ==
         Approx(0.5 * std::pow((1.5 * 1.5 - 1) / (1.5 * 1.5 + 1), 2)));
   CHECK(conductor_reflectance(1, 0.2, 3) == Approx((0.64 + 9) / (1.44 + 9)));

@@ -32,8 +32,8 @@ std::vector<glm::dvec3> random_points(std::size_t count, double depth) {
   return points;
 }
 
-// The largest difference between the compiled scene and the list itself, which is evaluated a thousand points at a
-// time to keep its lines' values in memory.
+// Max difference between the compiled scene and the list. The list is evaluated a thousand points at a time, so that
+// the values of its lines fit into memory.
 double farthest(const CompiledScene& scene, const std::string& text, const std::vector<glm::dvec3>& points) {
   constexpr std::size_t kBlock = 1000;
   vm::Workspace workspace;
@@ -57,7 +57,7 @@ TEST_CASE("every operation of an expression list means what the format says", "[
   const char* const unary[] = {"neg", "abs",  "square", "floor", "ceil", "round", "sin",  "cos",
                                "tan", "asin", "acos",   "atan",  "exp",  "not",   "sqrt", "ln"};
   const char* const binary[] = {"add", "sub", "mul", "div", "min", "max", "atan2", "compare", "mod", "and", "or"};
-  // Far above the box's depth, which would cut what lies deeper.
+  // Adds 1000 to the result, because the box of a drawing would cut off values below its depth.
   const std::string above = "high const 1000\nresult add r high\n";
   std::vector<glm::dvec3> points = random_points(200, 1);
   for (const double x : {-0.5, 0.0, 0.25, 0.5, 1.0}) points.push_back({x, 0.5, 0});
@@ -74,7 +74,7 @@ TEST_CASE("every operation of an expression list means what the format says", "[
     const char* shift = op == "div" || op == "mod" ? "1.25" : "0";
     check("a var-x\ny var-y\ns const " + std::string(shift) + "\nb add y s\nr " + op + " a b\n" + above);
   }
-  // and, or, not of a true zero; halves; Euclid's remainder is never negative, whatever the divisor's sign.
+  // and, or, not of an exact zero. Euclid's remainder is never negative, whatever the divisor's sign.
   check("z const 0\nx var-x\na and z x\nb or z x\nc not z\nd add a b\nr add d c\n" + above);
   check("x var-x\nm const -0.3\nr mod x m\n" + above);
 }
@@ -136,7 +136,7 @@ TEST_CASE("the box of a drawing never shows at z = 0", "[import]") {
     }
     CHECK(farthest(compiled(text), text, points) < 1e-13);
   }
-  // As deep as a formula of its slope can be at 1 from its zero.
+  // The deepest value that a formula of slope 1 can have at distance 1 from its zero.
   const std::string slope = "x var-x\none const 1\nr sub x one\n";
   CHECK(farthest(compiled(slope), slope, {{0, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}}) < 1e-9);
 }

@@ -29,7 +29,8 @@ std::string molecule() {
   return tests::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data/molecule.json");
 }
 
-// The format's meaning, after the program it comes from: points go through matrices from the leaf to the root.
+// Reference evaluator, modelled on the program that defines the format: a point passes through the matrices from the
+// leaf to the root.
 double plain(const json& node, dvec3 p, std::vector<std::array<double, 12>>& path) {
   path.push_back(node.at("matrix").get<std::array<double, 12>>());
   double d = 0;
@@ -51,7 +52,7 @@ double plain(const json& node, dvec3 p, std::vector<std::array<double, 12>>& pat
       const double x = ring - radius, y = p.y + half, ex = -radius, ey = 2 * half;
       const double t = std::clamp((x * ex + y * ey) / (ex * ex + ey * ey), 0.0, 1.0);
       const double qx = x - ex * t, qy = y - ey * t, slant = std::hypot(qx, qy);
-      // Its own formula is right inside and beside the cone; below the base the disc is nearest.
+      // The format's own formula is right inside and beside the cone. Below the base the disc is nearest.
       d = std::max(qx, qy) > 0 ? slant : -std::min(slant, y);
       if (y < 0) d = std::hypot(std::max(x, 0.0), y);
     }
@@ -147,14 +148,15 @@ TEST_CASE("colours are materials", "[import]") {
 }
 
 TEST_CASE("the molecule is what its file says", "[import]") {
-  CHECK(farthest(molecule(), test::few(200)) < 1e-6);  // chains of 1000 blends: the reference adds in another form
+  // Chains of 1000 blends: the reference sums them in another form.
+  CHECK(farthest(molecule(), test::few(200)) < 1e-6);
   const CompiledScene scene = compiled(molecule());
   CHECK(scene.surfaces.size() == 1);
   CHECK(scene.lipschitz < 1.001);
 }
 
 TEST_CASE("nested nodes written as a scene are the same scene", "[import]") {
-  // Chains to the right, and of changing width, become named parts.
+  // Chains whose right operand is the rest, with changing blend widths, become named parts.
   std::string deep = primitive(kSphere, kTurn);
   for (int i = 0; i < 1300; ++i) {
     const std::string leaf = primitive(i % 2 == 0 ? kSphere : kBox, kMirror);

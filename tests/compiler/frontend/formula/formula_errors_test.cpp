@@ -1,4 +1,4 @@
-// Formulas that are wrong: what is said of them, and where.
+// Formulas with errors: the messages and their positions.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -21,8 +21,8 @@ using syntax::Value;
 struct Wrong {
   const char* text;
   const char* code;
-  const char* where;    // the characters under the carets
-  const char* message;  // or a part of it
+  const char* where;    // characters under the carets
+  const char* message;  // message or a part of it
   const char* help = "";
 };
 
@@ -128,7 +128,7 @@ TEST_CASE("formula: parameters that are not known", "[formula]") {
   scope.at(2).state = Scope::State::Unusable;
   Diagnostics diagnostics;
   CHECK(!read_number(in_quotes("r + broken"), scope, diagnostics));
-  CHECK(diagnostics.all().empty());  // said where it is declared
+  CHECK(diagnostics.all().empty());  // the declaration reports the error
   CHECK(!read_number(in_quotes("r + later"), scope, diagnostics));
   check_wrong({"r + later", "E0402", "later", "`later` has no value yet"}, diagnostics);
 }

@@ -1,4 +1,4 @@
-// Formulas: what they mean and what they are made into.
+// Formulas: their values and the nodes that they become.
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ Formula read(const Value& value) {
   return *formula;
 }
 
-// The same in a text's notation.
+// Checks the same expression in the text notation.
 void check_in_text(const std::string& expression, const Formula& expected) {
   Source source("a.fathom", fmt::format("fathom 1\nparam r = 0.5\nparam n = 3\nlet unused = r*n\n"
                                         "object expression({})\n",
@@ -114,7 +114,7 @@ TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[formula]") {
   CHECK(made_of("fbm(x, 0, y, n - 1)") ==
         "add(noise(x, 0, y), multiply(noise(add(multiply(x, 2), 6.9375), 10.3125, add(multiply(y, 2), 17.0625)), "
         "0.5))");
-  const Formula finest = read("fbm(sqrt(x), y, z, 12)");  // what the octaves have in common is there once
+  const Formula finest = read("fbm(sqrt(x), y, z, 12)");  // the octaves share one sqrt node
   CHECK(std::ranges::count(finest.nodes, "sqrt", &Formula::Node::function) == 1);
   for (const glm::dvec3 p : {glm::dvec3(0.25, 0.5, -1.75), glm::dvec3(-3.125, 40, 0.0625)}) {
     const std::string at = fmt::format("{}, {}, {}", p.x, p.y, p.z);
@@ -131,7 +131,7 @@ TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[formula]") {
 }
 
 TEST_CASE("formula: no two octaves of fbm are 0 at one place", "[formula]") {
-  // Where octave j is at a whole coordinate, octave k > j is not: along each axis.
+  // Along each axis, if octave j is at an integer coordinate, octave k > j is not.
   for (const double apart : {37.0 / 16, 55.0 / 16, 91.0 / 16}) {
     const auto offset = [&](int k) { return k == 0 ? 0 : (2 * k + 1) * apart; };
     for (int k = 1; k < 12; ++k) {
@@ -238,7 +238,7 @@ TEST_CASE("formula: the machine's function comes before one made of others", "[f
     return print(*formula);
   };
   CHECK(with("clamp(x, 0, 1)") == "clamp(x, 0, 1)");
-  CHECK(with("clamp(3, 0, 1)") == "clamp(3, 0, 1)");  // not known in double: left to the machine
+  CHECK(with("clamp(3, 0, 1)") == "clamp(3, 0, 1)");  // not evaluated in double: left to the machine
   CHECK(with("tan(x)") == "divide(sin(x), cos(x))");
 }
 

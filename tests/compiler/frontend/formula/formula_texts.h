@@ -1,4 +1,4 @@
-// Formulas as they stand in scene files, for the tests of what reads them.
+// Formulas as scene files contain them, for the tests of formula readers.
 #pragma once
 
 #include <initializer_list>
@@ -10,7 +10,7 @@
 
 namespace fathom::test {
 
-// As if the text stood at the begin of a file, in quotes.
+// Returns the text as a value whose span begins at the start of a file, including quotes.
 inline compiler::syntax::Value in_quotes(const std::string& text) {
   return {{0, static_cast<std::uint32_t>(text.size() + 2)}, text};
 }

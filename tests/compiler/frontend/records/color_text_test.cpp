@@ -1,4 +1,4 @@
-// Colours written as screens show them, and places of outlines written with two numbers.
+// Colours written as sRGB codes, and translations of outlines written as two numbers.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -31,7 +31,7 @@ TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[elabor
   CHECK(color_of(R"("#c42")") == color_of(R"("#cc4422")"));
   const glm::dvec3 color = color_of(R"("#800a40")");
   CHECK(color.r == Approx(0.21586050011389926).epsilon(1e-12));  // ((128/255 + 0.055) / 1.055)^2.4
-  CHECK(color.g == Approx(10 / 255.0 / 12.92).epsilon(1e-12));   // on the straight piece
+  CHECK(color.g == Approx(10 / 255.0 / 12.92).epsilon(1e-12));   // on the linear piece of the curve
   CHECK(color.b == Approx(0.05126945837404324).epsilon(1e-12));
 }
 

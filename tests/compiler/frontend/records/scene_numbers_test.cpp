@@ -1,4 +1,4 @@
-// The numbers of a scene: formulas wherever numbers stand, parameters, and what is no number.
+// The numbers of a scene: formulas in place of numbers, parameters, and values that are not numbers.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -34,7 +34,7 @@ TEST_CASE("numbers that JSON cannot hold are refused all the same", "[elaborate]
   }
 }
 
-// Everything in a scene that is a number, with r = 2, as numbers and as formulas.
+// Scene text with every numeric property, with r = 2: as numbers or as formulas.
 std::string every_number(bool formulas) {
   const auto number = [&](const char* literal, const char* formula) {
     return formulas ? fmt::format("\"{}\"", formula) : std::string(literal);

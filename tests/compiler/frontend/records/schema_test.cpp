@@ -1,5 +1,5 @@
-// The schema against the compiler, which has the last word: what the schema rejects the compiler rejects, and the
-// other way round for everything a schema can say.
+// Compares the schema with the compiler, which has the last word. The compiler rejects everything that the schema
+// rejects. The schema rejects everything that the compiler rejects, as far as a schema can express the rule.
 #include "compiler/frontend/records/schema.h"
 
 #include <algorithm>
@@ -25,10 +25,10 @@ using fathom::tests::schema_problem;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Codes the schema speaks for: types, names and number of properties, ranges of single numbers.
+// Error codes that the schema can express: types, names and number of properties, ranges of single numbers.
 const std::set<std::string> kStructural = {"E0101", "E0102", "E0103", "E0104", "E0105",
                                            "E0106", "E0107", "E0108", "E0201", "E0301"};
-// The others, by the first letters of the code, and why a schema cannot say what they say.
+// All other codes, by prefix, with the reason why a schema cannot express them.
 const std::map<std::string, std::string> kBeyond = {
     {"E00", "the text is not JSON at all, or names a property twice"},
     {"E0109", "how deep patterns nest"},
@@ -59,7 +59,7 @@ const json& schema() {
   return parsed;
 }
 
-// The codes of the errors that the compiler finds; the front end alone, as far as may be.
+// Returns the codes of the errors that the compiler reports.
 std::set<std::string> compiler_errors(const std::string& text) {
   Diagnostics diagnostics;
   compile(Source("scene.json", text), diagnostics);
@@ -74,7 +74,7 @@ bool beyond(const std::string& code) {
   return std::any_of(kBeyond.begin(), kBeyond.end(), [&](const auto& row) { return code.starts_with(row.first); });
 }
 
-// Calls `use` with every value of a tree, the tree's own included; `use` may change the value and must put it back.
+// Calls `use` with every value of a tree, including the root. `use` may change the value and must restore it.
 template <typename Use>
 void for_each_value(json& value, const Use& use) {
   use(value);
@@ -82,7 +82,7 @@ void for_each_value(json& value, const Use& use) {
   for (auto& item : value) for_each_value(item, use);
 }
 
-// The schema and the compiler must agree on `scene`, as far as the schema can tell.
+// Checks that the schema and the compiler agree on `scene`, as far as a schema can tell.
 void compare(const json& scene) {
   const std::string text = scene.dump();
   const std::set<std::string> errors = compiler_errors(text);
@@ -110,22 +110,23 @@ TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][s
 TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyond a schema", "[schema]") {
   for (const fs::path& path : golden_files("diagnostics")) {
     const std::string name = path.filename().string(), whole = read_file(path);
-    if (name.starts_with("layout") || name.starts_with("E07")) continue;  // E07xx are of listings
+    if (name.starts_with("layout") || name.starts_with("E07")) continue;  // E07xx are for listings
     const std::string text = whole.substr(0, whole.find("----- expected\n")), code = name.substr(0, 5);
     if (is_text_scene(text)) continue;
     CAPTURE(name);
     CHECK((kStructural.count(code) > 0) != beyond(code));
-    const bool computed = name.ends_with("_formula.txt");  // whose value the schema does not know
+    const bool computed = name.ends_with("_formula.txt");  // the schema does not know the formula's value
     if (computed || name.starts_with("E06")) continue;
     if (kStructural.count(code) > 0) {
       CHECK(schema_problem(parse(text), schema()) != "");
-    } else if (!name.starts_with("E00") && code != "E0408") {  // a number of E0408 may be too large for any property
+    } else if (!name.starts_with("E00") && code != "E0408") {  // numbers in E0408 may be too large for any property
       CHECK(schema_problem(parse(text), schema()) == "");
     }
   }
 }
 
-// Every property of every record of two scenes, in turn: gone, misnamed, and with values of other types and sizes.
+// Changes each property of every record of two scenes in turn: removed, misnamed, and with values of other types and
+// sizes.
 TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[heavy][schema]") {
   json scene = parse(read_file(fs::path(FATHOM_SOURCE_DIR) / "scenes/primitives.json"));
   scene["camera"]["type"] = "perspective";

@@ -1,4 +1,4 @@
-// The JSON front end: values, spans and limits. Its messages: tests/golden/diagnostics.
+// The JSON front end: values, spans and limits. Messages: tests/golden/diagnostics.
 #include "compiler/frontend/syntax/json.h"
 
 #include <catch2/catch.hpp>
@@ -33,8 +33,8 @@ std::string text_at(const Source& source, Span span) {
 
 const syntax::Record& record(const syntax::Value& value) { return std::get<syntax::Record>(value.data); }
 
-// Checks that every value's span is exactly its text: a scalar's text reads back as the same scalar, a record or list
-// begins and ends with its brackets, and what it holds lies within it, in order.
+// Checks that every value's span is exactly its text: the text of a scalar reads back as the same scalar, a record or
+// list begins and ends with its brackets, and its contained values lie inside it, in order.
 void check_spans(const Source& source, const syntax::Value& value) {
   const std::string text = text_at(source, value.span);
   CAPTURE(text);

@@ -1,4 +1,4 @@
-// From JSON to text and back: nothing is lost.
+// Conversion from JSON to text and back loses nothing.
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -23,7 +23,7 @@ namespace {
 using namespace fathom::compiler;
 using fathom::test::canonical;
 
-// What JSON comes to by way of text.
+// Converts JSON to text and back. Returns the canonical form of the result.
 std::string there_and_back(const syntax::File& file, const std::string& json) {
   const std::string text = text::print_text(file, Source("a.json", json));
   Source source("a.fathom", text);
@@ -56,7 +56,7 @@ std::string digest_of(const Source& source) {
   return std::string(reinterpret_cast<const char*>(&digest), sizeof(digest));
 }
 
-// Loops and functions are gone in JSON, formulas and parameters stay.
+// The conversion to JSON expands loops and functions, and keeps formulas and parameters.
 TEST_CASE("text: the JSON scene of a text is the same scene", "[text]") {
   const char* const texts[] = {
       "param n = 7\nobject \"posts\" [for i in 0..n: cylinder(0.1 + 0.02*i, random(i)).translate([i, 0, 0])]",

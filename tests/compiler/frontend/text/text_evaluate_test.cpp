@@ -1,4 +1,4 @@
-// What texts come to: values, nodes and the scene that a JSON file would have said.
+// Evaluation of texts: values, nodes, and the scene that an equivalent JSON file describes.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace fathom::compiler;
 
-// The scene as JSON without its head; `definitions` are -D's.
+// Returns the scene as JSON without its head. `definitions` are those of option -D.
 std::string scene_of(const std::string& text, const Definitions& definitions = {}) {
   Source source("a.fathom", "fathom 1\n" + text);
   Diagnostics diagnostics;
@@ -29,7 +29,7 @@ std::string scene_of(const std::string& text, const Definitions& definitions = {
   return json.substr(head.size(), json.size() - head.size() - 1);
 }
 
-// The value of an expression, as the radius of a ball.
+// Returns the value of an expression, read from the radius of a ball.
 std::string radius(const std::string& expression, const std::string& before = "") {
   const std::string scene = scene_of(before + "\nobject \"it\" sphere(" + expression + ")");
   const std::size_t at = scene.find("\"radius\": ") + 10;
@@ -59,10 +59,10 @@ TEST_CASE("text: functions, loops and folds", "[text]") {
   CHECK(radius("fold sum = 0 for i in 1..5: sum + i") == "10");
   CHECK(radius("fold best = 0 for v in [3, 7, 5]: if v > best then v else best") == "7");
   CHECK(radius("even(3)", "def even(n) = if mod(n, 2) == 0 then 1 else half(n)\ndef half(n) = n/2") == "1.5");
-  CHECK(radius("a", "let a = b + 1\nlet b = 2") == "3");  // in any order
+  CHECK(radius("a", "let a = b + 1\nlet b = 2") == "3");  // definitions may stand in any order
 }
 
-// Of the published generator: a change would change scenes.
+// Values of the published generator. Other values would change scenes.
 TEST_CASE("text: random numbers are those of SplitMix64", "[text]") {
   CHECK(radius("random(0)") == "0.8833108082136426");
   CHECK(radius("random(1, 2, 3)") == "0.4175580595044027");
@@ -100,7 +100,7 @@ TEST_CASE("text: parameters decide loops and conditions", "[text]") {
   CHECK(scene_of(text).find("\"radius\": 2") != std::string::npos);
 }
 
-// As a tree they would have 2^40 leaves.
+// As a tree the scene would have 2^40 leaves.
 TEST_CASE("text: doublings by functions are as many nodes", "[text]") {
   std::string text = "def d(part) = part + part.translate([1, 0, 0])\nobject ";
   for (int i = 0; i < 40; ++i) text += "d(";
@@ -108,7 +108,7 @@ TEST_CASE("text: doublings by functions are as many nodes", "[text]") {
   CHECK(scene_of(text).size() < 8000);
 }
 
-// A chain that was made by a loop is deeper than what reads scenes recurses.
+// A loop makes a chain deeper than the scene reader can recurse.
 TEST_CASE("text: deep chains of nodes are named on the way", "[text]") {
   Source source("a.fathom", "fathom 1\nobject fold part = sphere(1) for i in 0..20000: part.onion(1/(i + 2))");
   Diagnostics diagnostics;

@@ -1,4 +1,4 @@
-// The layout of texts: tokens and comments stay, and a text that was laid out stays as it is.
+// The layout of texts: formatting keeps tokens and comments, and formatting again changes nothing.
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ using namespace fathom::compiler;
 
 std::string formatted(const std::string& text) { return text::format_text(Source("a.fathom", text)); }
 
-// All tokens and comments, in order, a line each.
+// All tokens and comments in order, one per line.
 std::vector<std::string> content(const std::string& text) {
   const Source source("a.fathom", text);
   Diagnostics none;
@@ -32,7 +32,7 @@ std::vector<std::string> content(const std::string& text) {
   return out;
 }
 
-// Other blanks, blank lines, comments and indentation, where none of them means anything.
+// Changes blanks, blank lines, comments and indentation wherever they have no meaning.
 std::string scrambled(const std::string& text, test::Random& random) {
   std::string out;
   bool quoted = false;
@@ -76,7 +76,7 @@ TEST_CASE("text: blanks and indentation have one form", "[text]") {
         "fathom 1\nobject \"a\" (b - c).scale(2,) +{0.1} d\n");
   CHECK(formatted("fathom 1\n\n\n\ndef f(a,b=2)=\n        let c=a\n            .scale(b)\n        in c // it\n") ==
         "fathom 1\n\ndef f(a, b = 2) =\n  let c = a\n    .scale(b)\n  in c  // it\n");
-  CHECK(formatted("fathom 1\nobject [for i in 0 .. 3:\nif i>1:\n") != "");  // whatever comes
+  CHECK(formatted("fathom 1\nobject [for i in 0 .. 3:\nif i>1:\n") != "");  // even for an incomplete text
   CHECK(formatted("fathom 1\nobject[if! a&&b:...c,for i in d:-e]\n") ==
         "fathom 1\nobject [if !a && b: ...c, for i in d: -e]\n");
   CHECK(formatted("") == "");

@@ -1,5 +1,5 @@
-// Texts that import others: what their names stand for, which files they are, and scenes that are the same however
-// they are put together.
+// Texts with imports: the meaning of imported names, the lookup of files, and scenes that are equal however they are
+// split into files.
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -25,7 +25,7 @@ ImportReader reader_of(const Files& files) {
   };
 }
 
-// The objects, nodes and materials of the scene as JSON; its first error when there is one.
+// Returns the scene's objects, nodes and materials as JSON, or the code of its first error.
 std::string json_of(const std::string& text, const Files& files) {
   Source source("a.fathom", "fathom 1\n" + text);
   Diagnostics diagnostics;
@@ -63,7 +63,7 @@ TEST_CASE("imports: names of files stand for what they are there", "[text]") {
         R"({"version":1,"objects":[{"type":"sphere","radius":8}]})");
   CHECK(json_of("import \"lib/a.fathom\" as a\nobject a.scene", kFiles) ==
         R"({"version":1,"objects":[{"type":"union","of":[{"type":"sphere","radius":3,"name":"o"}]}]})");
-  // A file is a function of its parameters, here by way of another file's.
+  // A file is a function of its parameters, here called through another file.
   CHECK(json_of("import \"lib/a.fathom\"(r = 4) as a\nobject a.twice", kFiles) ==
         R"({"version":1,"nodes":{"cube":{"type":"box","half_size":[8,8,8]}},"objects":[{"type":"union","of":[{"use":"cube"},{"use":"cube"}]}]})");
   CHECK(json_of("param s = 2\nlet t = s + 1\nimport \"lib/b.fathom\"(k = t*s) as b\nobject b.cube", kFiles) ==
@@ -99,20 +99,20 @@ TEST_CASE("imports: there is an end to them", "[text]") {
     many += "import \"" + std::to_string(i) + "\" as s" + std::to_string(i) + "\n";
   }
   CHECK(json_of(many + "object s1.s", files) == "E0810");
-  // Each imports the next twice, with values: without a limit 2^40 modules.
+  // Each file imports the next one twice, with values: 2^40 modules without a limit.
   for (int i = 0; i < 40; ++i) {
     const std::string next = "import \"" + std::to_string(i + 1) + "\"(k = 1) as ";
     files[std::to_string(i)] = "fathom 1\nparam k = 1\n" + next + "a\n" + next + "b\nlet s = a.s + b.s\n";
   }
   files["40"] = "fathom 1\nparam k = 1\nlet s = sphere(k)\n";
   CHECK(json_of("import \"0\" as a\nobject a.s", files) == "E0810");
-  // Without values the same are 41, and shared.
+  // Without values the same files are 41 shared modules.
   for (int i = 0; i < 40; ++i) {
     const std::string next = "import \"" + std::to_string(i + 1) + "\" as ";
     files[std::to_string(i)] = "fathom 1\n" + next + "a\n" + next + "b\nlet s = a.s + b.s\n";
   }
   CHECK(json_of("import \"0\" as a\nobject a.s", files).size() < 8000);
-  CHECK(json_of("import \"a.fathom\" as a\nobject a.s", {{"a.fathom", "fathom 1\n"}}) == "E0810");  // itself
+  CHECK(json_of("import \"a.fathom\" as a\nobject a.s", {{"a.fathom", "fathom 1\n"}}) == "E0810");  // imports itself
   const Files circle = {{"b", "fathom 1\nimport \"c\" as c\nlet s = c.s\n"}, {"c", "fathom 1\nimport \"b\" as b\n"}};
   CHECK(json_of("import \"b\" as b\nimport \"c\" as c\nobject b.s + c.s", circle) == "E0810");
 }
@@ -129,7 +129,7 @@ TEST_CASE("imports: the limits are of all files together", "[text]") {
     if (diagnostics.has_errors()) CHECK(diagnostics.all()[0].code == "E0008");
   }
   Limits limits;
-  limits.tokens = 12;  // both have more, neither alone
+  limits.tokens = 12;  // both files together have more tokens, neither alone does
   Source source("a.fathom", "fathom 1\nimport \"b\" as b\nobject b.s");
   Diagnostics diagnostics;
   read_scene(source, diagnostics, limits, {}, reader_of({{"b", "fathom 1\nlet s = sphere(1)"}}));
@@ -147,7 +147,7 @@ TEST_CASE("imports: compiled files and listings carry them", "[text]") {
   CHECK(back.scene.source.imports()[0].path == "lib/a.fathom");
   CHECK(back.scene.source.imports()[1].file->name() == "x/lib/b.fathom");
   Diagnostics diagnostics;
-  const auto again = compile(back.scene.source, diagnostics);  // no file is read
+  const auto again = compile(back.scene.source, diagnostics);  // reads no file
   REQUIRE(again);
   CHECK(equal(scene_digest(*again), scene_digest(*scene)));
   const std::string listing = write_listing(*scene, {});
@@ -157,7 +157,7 @@ TEST_CASE("imports: compiled files and listings carry them", "[text]") {
   CHECK(listed->source.imports().size() == 2);
   CHECK(write_listing(*listed, contents) == listing);
   CHECK(write_file(*listed, contents) == bytes);
-  // A path out of the folder, an absolute one and one that is there twice are refused.
+  // Paths that lead out of the folder, absolute paths and duplicates are refused.
   for (const char* path : {"/etc/a.fathom", "lib/../a.fathom", "", "lib/b.fathom"}) {
     Source source("a.fathom", text);
     CHECK(add_import(source, "lib/b.fathom", "fathom 1\n"));

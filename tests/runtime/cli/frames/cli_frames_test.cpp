@@ -1,4 +1,4 @@
-// Sequences of frames as their users meet them: names, what is resumed, what is refused.
+// End-to-end tests of frame sequences: file names, resuming, refusals.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -12,7 +12,7 @@ namespace {
 using namespace fathom::tests;
 using Catch::Contains;
 
-// A ball that moves to the right, under a camera that stands still.
+// A ball that moves to the right, under a static camera.
 const char* const kHop = R"(fathom 1
 param time(doc = "seconds") = 0
 film (width = 24, height = 16, frames = 3, fps = 12)
@@ -49,7 +49,7 @@ TEST_CASE("cli frames: a frame is the still of its time, in either notation, and
   REQUIRE(folder.run("render hop.json --frames 2 --fixed-noise -o json.png -q").code == 0);
   REQUIRE(folder.run("render hop.json -D time=1/6 -o at.png -q").code == 0);
   CHECK(folder.read("json-0002.png") == folder.read("at.png"));
-  // The noise moves, but for --fixed-noise; the picture says its seed.
+  // The noise changes from frame to frame, except with --fixed-noise. The film stores the frame's seed.
   CHECK(folder.read("out-0002.png") != folder.read("json-0002.png"));
   REQUIRE(folder.run("render hop.json --frames 2 -o film.film -q").code == 0);
   const auto film = runtime::read_film((folder.path() / "film-0002.film").string());
@@ -111,7 +111,7 @@ TEST_CASE("cli frames: files are named by number, in the place of #, before the 
         "cost-0012-evaluations.png\ncost-0012-instructions.png\ndir.d/\nhop.fathom\nhop.json\nshot.12.exr\n"
         "shot.frames\nstats-0012.json\ntwo.json\n0012-albedo.jpg\n0012-depth.jpg\n0012-noisy.jpg\n0012-normal.jpg\n"
         "0012.jpg\n");
-  // Without -o the scene's name is the pictures'; the folder is known by being one.
+  // Without -o the images are named after the scene. An existing folder is recognised as the output folder.
   REQUIRE(folder.run("render hop.fathom --frames 1 --size 2x2").code == 0);
   CHECK(folder.has("hop-0001.png"));
   REQUIRE(folder.run("render hop.fathom --frames 1 --size 2x2 -o dir.d -q").code == 0);
@@ -224,7 +224,7 @@ TEST_CASE("cli frames: one that has errors ends it with 65 and its number, and c
   CHECK_THAT(good.out, Contains("4 frames checked, 0 with errors"));
   CHECK(folder.run("check shrink.json --frames 0:4 --probe 10").code == 2);
   CHECK(folder.run("check ball.json --frames 0:4").code == 2);
-  // A time that the scene does not allow is the command line's fault.
+  // A time that the scene does not allow is a command line error.
   folder.write("short.json", R"({"version": 1, "params": {"time": {"default": 0, "max": 1}}, "background": [1, 1, 1],
     "objects": [{"type": "sphere", "radius": "1 + time"}]})");
   const Result late = folder.run("render short.json --fps 1 --frames 2 -o b.png");
@@ -261,14 +261,14 @@ TEST_CASE("cli frames: --resume leaves what is done and whole, and renders the r
   };
   CHECK(resumed("") == 0);
   CHECK(resumed("--threads 1 -t 3") == 0);
-  // Files that are gone or damaged are made again, and those of other settings.
+  // Missing or damaged files, and files made with other settings, are rendered again.
   std::filesystem::remove(folder.path() / "a-0001.png");
   folder.write("a-0002.png", "no picture");
   CHECK(resumed("") == 2);
   CHECK(resumed("--exposure 1") == 4);
   CHECK(resumed("-a") == 4);
   CHECK(resumed("--sampler independent") == 4);
-  // Frame 0 has the same time at any rate.
+  // Frame 0 has the same time at any frame rate, so one frame fewer is rendered.
   CHECK(resumed("--fps 5") == 4);
   CHECK(resumed("") == 3);
   CHECK(resumed("--fps 5") == 3);
@@ -288,12 +288,12 @@ TEST_CASE("cli frames: runs of other frames may share a journal") {
       "\"$fathom\" render hop.fathom --frames 4:8 -o a.png -q --threads 1\nwait $!\necho $?");
   CHECK(both.out == "0\n");
   REQUIRE(folder.run("render hop.fathom --frames 8 -o a.png -q").code == 0);
-  // A line may be lost where both wrote at once; what is not there is rendered again.
+  // A journal line can be lost when both runs write at once. Frames not in the journal are rendered again.
   REQUIRE(folder.run("render hop.fathom --frames 0:9 -o a.png --resume -q").code == 0);
   CHECK_THAT(folder.run("render hop.fathom --frames 0:9 -o a.png --resume").err, Contains(": 0 rendered"));
 }
 
-// Long enough for a signal to come in its middle.
+// A render that takes long enough to be interrupted by a signal.
 std::string slow() {
   std::string text = kHop;
   const std::string spp = std::to_string(fathom::test::few(2000));
@@ -312,7 +312,7 @@ TEST_CASE("cli frames: a signal keeps the frame under way, and --resume goes on 
   INFO(stopped.err);
   REQUIRE(stopped.out == "75\n");
   CHECK_THAT(stopped.err, Contains("what is done is in a-0001.exr.checkpoint; --resume goes on"));
-  // Without --resume what is done is not lost.
+  // Without --resume, the program refuses to overwrite the unfinished frame.
   const Result again = folder.run("render slow.fathom --frames 0:3 -o a.exr");
   CHECK(again.code == 2);
   CHECK_THAT(again.err, Contains("frame 1 was begun before") && Contains("--resume"));

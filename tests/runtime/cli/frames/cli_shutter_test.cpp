@@ -1,4 +1,4 @@
-// Cameras with a shutter, from the command line.
+// End-to-end tests of cameras with a shutter.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -40,7 +40,7 @@ TEST_CASE("cli shutter: a still with a time blurs at its time, as the frame of t
   CHECK((folder.read("frame-0001.exr") == folder.read("fast.exr")));
   REQUIRE(folder.run("render fast.json --frames 1 -o other.exr -q").code == 0);
   CHECK((folder.read("other-0001.exr") != folder.read("fast.exr")));
-  // The ball moves by half a frame's way: by 0.5, its middle from 1 to 1.5.
+  // The ball moves during half a frame: by 0.5, its centre from 1 to 1.5.
   REQUIRE(folder.run("diff still.exr fast.exr -q").code == 0);
   REQUIRE(folder.run("render fast.json -D time=0.1 --fps 1000000 -o short.exr -q").code == 0);
   CHECK(folder.run("diff short.exr still.exr --metric mse --tol 1e-3 -q").code == 0);
@@ -60,7 +60,7 @@ TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace") {
   }
   REQUIRE(folder.run("merge 5.film 0.film 1.film -o sum.exr -q").code == 0);
   CHECK((folder.read("sum.exr") == folder.read("whole.exr")));
-  // What differs in its moments is of another render.
+  // Films with different moments belong to different renders.
   REQUIRE(folder.run("render fast.json -q --shutter-times 4 --sample-range 0:5 -o four.film").code == 0);
   const Result other = folder.run("merge four.film 5.film -o sum.exr");
   CHECK(other.code == 65);
@@ -96,7 +96,8 @@ object sphere(0.5)
   REQUIRE(folder.run("render pan.fathom -o pan.exr -q").code == 0);
   REQUIRE(folder.run("render pan.fathom --position 0,0,4 --look-at 0,0,0 -o held.exr -q").code == 0);
   CHECK((folder.read("pan.exr") != folder.read("held.exr")));
-  // A camera that the command line holds sees a scene in which nothing moves, but for the pictures' words on it.
+  // When the command line fixes the camera, nothing moves, and the pixels equal those of a static scene. Only the
+  // image's metadata differ.
   folder.write("stands.fathom", R"(fathom 1
 film (width = 32, height = 16)
 camera (position = [0, 0, 4])

@@ -1,4 +1,4 @@
-// -D: the scene's parameters on the command line.
+// -D: the scene's parameters set on the command line.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"

@@ -1,4 +1,5 @@
-// Files and messages of every verb: a full disk, names with control characters, memory and signals at bad moments.
+// File and message handling of every verb: a full disk, names with control characters, out of memory, and signals at
+// bad moments.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -16,12 +17,12 @@ using Catch::Contains;
 
 const std::string kOld = "what was there before";
 
-// Lines that print what is said and the status while files may not grow.
+// Returns a script that prints the program's messages and exit status while files cannot grow.
 std::string on_full_disk(const std::string& arguments) {
   return "( ulimit -f 0; \"$fathom\" " + arguments + "; echo \"status $?\" ) 2>&1 | cat\n";
 }
 
-// `emit` and `import` truncated the old file before they wrote.
+// Regression: `emit` and `import` truncated the old file before writing.
 TEST_CASE("cli files: on a full disk every verb leaves what was there", "[cli]") {
   const Folder folder;
   folder.write("model.vm", "a var-x\nb square a\nc const 1\nd sub b c\n");
@@ -65,7 +66,7 @@ TEST_CASE("cli files: on a full disk every verb leaves what was there", "[cli]")
   CHECK(folder.run("import model.vm -o /dev/full").code == 74);
 }
 
-// U+009B begins a command to a terminal, as ESC [ does.
+// U+009B starts a terminal command, as ESC [ does.
 TEST_CASE("cli files: names of scenes are escaped on standard output", "[cli]") {
   const Folder folder;
   folder.write("names.json",
@@ -165,7 +166,7 @@ TEST_CASE("cli files: every verb knows -q", "[cli]") {
   CHECK(folder.run("help help").out == folder.run("--help").out);
 }
 
-// The scene comes through a pipe: when its reader is there the program has begun, and the scene is still to come.
+// The scene comes through a FIFO. Once the FIFO has a reader, the program has started and still waits for the scene.
 std::string interrupted_while_reading(const std::string& options) {
   return "mkfifo pipe\n\"$fathom\" render pipe -q -o a.png " + options +
          " &\npid=$!\nexec 3>pipe\nkill -TERM $pid\ncat ball.json >&3\nexec 3>&-\nwait $pid; echo $?\nrm pipe\n";
@@ -180,14 +181,14 @@ TEST_CASE("cli files: a signal while the scene is read leaves the checkpoint tha
   REQUIRE(folder.run("render ball.json -q -o a.png --checkpoint a.film --resume").code == 0);
   REQUIRE(folder.run("render ball.json -q -o b.png").code == 0);
   CHECK((folder.read("a.png") == folder.read("b.png")));
-  // Nothing to keep, nothing to wait for.
+  // Without a checkpoint nothing is kept, and the signal ends the program at once.
   const Result killed = folder.run_script("trap '' PIPE\n" + interrupted_while_reading(""));
   CHECK_THAT(killed.out, Contains("143\n"));
 }
 
-// "terminate called after throwing an instance of 'std::bad_alloc'", and a signal.
+// Regression: "terminate called after throwing an instance of 'std::bad_alloc'", and a signal.
 TEST_CASE("cli files: memory that ends in a thread is an error with a message", "[cli]") {
-  if (is_sanitized()) return;  // AddressSanitizer reserves more addresses than may be allowed here
+  if (is_sanitized()) return;  // AddressSanitizer reserves more address space than the limit below
   const Folder folder;
   int ended = 0;
   for (int megabytes = 40; megabytes <= 240; megabytes += 50) {
@@ -196,7 +197,7 @@ TEST_CASE("cli files: memory that ends in a thread is an error with a message", 
                           "\n\"$fathom\" render ball.json -s 1 --size 640x480 --threads 24 -q -o a.png\n");
     INFO(megabytes << " MiB: " << result.code << "\n" << result.err);
     CHECK(result.err.find("terminate") == std::string::npos);
-    if (result.code == 0 || result.code == 127) continue;  // enough, or too little for the loader
+    if (result.code == 0 || result.code == 127) continue;  // enough memory, or too little even for the loader
     CHECK((result.code == 70 || result.code == 74));
     CHECK_THAT(result.err, Contains("error: "));
     ++ended;

@@ -1,4 +1,4 @@
-// Models of other formats as users of the program meet them.
+// End-to-end tests of models in other formats.
 #include <catch2/catch.hpp>
 
 #include "tests/support/golden.h"
@@ -41,7 +41,7 @@ TEST_CASE("cli: every verb reads the other formats, from files of any name and f
     CHECK(folder.run("check - ", folder.read(name)).code == 0);
   }
   CHECK(folder.run("eval circle.vm --at 0,0.75,0").out == "0.25 0 1 0 expression\n");
-  // The node's matrix takes points into its space: the red ball, with +0.4, is on the left.
+  // The node's matrix maps points into the node's space: the red ball, with +0.4, is on the left.
   CHECK(folder.run("eval balls --at -2,0,0").out.starts_with("1.1 -1 0 0 "));
 }
 
@@ -71,7 +71,8 @@ TEST_CASE("cli: a model is drawn as the scene that import writes of it, on a gro
   CHECK(folder.run("render balls -o a.pfm -s 1 --size 32x18").code == 0);
   CHECK(folder.run("render scene.json -o b.pfm -s 1 --size 32x18").code == 0);
   CHECK(folder.read("a.pfm") == folder.read("b.pfm"));
-  // What looks at the model alone does not see the ground; nor does a file of its programs have one.
+  // Verbs that evaluate the model alone do not see the added ground. A compiled file of the model has no ground
+  // either.
   CHECK_THAT(folder.run("eval balls --at 40,-0.5,0").out, !Contains("ground"));
   CHECK_THAT(folder.run("eval scene.json --at 40,-0.5,0").out, Contains("ground"));
   CHECK(folder.run("compile balls -o balls.fbc").code == 0);

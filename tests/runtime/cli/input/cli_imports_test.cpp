@@ -1,4 +1,4 @@
-// Imports as users of the program meet them: which files may be read, compiled scenes that carry them, and messages.
+// End-to-end tests of imports: which files may be read, compiled scenes that contain their imports, and messages.
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -31,7 +31,7 @@ TEST_CASE("cli: imports are relative to the file that has them, wherever one is"
   CHECK_THAT(folder.run("check s/a.fathom").out, Contains("s/a.fathom: no errors"));
   CHECK_THAT(folder.run("dump s/a.fathom").out, Contains("@3:15 sphere \"a\" in lib/balls.fathom"));
   CHECK_THAT(folder.run("convert s/a.fathom").out, Contains("\"radius\": \"2*0.5\""));
-  // Standard input lies in the folder we are in.
+  // For standard input, imports are relative to the current folder.
   CHECK_THAT(folder.run("check -", kScene).err, Contains("`lib/balls.fathom` cannot be imported: No such file"));
   CHECK(folder.run("check -", "fathom 1\nimport \"s/lib/balls.fathom\" as b\nobject b.scene\n").code == 0);
 }

@@ -1,4 +1,4 @@
-// --limit on the command line, and the limits that are the program's: file size, pictures, memory.
+// --limit on the command line, and the program's own limits: file size, image size, memory.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -24,7 +24,7 @@ TEST_CASE("cli: --limit sets a limit, by name") {
   CHECK(contains(refused.err, "more than 3 nodes"));
   CHECK(contains(refused.err, "--limit nodes=6"));
   CHECK_FALSE(folder.has("out.png"));
-  // Each verb that reads a scene has it, and the last of a name counts.
+  // Every verb that reads a scene has the option. The last value of a limit counts.
   for (const char* verb : {"check", "dump", "eval --at 0,0,0", "slice -o out.png", "emit cpp", "import"}) {
     INFO(verb);
     const Result result = folder.run(std::string(verb) + " two.json --limit nodes=9 --limit nodes=3");
@@ -68,7 +68,7 @@ TEST_CASE("cli: a file is read to the limit of its size, whatever it is") {
   CHECK(folder.run("eval ball.json --points many.txt --limit file-size=" + size).code == 65);
 }
 
-// Regions get whole MiB, half of what the film leaves. The nodes of 400 balls take 2.6 MB.
+// Regions get whole MiB, half of the memory that the film leaves. The nodes of 400 balls take 2.6 MB.
 TEST_CASE("cli: regions get no more memory than the limit leaves") {
   const Folder folder;
   std::string balls;
@@ -88,13 +88,14 @@ TEST_CASE("cli: regions get no more memory than the limit leaves") {
 
 TEST_CASE("cli: memory is counted before it is taken") {
   const Folder folder;
-  // 32 bytes of radiance, 56 of the first hit and 24 of the picture: 112 a pixel.
+  // 112 bytes per pixel: 32 of radiance, 56 of the first hit and 24 of the image.
   CHECK(folder.run("render -q ball.json -s 1 -o out.png -a --size 100x10 --limit memory=112000").code == 0);
   const Result refused = folder.run("render -q ball.json -s 1 -o no.png -a --size 100x10 --limit memory=111999");
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "1000 pixels of 112 bytes"));
   CHECK_FALSE(folder.has("no.png"));
-  // --noise takes four stages of 32 bytes and 48 of variance; --denoise a copy of the film beside its own work.
+  // --noise adds four stages of 32 bytes and 48 bytes of variance. --denoise adds a copy of the film and its own
+  // buffers.
   for (const auto& [arguments, each] : {std::pair{"--noise 1", 344}, {"--denoise", 392}}) {
     const std::string render = "render -q ball.json -s 16 -o out.png --size 100x10 " + std::string(arguments);
     CHECK(folder.run(render + " --limit memory=" + std::to_string(each * 1000)).code == 0);
@@ -108,7 +109,7 @@ TEST_CASE("cli: memory is counted before it is taken") {
   CHECK(scene.code == 65);
   CHECK(contains(scene.err, "large.json"));
   CHECK(contains(scene.err, "--limit memory="));
-  // Of a picture that is read: its file, what it is decoded from, its numbers.
+  // Reading an image counts its file, the decoder's buffer and the decoded numbers.
   CHECK(folder.run("tonemap out.png -o out.bmp --limit memory=1e5").code == 0);
   const Result picture = folder.run("tonemap out.png -o no.png --limit memory=18000");
   CHECK(picture.code == 65);
@@ -119,7 +120,8 @@ TEST_CASE("cli: memory is counted before it is taken") {
 
 TEST_CASE("cli: a picture's size is limited on the command line, too") {
   const Folder folder;
-  CHECK(folder.run("render -q ball.json -s 1 -o out.png --limit pixels=511").code == 65);  // the scene's has 512
+  // The scene's image has 512.
+  CHECK(folder.run("render -q ball.json -s 1 -o out.png --limit pixels=511").code == 65);
   CHECK(folder.run("render -q ball.json -s 1 -o out.png --size 20x10 --limit pixels=512").code == 0);
   const Result side = folder.run("render -q ball.json -s 1 -o out.png --size 33x1 --limit image-side=32");
   CHECK(side.code == 2);

@@ -24,14 +24,14 @@ std::string ball(const std::string& radius, const std::string& at) {
   return R"({"type": "sphere", "radius": )" + radius + R"(, "translate": [)" + at + R"(], "material": "black"})";
 }
 
-// The text of the -v line that is a camera.
+// Returns the camera's text from the -v output.
 std::string camera_of(const Result& result) {
   const std::size_t begin = result.err.find("\"camera\": {");
   REQUIRE(begin != std::string::npos);
   return result.err.substr(begin, result.err.find('\n', begin) - begin);
 }
 
-// Of numbers in a .pfm, bottom row first: the smallest in the middle and at the border.
+// Smallest values of a .pfm image (bottom row first): in the middle, at the border, overall.
 struct Darkness {
   float middle = 1, border = 1, all = 1;
 };
@@ -92,7 +92,8 @@ TEST_CASE("cli: -v prints the camera as a scene file has it, and that renders to
   folder.write("b.json", scene_of(objects, camera + ", "));
   REQUIRE(folder.run("render b.json -q -o b.pfm").code == 0);
   CHECK(folder.read("a.pfm") == folder.read("b.pfm"));
-  CHECK(camera_of(folder.run("render b.json -v -o b.pfm --size 9x40")) == camera);  // a scene's camera stays
+  // The camera of a scene is not reframed.
+  CHECK(camera_of(folder.run("render b.json -v -o b.pfm --size 9x40")) == camera);
 }
 
 TEST_CASE("cli: a camera that says nothing is not the lack of one") {
@@ -115,7 +116,7 @@ TEST_CASE("cli: --position, --look-at and --frame place the camera of any scene"
   CHECK_THAT(camera("--position=-1,0,0.5 --look-at=-2,0,1"),
              Contains(R"("position": [-1, 0, 0.5], "target": [-2, 0, 1])"));
   CHECK(camera("--frame").find("\"position\": [0, 0, 4]") == std::string::npos);
-  CHECK_THAT(camera("--frame"), Contains("\"position\": [0, 0, "));  // the direction stays
+  CHECK_THAT(camera("--frame"), Contains("\"position\": [0, 0, "));  // the viewing direction stays
   CHECK(camera("--frame") == camera("--frame --position 0,0,77"));
   CHECK_THAT(camera("--frame --position 9,0,0"), Contains(", 0, 0], \"target\": [0, 0, 0]"));
 }
@@ -138,7 +139,7 @@ TEST_CASE("cli: options that make no camera are exit code 2, with a remedy") {
   CHECK(folder.run("render ground.json -q -o a.png").code == 0);
 }
 
-// The camera's `up` is its way of looking then, and says nothing.
+// The default `up` is then parallel to the viewing direction and cannot orient the camera.
 TEST_CASE("cli: a view from straight above has -z up, one from straight below too") {
   const Folder folder;
   for (const std::string from : {"0,9,0", "0,-9,0"}) {

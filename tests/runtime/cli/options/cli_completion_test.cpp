@@ -1,4 +1,4 @@
-// What is made of the option tables: completion scripts and the manual page.
+// Files generated from the option tables: completion scripts and the manual page.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"
@@ -62,9 +62,9 @@ END
   CHECK_THAT(next(), Contains("-o --output") && Contains("--sample-range"));
   CHECK(next() == "aces agx");
   CHECK(next() == "agx");
-  CHECK(next() == "");  // a number
+  CHECK(next() == "");  // a number has no completions
   CHECK(next() == "--resume");
-  CHECK(next() == "");  // a file, which bash itself completes
+  CHECK(next() == "");  // a file name, which bash itself completes
   CHECK(next() == "cpp");
   CHECK(next() == "bash zsh fish");
   CHECK(next() == "limits");

@@ -1,4 +1,5 @@
-// Commands that README.md and docs/TUTORIAL.md show, run on the scenes of these pages: the output is as shown.
+// Runs the commands shown in README.md and docs/TUTORIAL.md on the scenes of these pages: the output must be as
+// shown.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
@@ -18,7 +19,7 @@ struct Block {
   std::string language, text;
 };
 
-// What stands between ```language and ``` of a page, in order.
+// Returns the text between each ```language and ``` of a page, in order.
 std::vector<Block> blocks_of(const std::string& page) {
   std::vector<Block> blocks;
   bool within = false;
@@ -35,15 +36,15 @@ std::vector<Block> blocks_of(const std::string& page) {
   return blocks;
 }
 
-// The file of scene blocks that begin with "// file" or "// file: ...".
+// Returns the file name of a scene block that begins with "// file" or "// file: ...".
 std::string file_name(const std::string& scene) {
   REQUIRE(scene.starts_with("// "));
   const std::size_t end = scene.find_first_of(":\n");
   return scene.substr(3, end - 3);
 }
 
-// Runs each "$ command" of a console block and compares what it prints with the lines that follow. "..." ends what is
-// compared.
+// Runs each "$ command" of a console block and compares the output with the lines that follow. A line "..." ends the
+// comparison. Returns the number of commands.
 int check_console(const Folder& folder, const std::string& block) {
   int commands = 0;
   std::size_t at = 0;

@@ -1,4 +1,4 @@
-// Help of every verb: as wide as the terminal, and of the options that there are.
+// Help of every verb: as wide as the terminal, and about the options that exist.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -12,7 +12,7 @@ using Catch::Contains;
 using fathom::tests::Folder;
 using fathom::tests::Result;
 
-// The second word of the lines "  fathom VERB ..." of the overview.
+// Returns the second word of the lines "  fathom VERB ..." of the overview.
 std::set<std::string> verbs() {
   std::set<std::string> names;
   std::istringstream help(Folder().run("--help").out);
@@ -30,14 +30,14 @@ std::string longest_line(const std::string& text) {
   std::string longest;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (line.size() > longest.size()) longest = line;  // help is ASCII
+    if (line.size() > longest.size()) longest = line;  // bytes are columns, because help is ASCII
   }
   return longest;
 }
 
 }  // namespace
 
-// Lines of 200 characters and more were printed whatever the terminal.
+// Regression: help printed lines of 200 characters and more on any terminal.
 TEST_CASE("cli: help has no line wider than the terminal") {
   const Folder folder;
   std::string script;

@@ -1,4 +1,4 @@
-// Pictures on standard output: `-o -` of every verb that writes pictures.
+// Images on standard output: `-o -` of every verb that writes images.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"
@@ -36,7 +36,7 @@ TEST_CASE("cli: -o - writes the bytes of the file to standard output") {
   CHECK((folder.run("tonemap b.exr -o - --format jpg").out == folder.read("c.jpg")));
 }
 
-// What is else on standard output goes to standard error.
+// Text that normally goes to standard output goes to standard error instead.
 TEST_CASE("cli: slice and diff write their pictures to standard output, and their numbers elsewhere") {
   const Folder folder;
   const Result slice = folder.run("slice ball.json --show sign --size 8x8 -o -");

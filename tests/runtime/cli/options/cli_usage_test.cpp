@@ -1,4 +1,4 @@
-// The program's command line: what is wrong with it, --help, --version.
+// The program's command line: errors in it, --help, --version.
 #include <catch2/catch.hpp>
 
 #include "tests/support/program.h"
@@ -113,7 +113,7 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
     CHECK_THAT(result.err, Contains(c.message) && Contains("error: "));
     CHECK(result.out == "");
   }
-  CHECK(folder.files() == 2);  // the scenes, and no pictures
+  CHECK(folder.files() == 2);  // the scenes, and no images
 }
 
 TEST_CASE("cli: help and version go to stdout and succeed") {

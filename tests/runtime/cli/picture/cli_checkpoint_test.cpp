@@ -1,4 +1,4 @@
-// Interrupted renders as their users meet them: signals, kill -9, full disks, checkpoints of other renders.
+// End-to-end tests of interrupted renders: signals, kill -9, full disks, checkpoints of other renders.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -12,7 +12,7 @@ namespace {
 using namespace fathom::tests;
 using Catch::Contains;
 
-// Long enough to be interrupted: .6 s of one core as released, 1 s under the sanitizers.
+// Long enough to be interrupted: 0.6 s on one core in a release build, 1 s under the sanitizers.
 const std::string kSpp = std::to_string(fathom::test::few(400) < 400 ? 96 : 400);
 const std::string kSlow = R"({
   "version": 1,
@@ -27,18 +27,18 @@ const std::string kSlow = R"({
               {"type": "sphere", "radius": 0.4, "translate": [1, 2, 1], "material": "lamp"}]
 })";
 
-// Waits until there is the file, or $pid has ended.
+// Waits until the file exists or $pid has ended.
 std::string until(const std::string& file) {
   return "while ! [ -e " + file + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\n";
 }
 
-// Runs, sends `signal` once there is a checkpoint, and prints the status.
+// Starts a render, sends `signal` once the checkpoint exists, and prints the exit status.
 std::string interrupted(const std::string& arguments, const std::string& signal, const std::string& checkpoint) {
   return "\"$fathom\" render " + arguments + " -q --checkpoint-interval 0.01s &\npid=$!\n" + until(checkpoint) +
          "kill -" + signal + " $pid\nwait $pid; echo $?\n";
 }
 
-// Waits until something is said in the file, a minute at most.
+// Waits until the file is not empty, for at most a minute.
 std::string until_said(const std::string& file) {
   return "n=0; while ! [ -s " + file + " ] && [ $n -lt 3000 ]; do sleep 0.02; n=$((n+1)); done\n";
 }
@@ -85,7 +85,7 @@ TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was
     REQUIRE(folder.run("render slow.json -o whole.exr -q" + way).code == 0);
     const Result killed = folder.run_script(interrupted(render, "KILL", "now.film"));
     REQUIRE(killed.out == "137\n");
-    // And once more, before its first checkpoint or after.
+    // Kills the render once more, before or after its first checkpoint.
     folder.run_script("timeout -s KILL 0.2 \"$fathom\" render " + render +
                       " --resume -q --checkpoint-interval 0.01s");
     const Result resumed = folder.run("render " + render + " --resume");
@@ -136,7 +136,7 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
     CHECK(result.code == 65);
     CHECK_THAT(result.err, Contains("another render") && Contains(other.message));
   }
-  // What changes no sample makes no difference.
+  // Options that change no sample do not make another render.
   CHECK(folder.run("render slow.json -s 4 -o b.exr --checkpoint done.film --resume -t 5 --threads 3 --exposure 1")
             .code == 0);
   folder.write("spaced.json", kSlow + "\n\n");
@@ -172,7 +172,7 @@ TEST_CASE("cli checkpoint: of another render it gives way under the name that no
   const Result other = folder.run("render slow.json -s 5 -o a.exr");
   CHECK(other.code == 0);
   CHECK_THAT(other.err, Contains("`a.exr.checkpoint` is there from another render and will be replaced"));
-  CHECK(folder.read("a.exr.checkpoint") == film);  // it was done before the first was due
+  CHECK(folder.read("a.exr.checkpoint") == film);  // the render ended before its first checkpoint was due
   CHECK(folder.run("render slow.json -s 5 -o a.exr --time-limit 1e-9").code == 0);
   CHECK(folder.read("a.exr.checkpoint") != film);
   const Result none = folder.run("render slow.json -s 4 -o c.exr --resume");
@@ -184,7 +184,7 @@ TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is 
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   std::string damaged = folder.read("done.film"), newer = damaged;
-  damaged[damaged.size() - 9] ^= 1;  // in the sums
+  damaged[damaged.size() - 9] ^= 1;  // a byte of the film's sums
   newer[8] = 9;
   for (const std::string& broken : {damaged, newer}) {
     folder.write("done.film", broken);
@@ -249,7 +249,7 @@ TEST_CASE("cli checkpoint: the picture so far is written before every pixel has 
 
 TEST_CASE("cli checkpoint: no help names one in a folder that is gone") {
   const SlowFolder folder;
-  const std::string options = "slow.json -o a.exr -s 65536 --checkpoint kept/now.film";  // never gets done
+  const std::string options = "slow.json -o a.exr -s 65536 --checkpoint kept/now.film";  // too many samples to finish
   REQUIRE(folder.run_script("mkdir kept\n" + interrupted(options, "INT", "kept/now.film")).out == "75\n");
   const Result gone = folder.run_script(
       "touch mark\n\"$fathom\" render " + options + " -q --resume --checkpoint-interval 0.01s &\npid=$!\n" +
@@ -262,7 +262,7 @@ TEST_CASE("cli checkpoint: no help names one in a folder that is gone") {
 
 TEST_CASE("cli checkpoint: nobody who listens need stay") {
   const SlowFolder folder;
-  // Messages go into a pipe that nobody reads any more.
+  // Messages go to a pipe whose reader has gone.
   const std::string render = "\"$fathom\" render slow.json -o a.exr --checkpoint-interval 0.01s -v &\npid=$!\n";
   folder.run_script("( sleep 0.1\n" + render + "wait $pid; echo $? >done ) 2>&1 | true\n" + until_said("done"));
   CHECK(folder.read("done") == "0\n");
@@ -270,7 +270,7 @@ TEST_CASE("cli checkpoint: nobody who listens need stay") {
   folder.run_script("( sleep 0.1\n" + render + until("a.exr.checkpoint") +
                     "kill -INT $pid\nwait $pid; echo $? >stopped ) 2>&1 | true\n" + until_said("stopped"));
   CHECK(folder.read("stopped") == "75\n");
-  // Under nohup the terminal's end is none of its business.
+  // Under nohup, SIGHUP does not stop the render.
   const Result nohup =
       folder.run_script("trap '' HUP\n" + interrupted("slow.json -o c.exr", "HUP", "c.exr.checkpoint"));
   CHECK(nohup.out == "0\n");
@@ -294,7 +294,7 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
   REQUIRE(folder.run_script(interrupted("slow.json -o a.exr", "INT", "a.exr.checkpoint")).out == "75\n");
   const std::string before = folder.read("a.exr.checkpoint");
   std::filesystem::remove(folder.path() / "a.exr");
-  // No file may grow beyond 20 blocks of 512 bytes, as on a full disk.
+  // No file can grow beyond 20 blocks of 512 bytes, as on a full disk.
   const Result full = folder.run_script(
       "ulimit -f 20\n\"$fathom\" render slow.json -o a.exr --resume --checkpoint-interval 0.01s; echo $?");
   INFO(full.err);
@@ -322,7 +322,7 @@ TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   CHECK((folder.read("a.exr") != folder.read("whole.exr")));
   REQUIRE(folder.run("render slow.json -o a.exr --checkpoint a.film --resume -q").code == 0);
   CHECK((folder.read("a.exr") == folder.read("whole.exr")));
-  // Under the name that nobody chose, too, whatever the interval.
+  // The default checkpoint name is used as well, whatever the interval.
   const Result unnamed = folder.run("render slow.json -o b.exr --threads 1 --time-limit 0.2s");
   CHECK(unnamed.code == 0);
   CHECK_THAT(unnamed.err, Contains("what is done is in b.exr.checkpoint; --resume goes on"));
@@ -340,7 +340,8 @@ TEST_CASE("cli checkpoint: a name that cannot be is refused before the first sam
   CHECK(folder.run("render slow.json -o a.exr --checkpoint ''").code == 2);
   const std::string longest(255 - 4, 'n');
   CHECK(folder.run("render slow.json -s 1 -q --checkpoint a.film -o " + longest + ".exr").code == 0);
-  const Result both = folder.run("render slow.json -s 1 -q -o " + longest + ".exr");  // and its checkpoint's
+  // The name of its checkpoint is too long.
+  const Result both = folder.run("render slow.json -s 1 -q -o " + longest + ".exr");
   CHECK(both.code == 74);
   CHECK_THAT(both.err, Contains("too long"));
 }

@@ -1,4 +1,4 @@
-// The lines a render closes with.
+// The lines that a render prints at its end.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -17,7 +17,7 @@ std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), 
 
 }  // namespace
 
-// They were 25, most of them zeros, before the name of the file.
+// Regression: a render printed 25 lines, most of them zeros, before the name of the file.
 TEST_CASE("cli: a render closes with four lines, and -v with all counts before them") {
   const Folder folder;
   const Result plain = folder.run("render ball.json -o a.png");

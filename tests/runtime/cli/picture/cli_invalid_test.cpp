@@ -1,5 +1,5 @@
-// What `check` and `render` say of a field that is not a number somewhere. Rays that came there were black without a
-// word.
+// Messages of `check` and `render` about a field that is NaN somewhere. Regression: rays that met a NaN were black
+// without a warning.
 #include <catch2/catch.hpp>
 #include <string>
 

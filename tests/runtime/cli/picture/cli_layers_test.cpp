@@ -1,4 +1,5 @@
-// Pictures and their layers as `fathom render` and `fathom tonemap` write them: formats, crops, tone, attributes.
+// Images and their layers as `fathom render` and `fathom tonemap` write them: formats, crops, tone curves,
+// attributes.
 #include <catch2/catch.hpp>
 
 #include "runtime/film/film_channels.h"
@@ -21,7 +22,7 @@ FloatImage read(const Folder& folder, const std::string& name) {
   return std::get<FloatImage>(image);
 }
 
-// Whether `part` has the values of `whole` where it lies at (x0, y0).
+// True if `part`, placed at (x0, y0), has the values of `whole`.
 bool equal_there(const FloatImage& part, const FloatImage& whole, int x0, int y0) {
   for (std::size_t c = 0; c < part.channels.size(); ++c) {
     const std::vector<float>* values = whole.channel(part.channels[c].name);
@@ -108,7 +109,7 @@ TEST_CASE("cli layers: tonemap makes of the exr the bits that render writes") {
     "film": {"width": 40, "height": 24, "exposure": 0.7, "tone": "filmic"}, "render": {"spp": 3},
     "objects": [{"type": "sphere", "radius": 1}, {"type": "plane", "normal": [0, 1, 0], "offset": -1}]})");
   REQUIRE(folder.run("render toned.json -o r.exr -o r.png -o r.bmp -a -d -n").code == 0);
-  CHECK(folder.files() == 3 + 1 + 2 * 4);  // the layers of the exr are in it
+  CHECK(folder.files() == 3 + 1 + 2 * 4);  // the EXR file contains its layers
   for (const char* layer : {"", "albedo", "depth", "normal"}) {
     const std::string flag = *layer ? std::string(" --layer ") + layer : "";
     const std::string name = *layer ? std::string("r-") + layer : "r";
@@ -141,7 +142,8 @@ TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit") {
     CHECK(part.width == 32);
     CHECK(part.height == 16);
     CHECK(part.area == fathom::runtime::PixelRect{9, 3, 25, 14});
-    CHECK(part.channels.size() == fathom::runtime::film_channels().size() - 3);  // nothing is denoised
+    // All channels except the three of the denoiser.
+    CHECK(part.channels.size() == fathom::runtime::film_channels().size() - 3);
     CHECK(equal_there(part, whole, 9, 3));
     CHECK(png_size(folder.read("c.png")) == std::pair(16, 11));
     for (const char* name : {".png", ".pfm", "-albedo.png", "-normal.png", "-normal.pfm"}) {
@@ -196,7 +198,7 @@ TEST_CASE("cli layers: the attributes say what was rendered, and where the camer
       const double p[4] = {static_cast<double>((*image.channel("P.X"))[at]),
                            static_cast<double>((*image.channel("P.Y"))[at]),
                            static_cast<double>((*image.channel("P.Z"))[at]), 1};
-      // Floats of 1e5 are 0.008 apart, and the matrix' last row has that error, too.
+      // Floats near 1e5 are 0.008 apart, and the matrix' last row has the same error.
       const double w = times(matrix, p, 3);
       CHECK(times(matrix, p, 0) / w * 40 == Approx(x + 0.5).margin(1));
       CHECK((1 - times(matrix, p, 1) / w) * 20 == Approx(y + 0.5).margin(1));

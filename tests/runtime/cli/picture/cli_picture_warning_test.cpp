@@ -1,5 +1,5 @@
-// What `check` and `render` say of pictures that show nothing: no light, nothing in view, black or one color
-// throughout.
+// Warnings of `check` and `render` about images that show nothing: no light, nothing in view, black or a single
+// color.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -12,7 +12,7 @@ namespace {
 using Catch::Contains;
 using fathom::tests::Folder;
 
-// A ball at the origin, seen by a camera, with more of the scene's properties.
+// A ball at the origin with the given camera, and `more` properties of the scene.
 std::string ball(const std::string& camera, const std::string& more) {
   return R"({"version": 1, "camera": {)" + camera +
          R"(}, "film": {"width": 32, "height": 18}, "render": {"spp": 1}, )" + more +
@@ -22,7 +22,7 @@ std::string ball(const std::string& camera, const std::string& more) {
 constexpr const char* kInFront = R"("position": [0, 0, 4], "target": [0, 0, 0])";
 constexpr const char* kWhite = R"("background": [1, 1, 1], )";
 
-// What render prints on standard error with -q.
+// Returns the messages of `render -q` on standard error.
 std::string said(const Folder& folder, const std::string& scene, const std::string& options = "") {
   folder.write("scene.json", scene);
   const auto result = folder.run("render scene.json -o a.png -q " + options);
@@ -40,7 +40,7 @@ TEST_CASE("cli: check and render warn of a scene without light") {
   CHECK_THAT(said(folder, ball(kInFront, bulb + "[0, 0.5, 0]}}, ")),
              Contains("[W0515]: no light reaches the camera") && Contains("inside a solid"));
   CHECK(said(folder, ball(kInFront, bulb + "[0, 2, 3]}}, ")) == "");
-  // Emissive materials count where they are used.
+  // Emissive materials count only when an object uses them.
   const std::string glow = R"("materials": {"glow": {"type": "emissive", "emission": [2, 1, 1]}}, )";
   CHECK_THAT(said(folder, ball(kInFront, glow)), Contains("W0515"));
   CHECK(said(folder,
@@ -88,7 +88,7 @@ TEST_CASE("cli: render warns of a picture that is of one color throughout, and s
              Contains("the picture is white throughout: its brightest light is") && Contains("try --exposure -1"));
   CHECK_THAT(said(folder, ball(close, sky("0.5, 0.5, 0.5")), "-s 4"),
              Contains("the picture is one color throughout, #"));
-  // A camera within a solid, placed there or by no one.
+  // A camera inside a solid, placed by the scene or by default.
   const std::string within = R"("position": [0, 0, 0.5], "target": [0, 0, 0])";
   CHECK_THAT(said(folder, ball(within, sky("0.5, 0.5, 0.5"))),
              Contains("the picture is black throughout: the camera is inside `") && Contains("--position"));
@@ -96,10 +96,10 @@ TEST_CASE("cli: render warns of a picture that is of one color throughout, and s
     "objects": [{"name": "ground", "type": "plane", "normal": [0, 1, 0], "offset": 6}]})";
   CHECK_THAT(said(folder, ground, "-r 16 -s 1"), Contains("the camera is inside `ground`"));
   CHECK_THAT(said(folder, ground, "-r 16 -s 1 --position 0,8,9 --look-at 0,6,0"), !Contains("inside"));
-  // Light from behind does not come round the ball.
+  // Light from behind the ball does not reach the visible side.
   const std::string sun = R"("lights": {"sun": {"type": "directional", "direction": [0, 0, 1]}}, )";
   CHECK_THAT(said(folder, ball(close, sun)), Contains("black throughout: no light reached the camera"));
-  // What shows something has no warning, and neither have parts of pictures.
+  // Images that show something get no warning, and neither do crops.
   CHECK(said(folder, ball(kInFront, sky("0.5, 0.5, 0.5"))) == "");
   CHECK(said(folder, ball(kInFront, kWhite), "--crop 0,0,2,2") == "");
   CHECK(said(folder, ball(close, sun), "--crop 0,0,2,2") == "");

@@ -1,4 +1,4 @@
-// fathom render --profile and --cost-map: what is printed and written, and what is refused.
+// `fathom render` with --profile and --cost-map: output, files and refusals.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ using fathom::tests::Folder;
 using fathom::tests::png_size;
 using fathom::tests::Result;
 
-// The values of a grey portable float map.
+// Returns the values of a grey portable float map.
 std::vector<float> values_of(const std::string& map, const std::string& header) {
   REQUIRE(map.substr(0, header.size()) == header);
   std::vector<float> values((map.size() - header.size()) / 4);
@@ -41,7 +41,7 @@ TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves 
     sum += b["stage_seconds"][stage].get<double>();
   }
   CHECK(sum > 0);
-  CHECK(sum <= b["threads"].get<double>() * b["seconds"].get<double>() * (1 + 1e-4));  // printed to six digits
+  CHECK(sum <= b["threads"].get<double>() * b["seconds"].get<double>() * (1 + 1e-4));  // the JSON has six digits
   CHECK(b["peak_memory"].get<double>() > 1e6);
   CHECK(a["evaluations"] == b["evaluations"]);
 }
@@ -56,7 +56,7 @@ TEST_CASE("cli: --cost-map writes what was counted, as numbers and as colours") 
     CHECK_THAT(result.err, Contains("wrote cost-" + name + ".pfm (32x16): " + name + " a sample, least 0, mean "));
     double sum = 0;
     for (const float value : values_of(folder.read("cost-" + name + ".pfm"), "Pf\n32 16\n-1.0\n")) {
-      sum += 2 * static_cast<double>(value);  // samples a pixel
+      sum += 2 * static_cast<double>(value);  // samples per pixel
     }
     CHECK(sum == stats[name].get<double>());
   }

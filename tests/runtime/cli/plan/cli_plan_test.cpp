@@ -1,5 +1,5 @@
-// fathom plan: units of a plan, in whatever order and by whoever rendered, are the render bit for bit; what is
-// missing or broken is found; what does not belong together is refused.
+// `fathom plan`: the units of a plan, rendered in any order by any machine, equal the whole render bit for bit.
+// Missing or broken units are found, and units that do not belong together are refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -55,7 +55,7 @@ TEST_CASE("cli plan: the units of frames, in any order, are the frames of one ru
                  Contains("a unit takes"));
   CHECK(nlohmann::json::parse(folder.run("plan --status p.json --json").out)["frames"] == "0:3:1");
   REQUIRE(folder.run("render hop.fathom --frames all -D wide=1.5 --denoise -q -o w.##.png -o w.##.exr").code == 0);
-  // The plan alone is enough.
+  // The plan file alone is enough.
   fs::create_directories(folder.path() / "far");
   fs::rename(folder.path() / "p.json", folder.path() / "far/p.json");
   fs::remove_all(folder.path() / "lib");
@@ -113,7 +113,7 @@ TEST_CASE("cli plan: without --tiles and --sample-block units are cut by the tim
   const std::string plan = "plan ball.json --size 200x130 -s 8 -o p.json ";
   CHECK_THAT(folder.run(plan + "--unit-time 10h --workers 4").err,
              Contains("in 1x1 tiles and 1 block of 8: 1 unit\n") && Contains("4 machines like it: "));
-  // Tiles come first, down to 64 pixels a side.
+  // Tiles are split first, down to 64 pixels per side.
   CHECK_THAT(folder.run(plan + "--unit-time 1e-9").err, Contains("in 3x2 tiles and 8 blocks of 1: 48 units\n"));
   CHECK_THAT(folder.run(plan + "--unit-time 1e-9 --tiles 1x2").err, Contains("in 1x2 tiles and 8 blocks of 1"));
 }
@@ -139,7 +139,7 @@ TEST_CASE("cli plan: what was cut short or is of another unit is found and rende
   CHECK(json["left"] == "1,3");
   CHECK(json["faults"][0]["reason"].get<std::string>().find("not as long as") != std::string::npos);
   CHECK(json["faults"][1]["reason"] == "it is of another unit");
-  // A byte of the sums: their checksum tells.
+  // A changed byte of the sums is found by their checksum.
   {
     std::fstream film(films / "000002.film", std::ios::in | std::ios::out | std::ios::binary);
     film.seekp(-40, std::ios::end);
@@ -164,7 +164,7 @@ TEST_CASE("cli plan: a queue's variable says which unit, or which task of severa
       "PBS_ARRAY_INDEX ";
   const std::string unit = " \"$fathom\" render --plan p.json -q --unit env";
   CHECK(folder.run_script(none + "SLURM_ARRAY_TASK_ID=5" + unit).code == 0);
-  CHECK(folder.run_script(none + "SGE_TASK_ID=1" + unit).code == 0);  // they count from 1
+  CHECK(folder.run_script(none + "SGE_TASK_ID=1" + unit).code == 0);  // SGE numbers its tasks from 1
   CHECK(
       folder.run_script(none + "SGE_TASK_ID=undefined AWS_BATCH_JOB_ARRAY_INDEX=2 " + unit + " --per-task 3").code ==
       0);
