@@ -8,7 +8,6 @@
 
 #include "runtime/base/tiles.h"
 #include "runtime/film/adaptive.h"
-#include "runtime/film/noise.h"
 
 namespace fathom::runtime {
 namespace {
@@ -30,109 +29,109 @@ Stats run_threads(const PassWork& pass, int threads) {
   return sum;
 }
 
-// That the open tiles may take at most.
-std::uint64_t samples_left(const NoiseState& state, const Settings& settings) {
-  const Tiles tiles(settings.crop, kNoiseTile);
-  std::uint64_t pixels = 0;
+// PathSample::number of the first sample of half B.
+constexpr std::uint32_t kSecondHalf = 1u << 30;
+
+// Number of samples that the decided halves have when they are complete.
+std::uint64_t samples_of(const AdaptiveState& state, PixelRect area) {
+  const Tiles tiles(area, kAdaptiveTile);
+  std::uint64_t samples = 0;
   for (std::size_t i = 0; i < state.tiles.size(); ++i) {
-    if (state.tiles[i].open()) pixels += tiles.at(static_cast<std::int64_t>(i)).pixels();
+    const auto [first, second] = state.tiles[i].ends;
+    samples += tiles.at(static_cast<std::int64_t>(i)).pixels() * (std::uint64_t{first} + second);
   }
-  return pixels * 2 * (static_cast<std::uint64_t>(settings.spp / 2) - state.judged);
+  return samples;
 }
 
 }  // namespace
 
 Stats Passes::run(SampleRange samples) {
   const Settings& settings = world_.settings;
-  if (settings.noise) return run_noise();
-  if (settings.adaptive) return run_adaptive();
+  if (settings.noise_threshold) return run_adaptive();
   return run_pass(0, {{settings.sampler, settings.seed, settings.spp}}, samples, {});
 }
 
 RenderEnd Passes::end() const {
-  const auto& tiles = render_.noise.tiles;
-  const bool quiet =
-      !tiles.empty() && std::none_of(tiles.begin(), tiles.end(), [](auto tile) { return tile.open(); });
-  return picture_.end() == RenderEnd::Done && quiet ? RenderEnd::Noise : picture_.end();
+  if (picture_.end() != RenderEnd::Done || world_.settings.noise_threshold.value_or(0) <= 0) return picture_.end();
+  const Tiles tiles(world_.settings.crop, kAdaptiveTile);
+  for (std::int64_t i = 0; i < tiles.count(); ++i) {
+    if (image_noise(render_.film, tiles.at(i)) > *world_.settings.noise_threshold) return RenderEnd::Done;
+  }
+  return RenderEnd::Noise;
 }
 
-// In two stages, of which the first says where the second is to look.
 Stats Passes::run_adaptive() {
   const Settings& settings = world_.settings;
-  const int first = first_samples(settings.spp);
-  Stats stats = run_pass(0, {{settings.sampler, settings.seed, first}}, {0, static_cast<std::uint32_t>(first)}, {});
-  if (picture_.stopped()) return stats;
-  stats.merge(run_second_stage(first));
-  return stats;
-}
-
-Stats Passes::run_second_stage(int first) {
-  const Settings& settings = world_.settings;
-  const PixelRect area = render_.film.area();
-  std::vector<int> more = second_samples(estimates_of(render_.film), area.width(), area.height(), settings.spp);
-  const auto most = static_cast<std::uint32_t>(*std::max_element(more.begin(), more.end()));
+  const double threshold = *settings.noise_threshold;
+  AdaptiveState& state = render_.adaptive;
   if (render_.film.stages() == 1) {
     picture_.change([&] {
-      render_.film.begin_second_stage(first_share(settings.spp));
-      render_.covered.resize(2);
-    });
-  }
-  const Pass second{{settings.sampler, second_seed(settings.seed), settings.spp - first},
-                    static_cast<std::uint32_t>(first)};
-  return run_pass(1, second, {0, most}, SampleLimits(area, std::move(more)));
-}
-
-// In rounds, each of which says where the next is to look.
-Stats Passes::run_noise() {
-  const Settings& settings = world_.settings;
-  NoiseState& state = render_.noise;
-  if (render_.film.stages() == 1) {
-    picture_.change([&] {
-      render_.film.begin_halves();
-      render_.covered.resize(kNoiseStages);
-      state.tiles.resize(static_cast<std::size_t>(Tiles(settings.crop, kNoiseTile).count()));
+      render_.film.begin_stages(adaptive_stages(threshold));
+      render_.covered.resize(render_.film.stages());
+      state.tiles.resize(static_cast<std::size_t>(Tiles(settings.crop, kAdaptiveTile).count()));
     });
   }
   Stats stats;
-  std::size_t open = state.tiles.size();
-  if (end() == RenderEnd::Noise) return stats;
-  while (open > 0) {
-    const std::uint32_t end = next_end(state.judged, settings.min_spp, settings.spp);
-    if (end == 0) break;
-    stats.merge(run_halves(end));
-    if (picture_.stopped()) break;
-    picture_.change([&] {
-      open = judge(render_.film, end, *settings.noise, state);
-      picture_.expect(samples_left(state, settings));
-    });
+  for (std::uint32_t end; (end = next_round(state.judged, settings.spp, threshold)) != 0;) {
+    stats.merge(run_round(end));
+    if (picture_.stopped()) return stats;
+    picture_.change([&] { judge(render_.film, end, threshold, state); });
   }
+  const bool decided = std::ranges::none_of(state.tiles, &AdaptiveTile::open);
+  picture_.change([&] {
+    if (!decided) assign_shares(render_.film, settings.spp, threshold, state);
+    picture_.expect(samples_of(state, settings.crop) - render_.film.samples());
+  });
+  stats.merge(run_shares());
   return stats;
 }
 
-// Both halves of all open tiles, from the last judgement up to `end`.
-Stats Passes::run_halves(std::uint32_t end) {
+Pass Passes::pass_of(std::size_t half) const {
   const Settings& settings = world_.settings;
-  const std::vector<NoiseTile> decided = render_.noise.tiles;
-  const SampleRange round{render_.noise.judged, end};
-  const Tiles tiles(settings.crop, kNoiseTile);
   const int each = settings.spp / 2;
+  const std::uint64_t seed = half == 0 ? settings.seed : second_seed(settings.seed);
+  return {{settings.sampler, seed, each}, half == 0 ? 0 : kSecondHalf};
+}
+
+Stats Passes::run_round(std::uint32_t end) {
+  const AdaptiveState& state = render_.adaptive;
+  const SampleRange round{state.judged, end};
+  const Tiles tiles(world_.settings.crop, kAdaptiveTile);
   Stats stats;
-  for (std::size_t stage = 0; stage < kNoiseStages; ++stage) {
+  for (std::size_t stage = 0; stage < render_.film.stages(); ++stage) {
     const std::size_t half = stage % 2;
     Coverage others;
     bool some = false;
-    for (std::size_t i = 0; i < decided.size(); ++i) {
-      const std::size_t wanted = decided[i].ends[half] == 0 ? half : half + 2;
-      if (decided[i].open() && stage == wanted) {
+    for (std::size_t i = 0; i < state.tiles.size(); ++i) {
+      const std::size_t wanted = state.tiles[i].ends[half] == 0 ? half : half + 2;
+      if (state.tiles[i].open() && stage == wanted) {
         some = true;
       } else {
         others.add({tiles.at(static_cast<std::int64_t>(i)), round});
       }
     }
-    if (!some) continue;
-    const std::uint64_t seed = half == 0 ? settings.seed : second_seed(settings.seed);
-    const Pass pass{{settings.sampler, seed, each}, static_cast<std::uint32_t>(half == 0 ? 0 : each)};
-    stats.merge(run_pass(stage, pass, round, {}, others));
+    if (some) stats.merge(run_pass(stage, pass_of(half), round, {}, others));
+  }
+  return stats;
+}
+
+Stats Passes::run_shares() {
+  const AdaptiveState& state = render_.adaptive;
+  const PixelRect area = world_.settings.crop;
+  const Tiles tiles(area, kAdaptiveTile);
+  Stats stats;
+  for (std::size_t half = 0; half < 2; ++half) {
+    std::vector<int> ends(area.pixels());
+    std::uint32_t last = state.judged;
+    for (std::size_t i = 0; i < state.tiles.size(); ++i) {
+      const std::uint32_t end = state.tiles[i].ends[half];
+      const PixelRect tile = tiles.at(static_cast<std::int64_t>(i));
+      last = std::max(last, end);
+      for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) ends[area.index(x, y)] = static_cast<int>(end);
+      }
+    }
+    stats.merge(run_pass(half, pass_of(half), {state.judged, last}, SampleLimits(area, std::move(ends))));
   }
   return stats;
 }

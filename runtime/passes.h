@@ -1,5 +1,5 @@
 // The passes of a render: all samples at once, or in stages that depend on what those before have shown.
-// Tested by: tests/runtime/render_test.cpp, adaptive_test.cpp, noise_test.cpp
+// Tested by: tests/runtime/render_test.cpp, film/adaptive_test.cpp
 #pragma once
 
 #include "runtime/film/partial_render.h"
@@ -23,9 +23,9 @@ class Passes {
 
  private:
   Stats run_adaptive();
-  Stats run_second_stage(int first);
-  Stats run_noise();
-  Stats run_halves(std::uint32_t end);
+  Stats run_round(std::uint32_t end);  // both halves of all open tiles, from the last judgement up to `end`
+  Stats run_shares();                  // the samples that the halves have left
+  Pass pass_of(std::size_t half) const;
   Stats run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
                  const Coverage& besides = {});
 

@@ -13,7 +13,6 @@
 #include "runtime/base/tiles.h"
 #include "runtime/field/region_store.h"
 #include "runtime/film/adaptive.h"
-#include "runtime/film/noise.h"
 #include "runtime/passes.h"
 #include "vm/program/check.h"
 
@@ -65,7 +64,7 @@ class Ticker {
 
 std::uint64_t samples_of(const Settings& settings) {
   const std::uint32_t each = settings.samples.size();
-  return std::uint64_t{settings.crop.pixels()} * (settings.noise ? each / 2 * 2 : each);  // as many of both halves
+  return std::uint64_t{settings.crop.pixels()} * (settings.noise_threshold ? each / 2 * 2 : each);  // halves of the same size
 }
 
 // Whether a surface's number says which it is in either scene.
@@ -128,15 +127,14 @@ void check(const Settings& settings) {
   const auto spp = static_cast<std::uint32_t>(settings.spp);
   CHECK(settings.samples.first < settings.samples.last && settings.samples.last <= spp, "samples within the plan");
   const bool whole = crop == PixelRect{0, 0, settings.width, settings.height} && settings.samples.size() == spp;
-  CHECK(whole || (!settings.adaptive && !settings.noise), "samples shared out in a part");
-  CHECK(!settings.adaptive || !settings.noise, "samples shared out in two ways");
+  CHECK(whole || !settings.noise_threshold, "samples shared out in a part");
 }
 
 // The runs of samples, each with its scene.
 std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Settings& settings,
                                const RenderOptions& options) {
   if (options.moments.empty()) return {{&scene, settings.samples}};
-  CHECK(!settings.adaptive && !settings.noise, "moments of samples that are shared out");
+  CHECK(!settings.noise_threshold, "moments of samples that are shared out");
   std::vector<Moment> moments;
   std::uint32_t end = 0;
   for (const Moment& moment : options.moments) {
@@ -186,16 +184,16 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   settings.filter = options.filter.value_or(scene.film.filter);
   settings.filter_width = options.filter || options.filter_width ? options.filter_width : scene.film.filter_width;
   settings.cut_after = options.cut_after;
-  settings.adaptive = options.adaptive.value_or(scene.settings.adaptive) && settings.spp >= kLeastAdaptiveSpp;
-  settings.noise = options.noise;
-  settings.min_spp = std::min(options.min_spp.value_or(kUsualLeastSpp), settings.spp);
+  const bool uniform = options.uniform || settings.spp < kMinAdaptiveSpp;
+  const auto threshold = options.noise_threshold ? options.noise_threshold : scene.settings.noise_threshold;
+  settings.noise_threshold = uniform ? std::nullopt : threshold;
   settings.light_sampling = options.light_sampling;
   settings.clamp = options.clamp;
   settings.marching = options.marching;
   settings.regions = options.regions;
   settings.region_memory = options.region_memory;
   settings.layers = options.layers;
-  settings.layers.variance |= settings.adaptive || settings.noise;
+  settings.layers.variance |= settings.noise_threshold.has_value();
   settings.profile = options.profile;
   settings.far = options.far ? options.far : scene.settings.far;
   settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
@@ -204,9 +202,9 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
 
 bool can_resume(const PartialRender& render, const Settings& settings) {
   const std::size_t stages = render.film.stages();
-  const auto tiles = static_cast<std::size_t>(settings.noise ? Tiles(settings.crop, kNoiseTile).count() : 0);
+  const auto tiles = static_cast<std::size_t>(stages > 1 ? Tiles(settings.crop, kAdaptiveTile).count() : 0);
   return render.film.area() == settings.crop && render.film.layers() == settings.layers &&
-         render.covered.size() == stages && render.noise.tiles.size() == (stages == kNoiseStages ? tiles : 0) &&
+         render.covered.size() == stages && render.adaptive.tiles.size() == tiles &&
          (stages == 1 || stages == stages_of(settings));
 }
 

@@ -293,7 +293,7 @@ void fields(Archive& a, RenderSettings& s) {
   field(a, "tile", s.tile, 1, kMaxTile);
   field(a, "seed", s.seed, 0, ~std::uint64_t{0});
   field(a, "sampler", s.sampler, ChoiceNames(kSamplerNames));
-  field(a, "adaptive", s.adaptive);
+  field(a, "noise_threshold", s.noise_threshold, 0, 1e6);
   field(a, "far", s.far, kTiny, kAny);
 }
 

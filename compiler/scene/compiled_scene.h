@@ -94,7 +94,7 @@ struct RenderSettings {
   int tile = 16;     // side of a tile, pixels
   std::uint64_t seed = 0;
   SamplerKind sampler = SamplerKind::Blue;
-  bool adaptive = false;      // takes more samples where the image is noisy
+  std::optional<double> noise_threshold;  // shares the samples out by noise (runtime/film/adaptive.h)
   std::optional<double> far;  // maximum distance of rays from the camera, scene units; default: see render
 };
 

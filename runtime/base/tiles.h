@@ -29,6 +29,7 @@ class Tiles {
  public:
   Tiles(PixelRect area, int side) : area_(area), side_(side) {}
 
+  int columns() const { return (area_.width() + side_ - 1) / side_; }
   std::int64_t count() const { return std::int64_t{columns()} * ((area_.height() + side_ - 1) / side_); }
   PixelRect at(std::int64_t index) const {
     const int x = area_.x0 + static_cast<int>(index % columns()) * side_;
@@ -42,8 +43,6 @@ class Tiles {
   }
 
  private:
-  int columns() const { return (area_.width() + side_ - 1) / side_; }
-
   PixelRect area_;
   int side_;
   std::atomic<std::int64_t> next_{0};

@@ -114,7 +114,7 @@ std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Stream
           streams, kBadScene,
           fmt::format("`{}` cannot be merged: {}", part.path,
                       alike ? "its pixels' samples depend on the whole picture" : "its layers or size differ"),
-          {alike ? "merge it alone, or render the parts without --adaptive and --noise"
+          {alike ? "merge it alone, or render the parts with --uniform"
                  : "leave it out, or render it again as the others"});
     }
   }

@@ -118,9 +118,9 @@ std::optional<ExitCode> take_scene(PlanRequest& request, RenderPlan& plan, const
 std::optional<ExitCode> take_settings(const Picture& picture, RenderPlan& plan, const Streams& streams) {
   const runtime::RenderOptions& options = picture.request.options;
   const runtime::Settings settings = runtime::resolve(picture.scene, options);
-  if (settings.adaptive) {
-    return fail(streams, kUsage, "adaptive sampling does not go with a plan: a pixel's samples depend on all others",
-                {"add --no-adaptive"});
+  if (settings.noise_threshold) {
+    return fail(streams, kUsage, "a noise threshold does not go with a plan: a pixel's samples depend on all others",
+                {"add --uniform"});
   }
   plan.grid.width = settings.width, plan.grid.height = settings.height;
   plan.grid.spp = plan.grid.block = static_cast<std::uint32_t>(settings.spp);

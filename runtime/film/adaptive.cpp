@@ -2,122 +2,206 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <glm/exponential.hpp>
 
 #include "runtime/base/color.h"
-#include "runtime/film/noise.h"
+#include "runtime/base/tiles.h"
+#include "runtime/film/film.h"
 #include "runtime/sampling/sampler.h"
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {
 
-constexpr double kLeastSampleShare = 0.25, kMostShare = 16;  // of the average
-constexpr double kLeastSamples = 2;
-// Noise below which a pixel counts as quiet, as a share of the average.
-constexpr double kQuiet = 1e-3;
+constexpr double kMinShare = 0.5, kMaxShare = 4;  // of the average
+constexpr std::uint32_t kFirstJudgement = 8;      // samples of a half
 
-// With the binomial weights 1 4 6 4 1 over 16 along `count` values `stride` apart; those at the ends stand for what
-// lies outside.
-void smooth_line(double* values, int count, int stride) {
-  const auto at = [&](int i) { return values[static_cast<std::ptrdiff_t>(std::clamp(i, 0, count - 1)) * stride]; };
-  double before2 = at(0), before = at(0);
-  for (int i = 0; i < count; ++i) {
-    const double here = at(i);
-    const double sum = before2 + 4 * before + 6 * here + 4 * at(i + 1) + at(i + 2);
-    values[static_cast<std::ptrdiff_t>(i) * stride] = sum / 16;
-    before2 = before;
-    before = here;
-  }
+std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(std::max(2, spp / 8)); }
+
+// Variance of the pixel's mean luminance over its luminance. The variance is an upper bound: the channels count as
+// fully correlated.
+double visible_variance(glm::dvec3 radiance, glm::dvec3 variance) {
+  const auto deviation = static_cast<double>(luminance(glm::vec3(glm::sqrt(variance))));
+  const auto brightness = static_cast<double>(luminance(glm::vec3(radiance)));
+  return deviation * deviation / (std::max(brightness, 0.0) + kDark);
 }
 
-void smooth(std::vector<double>& values, int width, int height) {
-  for (int y = 0; y < height; ++y)
-    smooth_line(&values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)], width, 1);
-  for (int x = 0; x < width; ++x) smooth_line(&values[static_cast<std::size_t>(x)], height, width);
-}
-
-// The pixels' noise as the eye sees it; positive, in no unit.
-std::vector<double> visible_noise(std::span<const PixelEstimate> estimates, int width, int height) {
-  std::vector<double> noise, brightness;
-  for (const PixelEstimate& pixel : estimates) {
-    noise.push_back(std::max(pixel.variance, 0.0));
-    brightness.push_back(std::max(pixel.mean, 0.0));
-  }
-  smooth(noise, width, height);
-  smooth(brightness, width, height);
+// Mean over the tile's pixels of the visible standard deviation of one sample. Unlike the root of a mean variance it
+// does not jump with a single bright sample.
+double deviation_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages) {
   double sum = 0;
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    noise[i] = std::sqrt(noise[i] / (brightness[i] + kDark));
-    sum += noise[i];
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const RadianceMeans pixel = film.radiance_of(stages, x, y);
+      sum += std::sqrt(pixel.samples * visible_variance(pixel.radiance, pixel.variance));
+    }
   }
-  const double quiet = sum > 0 ? kQuiet * sum / static_cast<double>(noise.size()) : 1;
-  for (double& value : noise) value = std::max(value, quiet);
-  return noise;
+  return sum / static_cast<double>(tile.pixels());
 }
 
-// The factor for which the clamped multiples of the noise add up to `total`.
-double fitting_factor(const std::vector<double>& noise, double least, double most, double total) {
-  double low = 0, high = most / *std::min_element(noise.begin(), noise.end());
+// Convolves [row][column] with the binomial weights 1 2 1 in both directions. Values at the edge stand for those
+// outside.
+std::vector<double> smoothed(const std::vector<double>& values, int columns) {
+  const int rows = static_cast<int>(values.size()) / columns;
+  std::vector<double> result;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      double sum = 0;
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+          const int at = std::clamp(row + y, 0, rows - 1) * columns + std::clamp(column + x, 0, columns - 1);
+          sum += (2 - std::abs(x)) * (2 - std::abs(y)) * values[static_cast<std::size_t>(at)];
+        }
+      }
+      result.push_back(sum / 16);
+    }
+  }
+  return result;
+}
+
+// What one tile may get of the samples of a half.
+struct Claim {
+  double pixels, weight, min, max;
+};
+
+// Returns the factor by which the clamped weights use up the budget.
+double fitting_factor(const std::vector<Claim>& claims, double budget) {
+  double low = 0, high = 0;
+  for (const Claim& claim : claims) high = std::max(high, claim.max / claim.weight);
   for (int i = 0; i < 60; ++i) {
     const double factor = (low + high) / 2;
     double sum = 0;
-    for (const double value : noise) sum += std::clamp(factor * value, least, most);
-    (sum < total ? low : high) = factor;
+    for (const Claim& claim : claims) sum += claim.pixels * std::clamp(factor * claim.weight, claim.min, claim.max);
+    (sum < budget ? low : high) = factor;
   }
-  return high;
+  return low;
 }
 
-// Whole numbers with the given total, each nearly its share: the fractions are carried on to the next pixel.
-std::vector<int> rounded(const std::vector<double>& shares, std::int64_t total) {
-  std::vector<int> counts;
-  double sum = 0;
-  std::int64_t given = 0;
-  for (const double share : shares) {
-    sum += share;
-    const std::int64_t due = counts.size() + 1 == shares.size() ? total : static_cast<std::int64_t>(sum + 1e-6);
-    counts.push_back(static_cast<int>(due - given));
-    given = due;
+// The shares of one half, decided by the other one.
+class Shares {
+ public:
+  Shares(const Film& film, int spp, double threshold, const AdaptiveState& state)
+      : film_(film), tiles_(film.area(), kAdaptiveTile), average_(spp / 2), threshold_(threshold), state_(state) {}
+
+  // [tile] number of samples of `half`.
+  std::vector<std::uint32_t> of(std::size_t half) const {
+    const std::vector<double> weights = weights_by(1 - half);
+    double budget = average_ * static_cast<double>(film_.area().pixels());
+    std::vector<Claim> claims;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      claims.push_back(claim(i, half, weights[i]));
+      if (state_.tiles[i].ends[half] != 0) budget -= claims.back().pixels * claims.back().max;
+    }
+    std::vector<Claim> open;
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      if (state_.tiles[i].ends[half] == 0) open.push_back(claims[i]);
+    }
+    const double factor = fitting_factor(open, budget);
+    std::vector<std::uint32_t> counts;
+    double carried = 0;  // samples that rounding down has left
+    for (const Claim& claim : claims) {
+      const double share = std::clamp(factor * claim.weight, claim.min, claim.max);
+      constexpr double kRounding = 1e-6;  // of the factor's bisection
+      const double count = std::min(claim.max, std::floor(share + carried / claim.pixels + kRounding));
+      carried += claim.pixels * (share - count);
+      counts.push_back(static_cast<std::uint32_t>(count));
+    }
+    return counts;
   }
-  return counts;
-}
+
+ private:
+  PixelRect tile(std::size_t i) const { return tiles_.at(static_cast<std::int64_t>(i)); }
+
+  // Square roots of the deviations, none of them 0.
+  std::vector<double> weights_by(std::size_t judge) const {
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
+      deviations.push_back(film_.stages() > 2 ? deviation_of(film_, tile(i), {judge, judge + 2})
+                                              : deviation_of(film_, tile(i), {judge}));
+    }
+    std::vector<double> weights = smoothed(deviations, tiles_.columns());
+    const double loudest = *std::max_element(weights.begin(), weights.end());
+    for (double& weight : weights) weight = loudest > 0 ? std::sqrt(std::max(weight, 1e-6 * loudest)) : 1;
+    return weights;
+  }
+
+  Claim claim(std::size_t i, std::size_t half, double weight) const {
+    const std::uint32_t decided = state_.tiles[i].ends[half];
+    const auto pixels = static_cast<double>(tile(i).pixels());
+    if (decided != 0) return {pixels, weight, static_cast<double>(decided), static_cast<double>(decided)};
+    const double taken = state_.judged;
+    double max = kMaxShare * average_;
+    if (threshold_ > 0) {
+      const std::size_t judge = 1 - half;
+      const double noise = noise_of(film_, tile(i), {judge, judge + 2}) / threshold_;
+      max = std::clamp(std::ceil(taken * noise * noise), taken, max);
+    }
+    return {pixels, weight, std::min(max, std::max(taken, kMinShare * average_)), max};
+  }
+
+  const Film& film_;
+  const Tiles tiles_;
+  const double average_;  // samples of a half per pixel
+  const double threshold_;
+  const AdaptiveState& state_;
+};
 
 }  // namespace
 
-int first_samples(int spp) {
-  CHECK(spp >= kLeastAdaptiveSpp, "too few samples to share out");
-  return std::max(4, spp / 4);
-}
-
-double first_share(int spp) { return static_cast<double>(first_samples(spp)) / spp; }
-
-std::vector<PixelEstimate> estimates_of(const Film& film) {
-  CHECK(film.layers().variance, "the film lacks what estimates are made of");
-  std::vector<PixelEstimate> estimates;
-  const PixelRect area = film.area();
-  for (int y = area.y0; y < area.y1; ++y) {
-    for (int x = area.x0; x < area.x1; ++x) {
-      const RadianceMeans pixel = film.radiance_of({0}, x, y);
-      const float deviation = luminance(glm::vec3(glm::sqrt(pixel.variance)));  // of the mean
-      const double variance = static_cast<double>(deviation) * static_cast<double>(deviation);
-      estimates.push_back({static_cast<double>(luminance(glm::vec3(pixel.radiance))), pixel.samples * variance});
-    }
-  }
-  return estimates;
-}
+std::size_t adaptive_stages(double threshold) { return threshold > 0 ? 4 : 2; }
 
 std::uint64_t second_seed(std::uint64_t seed) { return mix64(~seed); }
 
-std::vector<int> second_samples(std::span<const PixelEstimate> estimates, int width, int height, int spp) {
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  CHECK(pixels > 0 && estimates.size() == pixels, "an estimate for each pixel");
-  const double average = spp - first_samples(spp);
-  const double least = std::max(kLeastSamples, kLeastSampleShare * average), most = kMostShare * average;
-  std::vector<double> shares = visible_noise(estimates, width, height);
-  const double factor = fitting_factor(shares, least, most, average * static_cast<double>(pixels));
-  for (double& share : shares) share = std::clamp(factor * share, least, most);
-  return rounded(shares, static_cast<std::int64_t>(pixels) * static_cast<std::int64_t>(average));
+std::uint32_t next_round(std::uint32_t judged, int spp, double threshold) {
+  CHECK(spp >= kMinAdaptiveSpp, "too few samples to share out");
+  const std::uint32_t last = pilot_samples(spp);
+  if (judged >= last) return 0;
+  return threshold > 0 ? std::min(last, judged == 0 ? kFirstJudgement : 2 * judged) : last;
+}
+
+double noise_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages) {
+  double sum = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const RadianceMeans half = film.radiance_of(stages, x, y);
+      sum += visible_variance(half.radiance, half.variance) / 2;
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(tile.pixels()));
+}
+
+double image_noise(const Film& film, PixelRect tile) {
+  double sum = 0;
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const PixelMeans pixel = film.means(x, y);
+      sum += visible_variance(pixel.noisy, pixel.variance);
+    }
+  }
+  return std::sqrt(sum / static_cast<double>(tile.pixels()));
+}
+
+void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state) {
+  const Tiles tiles(film.area(), kAdaptiveTile);
+  for (std::size_t i = 0; i < state.tiles.size() && threshold > 0; ++i) {
+    AdaptiveTile& tile = state.tiles[i];
+    if (!tile.open()) continue;
+    const PixelRect pixels = tiles.at(static_cast<std::int64_t>(i));
+    const std::array<bool, 2> quiet = {noise_of(film, pixels, {1, 3}) <= threshold,
+                                       noise_of(film, pixels, {0, 2}) <= threshold};
+    for (std::size_t half = 0; half < 2; ++half) {
+      if (tile.ends[half] == 0 && quiet[half]) tile.ends[half] = end;
+    }
+  }
+  state.judged = end;
+}
+
+void assign_shares(const Film& film, int spp, double threshold, AdaptiveState& state) {
+  const Shares shares(film, spp, threshold, state);
+  const std::array<std::vector<std::uint32_t>, 2> counts = {shares.of(0), shares.of(1)};
+  for (std::size_t i = 0; i < state.tiles.size(); ++i) {
+    for (std::size_t half = 0; half < 2; ++half) state.tiles[i].ends[half] = counts[half][i];
+  }
 }
 
 }  // namespace fathom::runtime

@@ -1,54 +1,87 @@
-// Adaptive sampling without bias: more samples where the picture is noisy.
+// Adaptive sampling without bias: the samples of an image are shared out by tile, more to noisy tiles, and no more to
+// tiles whose noise is below a threshold.
 //
-// Stage 1 gives every pixel first_samples() samples. Stage 2 shares out the rest by what stage 1 shows of the errors.
-// A pixel is w * (mean of stage 1) + (1 - w) * (mean of stage 2) with w = first_share(), fixed beforehand: whatever
-// number of samples stage 1 leads to, the mean of stage 2 is expected to be the true one. (One mean over all samples
-// is not: pixels that miss a light in stage 1 get few samples and stay dark. Kirk and Arvo, "Unbiased Sampling
-// Techniques for Image Synthesis", 1991.)
+// A pixel's samples are two halves A and B with independent random numbers. The samples of B decide how many samples
+// A takes, and the samples of A decide for B. The expected mean of each half is therefore the true value, whatever is
+// decided, and a pixel is the mean of the two means. Deciding by the samples themselves is biased: a pixel whose
+// samples all missed a light looks quiet, gets no more samples and stays dark (Kirk and Arvo, "Unbiased Sampling
+// Techniques for Image Synthesis", 1991).
 //
-//     {sampler, seed, first_samples(spp)}                     // stage 1: of every pixel all
-//     more = second_samples(estimates_of(film), width, height, spp);
-//     {sampler, second_seed(seed), spp - first_samples(spp)}  // stage 2: samples [0, more[pixel])
+//     for (end = next_round(0, ...); end != 0; end = next_round(end, ...)) {
+//       take the samples up to `end` of both halves of all open tiles: of half h for stage h of the film, or for
+//       stage h + 2 if half h is decided
+//       judge(film, end, threshold, state);
+//     }
+//     assign_shares(film, spp, threshold, state);
+//     take the samples up to AdaptiveTile::ends of both halves
 //
-// Stage 2 needs numbers that know nothing of stage 1's: in one sequence later points avoid earlier ones, and bias is
-// back.
+// A half that is decided before the other half of its tile takes samples for the other half's decision only. Stages 2
+// and 3 of the film hold these samples, and no mean uses them.
 //
+// The numbers of samples follow the square root of the standard deviation, halfway between the same number everywhere
+// and the numbers that minimise the error if the deviations were known. Estimated deviations miss rare bright paths.
+// By simulation with 6 samples of each half, 16x16 pixels per tile and a Cornell box with a mirror ball and a glass
+// box, following the variance raises relMSE by 10 %, following this rule lowers it by 2 %.
 // Tested by: tests/runtime/film/adaptive_test.cpp
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <initializer_list>
 #include <vector>
 
-#include "runtime/film/film.h"
+#include "runtime/base/pixel_rect.h"
 
 namespace fathom::runtime {
 
-// What stage 1 says of a pixel: of its samples' luminance the mean, and the variance with n - 1 in the denominator.
-struct PixelEstimate {
-  double mean = 0, variance = 0;
+class Film;
+
+inline constexpr double kDark = 0.01;     // luminance below which noise is not visible
+inline constexpr int kAdaptiveTile = 16;  // pixels per side, counted from the corner of the image
+inline constexpr int kMinAdaptiveSpp = 8;
+
+struct AdaptiveTile {
+  std::array<std::uint32_t, 2> ends = {0, 0};  // number of samples of each half; 0: not decided
+
+  bool open() const { return ends[0] == 0 || ends[1] == 0; }
+  bool operator==(const AdaptiveTile&) const = default;
 };
 
-inline constexpr int kLeastAdaptiveSpp = 8;  // below, there is too little to share out
+struct AdaptiveState {
+  std::uint32_t judged = 0;         // samples of each half at the last judgement
+  std::vector<AdaptiveTile> tiles;  // of Tiles(area, kAdaptiveTile); empty: all pixels take the same number
 
-// Samples of stage 1 for a render of `spp` samples a pixel: a quarter, at least 4. spp >= kLeastAdaptiveSpp.
-int first_samples(int spp);
+  bool operator==(const AdaptiveState&) const = default;
+};
 
-// The weight w of stage 1's mean; 1 - w is that of stage 2's.
-double first_share(int spp);
+// Returns the number of stages of the film: the two halves, and with a threshold above 0 two more for samples that
+// only decide.
+std::size_t adaptive_stages(double threshold);
 
-// What stage 1 of a film, which keeps `variance`, says of its pixels' luminance, [y][x]; whether there is a stage 2
-// makes no difference. The variance is what it would be if the colours of a pixel's samples differed in brightness
-// alone: at most too large.
-std::vector<PixelEstimate> estimates_of(const Film& film);
-
+// Seed of the random numbers of half B.
 std::uint64_t second_seed(std::uint64_t seed);
 
-// Samples of stage 2 for each pixel, [y * width + x] like `estimates`: together width * height *
-// (spp - first_samples(spp)), none below 2, so that each has a variance. In proportion to the noise as the eye sees
-// it, standard deviation over the root of brightness (Dammertz, Hanika, Keller, Lensch, "A Hierarchical Automatic
-// Stopping Condition for Monte Carlo Global Illumination", 2010), which is taken over the neighbours, too, but within
-// a quarter and sixteen times of the average: few samples may know nothing of a rare bright path, or too much.
-std::vector<int> second_samples(std::span<const PixelEstimate> estimates, int width, int height, int spp);
+// Returns the number of samples of each half at the next judgement, or 0 after the last one, which has a quarter of
+// the samples. `spp` is the average over the image, at least kMinAdaptiveSpp.
+std::uint32_t next_round(std::uint32_t judged, int spp, double threshold);
+
+// Returns the noise of an image made of two such halves: the root of the mean over the tile's pixels of
+// v / (2 (b + kDark)), with v the variance of the half's mean luminance and b its luminance. The half is the sum of
+// the given stages. This is the error as the eye sees it, a standard deviation over the root of the luminance
+// (Dammertz, Hanika, Keller, Lensch, "A Hierarchical Automatic Stopping Condition for Monte Carlo Global
+// Illumination", 2010).
+double noise_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages);
+
+// Returns the noise of the image that the film shows, in the same measure.
+double image_noise(const Film& film, PixelRect tile);
+
+// Decides every half of an open tile whose noise, by the other half, is at most `threshold`. The halves of open tiles
+// have `end` samples.
+void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state);
+
+// Decides every half that is left. All halves together have at most `spp` samples per pixel of the image. A half gets
+// between half and four times the average, fewer if fewer are enough for the threshold.
+void assign_shares(const Film& film, int spp, double threshold, AdaptiveState& state);
 
 }  // namespace fathom::runtime

@@ -83,30 +83,7 @@ double variance_of_mean(std::int64_t sum, WideSum squares, std::uint32_t count) 
 
 }  // namespace
 
-Film::Film(PixelRect area, FilmLayers layers) : area_(area), layers_(layers) {
-  const std::size_t count = area.pixels();
-  stages_.push_back(empty_stage());
-  if (layers.first_hit) first_hits_.resize(count);
-  if (layers.position) positions_.resize(count);
-  if (layers.ids) ids_.resize(count);
-  if (layers.cost) costs_.resize(count);
-}
-
-Film::Stage Film::empty_stage() const {
-  const std::size_t count = area_.pixels();
-  Stage stage;
-  stage.pixels.resize(count);
-  if (layers_.variance) stage.squares.resize(count);
-  if (layers_.halves) stage.odd_halves.resize(count);
-  return stage;
-}
-
-void Film::begin_second_stage(double first_share) {
-  CHECK(stages_.size() == 1, "a film has two stages at most");
-  CHECK(first_share >= 0 && first_share <= 1, "the share of the first stage");
-  stages_.push_back(empty_stage());
-  first_share_ = first_share;
-}
+Film::Film(PixelRect area, FilmLayers layers) : layers_(layers) { restart(area); }
 
 void Film::restart(PixelRect area) {
   const auto empty = [&](auto& sums, bool kept) {
@@ -114,7 +91,6 @@ void Film::restart(PixelRect area) {
     if (kept) sums.resize(area.pixels());
   };
   area_ = area;
-  first_share_ = 1;
   stages_.resize(1);
   empty(stages_.front().pixels, true);
   empty(stages_.front().squares, layers_.variance);
@@ -126,9 +102,10 @@ void Film::restart(PixelRect area) {
   denoised_.clear();
 }
 
-void Film::begin_halves() {
-  begin_second_stage(0.5);
-  stages_.resize(4, empty_stage());
+void Film::begin_stages(std::size_t count) {
+  CHECK(stages_.size() == 1 && (count == 2 || count == 4) && samples() == 0, "stages begin with an empty film");
+  stages_.front().odd_halves = {};
+  stages_.resize(count, Stage(stages_.front()));
 }
 
 bool Film::add(int x, int y, const PathSample& sample) {
@@ -199,7 +176,7 @@ bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::si
   for (std::size_t i = 0; layers_.variance && i < count; ++i) {
     room &= add_to(stage.squares[to + i].sums, other.squares[from + i].sums);
   }
-  for (std::size_t i = 0; layers_.halves && i < count; ++i) {
+  for (std::size_t i = 0; !stage.odd_halves.empty() && i < count; ++i) {
     stage.odd_halves[to + i].samples += other.odd_halves[from + i].samples;
     room &= add_to(stage.odd_halves[to + i].radiance, other.odd_halves[from + i].radiance);
   }
@@ -245,8 +222,8 @@ PixelMeans Film::means(int x, int y) const {
 }
 
 std::size_t Film::memory_per_pixel(FilmLayers layers, std::size_t stages) {
-  const std::size_t stage =
-      sizeof(Pixel) + (layers.variance ? sizeof(Squares) : 0) + (layers.halves ? sizeof(OddHalf) : 0);
+  const std::size_t stage = sizeof(Pixel) + (layers.variance ? sizeof(Squares) : 0) +
+                            (layers.halves && stages == 1 ? sizeof(OddHalf) : 0);
   return stages * stage + (layers.first_hit ? sizeof(FirstHit) : 0) + (layers.position ? sizeof(Position) : 0) +
          (layers.ids ? sizeof(Ids) : 0) + (layers.cost ? sizeof(Cost) : 0);
 }
@@ -275,25 +252,23 @@ RadianceMeans Film::radiance_of(std::initializer_list<std::size_t> stages, int x
     add_to(pixel.radiance, stage.pixels[at].radiance);
     pixel.samples += stage.pixels[at].samples;
     if (layers_.variance) add_to(squares.sums, stage.squares[at].sums);
-    if (!layers_.halves) continue;
+    if (stage.odd_halves.empty()) continue;
     add_to(odd.radiance, stage.odd_halves[at].radiance);
     odd.samples += stage.odd_halves[at].samples;
   }
   return means_of(pixel, squares, odd);
 }
 
-// The stages' means are independent, given how many samples each has: their variances add up by the squares of the
+// The means of the stages are independent, given their numbers of samples: the variances add up with the squares of the
 // weights.
 void Film::read_radiance(int x, int y, PixelMeans& means) const {
   const RadianceMeans first = radiance_of({0}, x, y);
   const RadianceMeans second = stages_.size() > 1 ? radiance_of({1}, x, y) : RadianceMeans();
-  const double w = second.samples == 0 ? 1 : first.samples == 0 ? 0 : first_share_;
+  const double w = second.samples == 0 ? 1 : first.samples == 0 ? 0 : 0.5;
   means.noisy = w * first.radiance + (1 - w) * second.radiance;
   means.variance = w * w * first.variance + (1 - w) * (1 - w) * second.variance;
-  for (int i = 0; i < 2; ++i) {
-    const double share = second.half_samples[i] == 0 ? 1 : first.half_samples[i] == 0 ? 0 : first_share_;
-    means.halves[i] = share * first.halves[i] + (1 - share) * second.halves[i];
-  }
+  const bool halves = layers_.halves && stages_.size() > 1;
+  for (int i = 0; i < 2; ++i) means.halves[i] = halves ? (i == 0 ? first : second).radiance : first.halves[i];
   means.radiance = means.noisy;
   const std::size_t at = area_.index(x, y);
   if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};

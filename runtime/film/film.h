@@ -6,14 +6,9 @@
 // cut off, which add() and merge() tell, and what it is then depends on the order: terms of the other sign come after
 // the cut or before it.
 //
-// A film of two stages (runtime/film/adaptive.h) keeps what is made of radiance for each, with the samples counted
-// apart:
-//
-//     film.add(...);                        // stage 1
-//     film.begin_second_stage(first_share);
-//     film.add(...);                        // stage 2; means() now are of both
-//
-// So films of any parts of the work add up to the film of the whole: merge(). As bytes: film_bytes.cpp.
+// A film in stages (runtime/film/adaptive.h) keeps radiance and the number of samples of each stage apart. Stages 0
+// and 1 are two halves of the samples, whose means weigh the same. No mean uses stages 2 and 3. Films of any parts of
+// the work add up to the film of the whole: merge(). As bytes: film_bytes.cpp.
 //
 // Tested by: tests/runtime/film/film_test.cpp
 #pragma once
@@ -58,26 +53,28 @@ struct PathSample {
   std::uint64_t instructions = 0;  // over those evaluations
 };
 
-// What a film keeps beside radiance (32 bytes a pixel). A second stage takes those of radiance, variance and halves
-// again.
+// The layers of a film in addition to radiance (32 bytes per pixel). Each further stage takes the bytes of radiance
+// and variance again.
 struct FilmLayers {
   bool first_hit = true;  // albedo, normal, depth: 56 bytes a pixel
   bool cost = false;      // evaluations, instructions: 16
   bool position = false;  // of the first surface: 24
   bool ids = false;       // of the first surface: 12
   bool variance = false;  // of radiance, as if samples were independent: 48
-  bool halves = false;    // radiance of the samples with odd numbers, what the denoiser needs: 32
+  // radiance of two halves of the samples, for the denoiser: 32 in a film of one stage, 0 with stages
+  bool halves = false;
 
   bool operator==(const FilmLayers&) const = default;
 };
 inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 
-// Means over a pixel's samples; 0 for what the film does not keep. Of two stages `radiance`, `noisy` and `halves` are
-// w * (mean of stage 1) + (1 - w) * (mean of stage 2), the rest are means over the samples of both.
+// Means over a pixel's samples, 0 for layers that the film does not keep. In a film with stages `radiance` and
+// `noisy` are the mean of the means of stages 0 and 1. The other values are means over the samples of both stages.
 struct PixelMeans {
   glm::dvec3 radiance{0};
-  glm::dvec3 noisy{0};                                    // radiance before it was denoised; otherwise the same
-  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // of the samples with even and with odd numbers
+  glm::dvec3 noisy{0};  // radiance before it was denoised; otherwise the same
+  // of stages 0 and 1; in a film of one stage of the samples with even and odd numbers
+  glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};
   // Of `noisy`, the mean, as if the samples were independent: that of the samples by their number; 0 for fewer than
   // two. Of samplers that spread samples evenly, sobol and blue, the mean's own variance is less.
   glm::dvec3 variance{0};
@@ -113,13 +110,10 @@ class Film {
   int height() const { return area_.height(); }
   FilmLayers layers() const { return layers_; }
 
-  // What is added from now on is of stage 2, and stage 1 counts `first_share` of radiance, in [0,1]. Where stage 2
-  // has no samples stage 1 counts all. Once, and while no thread adds.
-  void begin_second_stage(double first_share);
-  // For runtime/film/noise.h: two stages that weigh the same, and two more that means() does not look at. Likewise.
-  void begin_halves();
+  // Turns an empty film into one of 2 or 4 stages. A pixel without samples in one of stages 0 and 1 has the mean of
+  // the other.
+  void begin_stages(std::size_t count);
   std::size_t stages() const { return stages_.size(); }
-  double first_share() const { return first_share_; }
 
   // Empty again, and of another area.
   void restart(PixelRect area);
@@ -172,7 +166,7 @@ class Film {
   struct Squares {
     WideSum sums[3] = {};
   };
-  // The radiance of one stage, [y][x]; a layer that is not kept has none.
+  // The radiance of one stage, [y][x]; a layer that is not kept has none. Odd halves are of a film of one stage.
   struct Stage {
     std::vector<Pixel> pixels;
     std::vector<Squares> squares;
@@ -192,7 +186,6 @@ class Film {
   std::span<const Stage> seen_stages() const {
     return std::span(stages_).first(std::min(kSeenStages, stages_.size()));
   }
-  Stage empty_stage() const;
   template <class Self, class Sink>
   static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
   bool add_squares(Squares& squares, glm::vec3 radiance);
@@ -206,8 +199,7 @@ class Film {
 
   PixelRect area_;
   FilmLayers layers_;
-  std::vector<Stage> stages_;  // one, two, or the halves' four
-  double first_share_ = 1;
+  std::vector<Stage> stages_;  // 1, 2 or 4
   // [y][x], of both stages; a layer that is not kept has none.
   std::vector<FirstHit> first_hits_;
   std::vector<Position> positions_;

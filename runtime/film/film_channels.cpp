@@ -32,8 +32,8 @@ constexpr FilmChannel kChannels[] = {
     {"noisy.R", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.x; }},
     {"noisy.G", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.y; }},
     {"noisy.B", false, &FilmLayers::halves, [](const Pixel& p) { return p.noisy.z; }},
-    {"steps", false, &FilmLayers::cost, [](const Pixel& p) { return p.evaluations; }},
-    {"evals", false, &FilmLayers::cost, [](const Pixel& p) { return p.instructions; }},
+    {"evaluations", false, &FilmLayers::cost, [](const Pixel& p) { return p.evaluations; }},
+    {"instructions", false, &FilmLayers::cost, [](const Pixel& p) { return p.instructions; }},
 };
 
 }  // namespace

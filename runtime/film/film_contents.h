@@ -32,7 +32,6 @@ struct FilmShape {
   PixelRect area;
   FilmLayers layers;
   std::size_t stages = 1;
-  double first_share = 1;
 
   bool operator==(const FilmShape&) const = default;
 };

@@ -117,22 +117,21 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   return covered;
 }
 
-// As many tiles as the picture has, of a film that has their stages.
-NoiseState read_noise(const FilmShape& shape, vm::ByteReader& in) {
-  NoiseState noise;
-  noise.judged = in.u32();
-  noise.tiles.resize(in.count(8));
-  for (NoiseTile& tile : noise.tiles) {
+// Reads the state of adaptive sampling: all tiles of a film with stages, none of a film without.
+AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
+  constexpr auto kMost = static_cast<std::uint32_t>(compiler::kMaxSpp);
+  AdaptiveState state;
+  state.judged = in.u32();
+  state.tiles.resize(in.count(8));
+  for (AdaptiveTile& tile : state.tiles) {
     for (std::uint32_t& end : tile.ends) {
       end = in.u32();
-      if (end > noise.judged) in.fail();
+      if (end > 4 * kMost) in.fail();
     }
   }
-  const std::int64_t wanted = shape.stages == kNoiseStages ? Tiles(shape.area, kNoiseTile).count() : 0;
-  const bool fits = static_cast<std::int64_t>(noise.tiles.size()) == wanted &&
-                    noise.judged <= static_cast<std::uint32_t>(compiler::kMaxSpp);
-  if (!fits) in.fail();
-  return noise;
+  const std::int64_t wanted = shape.stages > 1 ? Tiles(shape.area, kAdaptiveTile).count() : 0;
+  if (static_cast<std::int64_t>(state.tiles.size()) != wanted || state.judged > kMost) in.fail();
+  return state;
 }
 
 bool makes_sense(const FilmFile& head) {
@@ -141,10 +140,7 @@ bool makes_sense(const FilmFile& head) {
   return side(header.width) && side(header.height) && is_range(header.samples) &&
          std::int64_t{header.width} * header.height <= kMostPixels &&
          is_within(head.shape.area, {0, 0, header.width, header.height}) &&
-         (head.shape.stages == 1 || head.shape.stages == 2 || head.shape.stages == kNoiseStages) &&
-         head.shape.first_share >= 0 && head.shape.first_share <= 1 &&
-         (head.shape.stages > 1 || head.shape.first_share == 1) &&
-         (head.shape.stages != kNoiseStages || head.shape.first_share == 0.5);
+         (head.shape.stages == 1 || head.shape.stages == 2 || head.shape.stages == 4);
 }
 
 }  // namespace
@@ -173,7 +169,6 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
   const Film& film = render.film;
   write_rect(film.area(), out);
   out.u8(bits_of(film.layers()));
-  out.f64(film.first_share());
   out.u8(static_cast<std::uint8_t>(film.stages()));
   for (const Coverage& covered : render.covered) {
     out.u32(static_cast<std::uint32_t>(covered.blocks().size()));
@@ -183,9 +178,9 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
       out.u32(block.samples.last);
     }
   }
-  out.u32(render.noise.judged);
-  out.u32(static_cast<std::uint32_t>(render.noise.tiles.size()));
-  for (const NoiseTile& tile : render.noise.tiles) {
+  out.u32(render.adaptive.judged);
+  out.u32(static_cast<std::uint32_t>(render.adaptive.tiles.size()));
+  for (const AdaptiveTile& tile : render.adaptive.tiles) {
     for (const std::uint32_t end : tile.ends) out.u32(end);
   }
 }
@@ -211,7 +206,6 @@ std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   for (int i = 0; i < 3; ++i) header.origin[i] = in.f64();
   head.shape.area = read_rect(in);
   head.shape.layers = read_layers(in);
-  head.shape.first_share = in.f64();
   head.shape.stages = in.u8();
   return in.failed() || !makes_sense(head) ? std::optional<std::string>(kBadHeader) : std::nullopt;
 }
@@ -220,7 +214,7 @@ std::optional<std::string> read_covered(vm::ByteReader& in, FilmFile& head) {
   for (std::size_t i = 0; i < head.shape.stages; ++i) {
     head.render.covered.push_back(read_coverage(head.shape.area, in));
   }
-  head.render.noise = read_noise(head.shape, in);
+  head.render.adaptive = read_adaptive(head.shape, in);
   return in.failed() || in.left() > 0 ? std::optional<std::string>(kBadHeader) : std::nullopt;
 }
 

@@ -15,7 +15,7 @@
 namespace fathom::runtime {
 
 inline constexpr std::string_view kFilmMagic = "FATHOMFM";  // then, before the head: format and the head's size
-inline constexpr std::uint32_t kFilmFormat = 1;
+inline constexpr std::uint32_t kFilmFormat = 2;
 inline constexpr int kFilmTile = 64;            // pixels; each tile of the sums has a digest
 inline constexpr std::size_t kDigestSize = 16;  // bytes
 

@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "runtime/base/coverage.h"
+#include "runtime/film/adaptive.h"
 #include "runtime/film/film.h"
-#include "runtime/film/noise.h"
 
 namespace fathom::runtime {
 
 struct PartialRender {
   Film film;
   std::vector<Coverage> covered;  // [stage of the film]; the samples counted from 0 in each
-  NoiseState noise;               // of a render that stops where there is little
+  AdaptiveState adaptive;         // no tiles if all pixels take the same number of samples
 };
 
 }  // namespace fathom::runtime

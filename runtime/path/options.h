@@ -54,9 +54,12 @@ struct RenderOptions {
   std::optional<double> filter_width;  // pixels; not given beside `filter`: that filter's own
   // Paths end in the dark after so many bounces, and none by roulette: biased, but what many renderers do.
   std::optional<int> cut_after;
-  // More samples where the picture is noisy, `spp` on average (runtime/film/adaptive.h). Not for a crop: a pixel's
-  // samples depend on all others.
-  std::optional<bool> adaptive;
+  // Samples shared out by noise, `spp` per pixel on average, and no more for tiles whose noise is below this
+  // threshold, 0 or more (runtime/film/adaptive.h). Of the whole image only: a pixel's samples depend on all other
+  // pixels.
+  std::optional<double> noise_threshold;
+  // The same number of samples for all pixels, in place of the scene's threshold.
+  bool uniform = false;
   LightSampling light_sampling = LightSampling::Both;
   // The most radiance that a light found after two bounces or more may bring, each for itself: less noise, but
   // biased, for light is lost.
@@ -70,16 +73,12 @@ struct RenderOptions {
   // The picture that the scene's background names, when it names one (Background::Type::Image).
   std::shared_ptr<const EnvironmentImage> environment;
 
-  // Where the picture's noise is below this, no more samples are taken (runtime/film/noise.h): at least `min_spp` and
-  // at most `spp` of a pixel. Of the whole picture only, and not with `adaptive`.
-  std::optional<double> noise;
-  std::optional<int> min_spp;
   // Of each pixel these samples alone, of the `spp` there are in all; films of other ranges add up to the whole. Not
-  // with `adaptive` or `noise`.
+  // with a noise threshold.
   std::optional<SampleRange> sample_range;
   // The scene in place of the picture's own for runs of samples, in order, which together are all there are: how a
-  // shutter's time is sampled. Film and settings are those of the picture's own scene. Not with `adaptive` or
-  // `noise`, by which some pixels would see the first moments alone.
+  // shutter's time is sampled. Film and settings are those of the picture's own scene. Not with a noise
+  // threshold, by which some pixels would see the first moments alone.
   std::vector<Moment> moments;
   // Where regions are looked for before they are built, and left for the next render.
   std::shared_ptr<RegionStore> region_store;
@@ -117,9 +116,7 @@ struct Settings {
   std::optional<double> filter_width;
   std::optional<double> far;
   std::optional<int> cut_after;
-  bool adaptive;  // asked for, and spp suffices; layers.variance then is kept
-  std::optional<double> noise;
-  int min_spp;  // of `noise`
+  std::optional<double> noise_threshold;  // only if spp suffices; the film then keeps layers.variance
   LightSampling light_sampling;
   std::optional<double> clamp;  // radiance
   Marching marching;
@@ -131,7 +128,7 @@ struct Settings {
 
 // How many stages the film may come to have (runtime/film/film.h).
 inline std::size_t stages_of(const Settings& settings) {
-  return settings.noise ? kNoiseStages : settings.adaptive ? 2 : 1;
+  return settings.noise_threshold ? adaptive_stages(*settings.noise_threshold) : 1;
 }
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options);

@@ -84,10 +84,9 @@ std::vector<Input> seeds_of_film() {
   for (const runtime::FilmLayers layers : {runtime::FilmLayers{}, every, runtime::FilmLayers{.first_hit = false}}) {
     for (const std::size_t stages : {1, 2, 4}) {
       runtime::PartialRender render{runtime::Film(runtime::PixelRect{2, 1, 20, 4}, layers), {}, {}};
-      if (stages == 2) render.film.begin_second_stage(0.25);
-      if (stages == 4) {
-        render.film.begin_halves();
-        render.noise = {4, {{{4, 0}}, {{0, 4}}}};
+      if (stages > 1) {
+        render.film.begin_stages(stages);
+        render.adaptive = {4, {{{4, 0}}, {{0, 4}}}};
       }
       runtime::PathSample sample;
       sample.hit = true;

@@ -23,8 +23,8 @@ constexpr const char* kRenders[] = {"cornell.json -s 4",
                                     "blends.json -s 4",
                                     "primitives.json -s 4",
                                     "mandelbulb.json -s 2",
-                                    "cornell.json -s 16 --adaptive",
-                                    "cornell.json -s 16 --noise 0.2 --sampler sobol --filter tent"};
+                                    "cornell.json -s 16 --noise-threshold 0",
+                                    "cornell.json -s 64 --noise-threshold 0.2 --sampler sobol --filter tent"};
 
 std::string value_of(const runtime::Identity& identity, std::string_view name) {
   for (const auto& [row, value] : identity) {

@@ -110,7 +110,7 @@ RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagn
   settings.tile = static_cast<int>(reader.number("tile"));
   settings.seed = static_cast<std::uint64_t>(reader.number("seed"));
   settings.sampler = static_cast<SamplerKind>(reader.choice("sampler"));
-  settings.adaptive = reader.flag("adaptive", settings.adaptive);
+  if (reader.value("noise_threshold")) settings.noise_threshold = reader.number("noise_threshold");
   if (reader.value("far")) settings.far = reader.number("far");
   return settings;
 }

@@ -174,7 +174,7 @@ const RecordSpec& render_record() {
        integer("tile", "pixels a side", 16, {1, kMaxTile}),
        integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
        choice("sampler", "where the random numbers come from", kSamplerNames),
-       other("adaptive", ValueType::Boolean, "whether noisy pixels get more of the samples (false)"),
+       number("noise_threshold", "shares the samples out by noise, and ends below it; 0: no end", {}, {0, 1e6}),
        number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
   return record;
 }

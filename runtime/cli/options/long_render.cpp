@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "runtime/cli/options/values.h"
-#include "runtime/film/noise.h"
 
 namespace fathom::cli {
 namespace {
@@ -28,36 +27,6 @@ Verdict read_file_name(std::string_view text, std::string& name) {
   return std::nullopt;
 }
 
-bool is_adaptive(const compiler::CompiledScene& scene, const runtime::RenderOptions& options) {
-  return options.adaptive.value_or(scene.settings.adaptive);
-}
-
-std::optional<ExitCode> apply_noise(const LongRender& request, const compiler::CompiledScene& scene,
-                                    runtime::RenderOptions& options, const Streams& streams) {
-  if (request.min_spp && !request.noise) {
-    return fail(streams, kUsage, "--min-spp is for --noise, which is not given");
-  }
-  if (!request.noise) return std::nullopt;
-  const int spp = options.spp.value_or(scene.settings.spp);
-  const int least = request.min_spp.value_or(runtime::kLeastNoiseSpp);
-  if (spp / 2 * 2 < least) {
-    return fail(
-        streams, kUsage,
-        fmt::format("--noise: {} of a pixel are too few", count_of(static_cast<std::size_t>(spp), "sample")),
-        {fmt::format("ask for --spp {} or more: it is the most that a pixel may get, by twos", (least + 1) / 2 * 2)});
-  }
-  if (is_adaptive(scene, options)) {
-    return fail(streams, kUsage, "--noise does not go with adaptive sampling: both share samples out",
-                {"add --no-adaptive, or leave out --noise"});
-  }
-  if (request.sample_range) {
-    return fail(streams, kUsage, "--noise does not go with --sample-range: how many samples there are is not known");
-  }
-  options.noise = request.noise;
-  options.min_spp = request.min_spp;
-  return std::nullopt;
-}
-
 }  // namespace
 
 void add_interval_option(Arguments& arguments, LongRender& request) {
@@ -79,12 +48,6 @@ void add_long_render_options(Arguments& arguments, LongRender& request) {
   arguments.option("--time-limit", "TIME",
                    "End the render after this time, as 30s, 10m or 1.5h, and write the picture so far",
                    into(read_duration, request.time_limit));
-  arguments.option(
-      "--noise", "LIMIT",
-      "Stop sampling a tile once its noise is below LIMIT, as 0.02; --spp is the max per pixel, rounded down to even",
-      into(read_positive, request.noise));
-  arguments.option("--min-spp", "N", "Min samples per pixel before --noise may stop a tile (16)",
-                   whole(request.min_spp, runtime::kLeastNoiseSpp, compiler::kMaxSpp));
   arguments.option("--sample-range", "A:B",
                    "Take only samples A to B-1 of each pixel's --spp: a part for `fathom merge`",
                    into(read_sample_range, request.sample_range));
@@ -93,7 +56,6 @@ void add_long_render_options(Arguments& arguments, LongRender& request) {
 std::optional<ExitCode> apply(const LongRender& request, const compiler::CompiledScene& scene,
                               runtime::RenderOptions& options, const Streams& streams) {
   options.time_limit = request.time_limit;
-  if (const auto code = apply_noise(request, scene, options, streams)) return code;
   if (!request.sample_range) return std::nullopt;
   const int spp = options.spp.value_or(scene.settings.spp);
   if (request.sample_range->last > static_cast<std::uint32_t>(spp)) {
@@ -101,10 +63,6 @@ std::optional<ExitCode> apply(const LongRender& request, const compiler::Compile
                 fmt::format("--sample-range: {} is beyond the {}", request.sample_range->last,
                             count_of(static_cast<std::size_t>(spp), "sample") + " of a pixel"),
                 {"--spp says how many there are in all parts together"});
-  }
-  if (is_adaptive(scene, options)) {
-    return fail(streams, kUsage, "--sample-range: with adaptive sampling a pixel's samples depend on all others",
-                {"add --no-adaptive, or render all samples"});
   }
   options.sample_range = request.sample_range;
   return std::nullopt;

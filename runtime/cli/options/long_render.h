@@ -19,8 +19,6 @@ struct LongRender {
   std::optional<double> interval;         // seconds
   bool resume = false;
   std::optional<double> time_limit;  // seconds
-  std::optional<double> noise;
-  std::optional<int> min_spp;
   std::optional<runtime::SampleRange> sample_range;
 };
 

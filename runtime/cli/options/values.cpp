@@ -192,6 +192,13 @@ Verdict read_positive(std::string_view text, double& number) {
   return std::nullopt;
 }
 
+Verdict read_not_negative(std::string_view text, double& number) {
+  const auto value = to_number(text);
+  if (!value || !(*value >= 0)) return complain(fmt::format("`{}` is not a number from 0", text));
+  number = *value;
+  return std::nullopt;
+}
+
 Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number) {
   const auto value = to<std::int64_t>(text);
   if (!value || *value < lo || *value > hi) {

@@ -95,6 +95,7 @@ Verdict read_exposure(std::string_view text, double& stops);
 
 Verdict read_finite(std::string_view text, double& number);
 Verdict read_positive(std::string_view text, double& number);
+Verdict read_not_negative(std::string_view text, double& number);
 Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
 Verdict read_seed(std::string_view text, std::uint64_t& seed);
 

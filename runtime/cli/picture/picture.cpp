@@ -53,13 +53,12 @@ std::optional<ExitCode> check_motion(const RenderRequest& request, const compile
     return fail(streams, kUsage, "--fps is for --frames, or for a camera with a `shutter`", {"add --frames A:B"});
   }
   if (!blurs) return std::nullopt;
-  const bool adaptive = runtime::resolve(scene, request.options).adaptive;
-  if (!adaptive && !request.options.noise) return std::nullopt;
+  if (!runtime::resolve(scene, request.options).noise_threshold) return std::nullopt;
   return fail(streams, kUsage,
-              fmt::format("{} does not go with a `shutter`: a pixel's samples are of moments one after the other, so "
-                          "that fewer would leave out the last",
-                          adaptive ? "adaptive sampling" : "--noise"),
-              {adaptive ? "add --no-adaptive" : "leave out --noise, or the camera's `shutter`"});
+              "a noise threshold does not go with a `shutter`: a pixel's samples are of moments one after the other, so "
+              "that fewer would leave out the last",
+              {request.options.noise_threshold ? "leave out --noise-threshold, or the camera's `shutter`"
+                                               : "add --uniform"});
 }
 
 // Compiles the picture's scene at another time.

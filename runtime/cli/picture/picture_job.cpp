@@ -173,7 +173,7 @@ ExitCode PictureJob::end(runtime::RenderResult& result) {
   if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
   if (!pictures && !request_.unit) note(streams_, kNoPictureYet);
   if (ended == End::Noise && !request_.quiet) {
-    note(streams_, "the noise is below the limit: " + samples_in(result.film));
+    note(streams_, "the noise is below the threshold: " + samples_in(result.film));
   }
   if (undone) return end_undone(result);
   if (checkpoint_ && !checkpoint_->named()) checkpoint_->remove(streams_);

@@ -106,10 +106,11 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
   arguments.option("--filter-width", "PIXELS", "Width of the pixel filter (box 1, tent 2, mitchell 4, others 3)",
                    into(read_filter_width, options.filter_width));
-  arguments.flag("--adaptive", "Give noisy pixels more samples; --spp, 8 or more, is the average; not with --crop",
-                 request.adaptive);
-  arguments.flag("--no-adaptive", "Give all pixels the same number of samples, whatever the scene says",
-                 request.no_adaptive);
+  arguments.option("--noise-threshold", "LIMIT",
+                   "Give noisy tiles more samples, and tiles with less noise than LIMIT, as 0.02, no more; --spp, 8 or "
+                   "more, is the average; 0: no limit",
+                   into(read_not_negative, options.noise_threshold));
+  arguments.flag("--uniform", "Give all pixels the same number of samples, whatever the scene says", options.uniform);
   arguments.option("--clamp", "RADIANCE",
                    "Max radiance of light that comes by two bounces or more: removes bright specks, and with them "
                    "some light (no max)",

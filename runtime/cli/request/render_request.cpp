@@ -65,22 +65,23 @@ std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int wi
   return area;
 }
 
-// Of what shares samples out; a scene that asks for it and has too few samples goes without.
-std::optional<ExitCode> check_adaptive(const RenderRequest& request, const compiler::CompiledScene& scene,
-                                       const Streams& streams) {
+// Reports options that do not go with a noise threshold. A scene that has one and too few samples goes without.
+std::optional<ExitCode> check_noise_threshold(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                              const Streams& streams) {
+  const bool asked = request.options.noise_threshold.has_value();
   const int spp = request.options.spp.value_or(scene.settings.spp);
-  if (request.adaptive && spp < runtime::kLeastAdaptiveSpp) {
+  if (asked && spp < runtime::kMinAdaptiveSpp) {
     return fail(streams, kUsage,
-                fmt::format("--adaptive: {} a pixel are too few to share out",
+                fmt::format("--noise-threshold: {} per pixel are too few to share out",
                             count_of(static_cast<std::size_t>(spp), "sample")),
-                {fmt::format("ask for --spp {} or more", runtime::kLeastAdaptiveSpp)});
+                {fmt::format("ask for --spp {} or more", runtime::kMinAdaptiveSpp)});
   }
-  if (!request.crop || !request.options.adaptive.value_or(scene.settings.adaptive)) return std::nullopt;
-  return fail(
-      streams, kUsage,
-      request.adaptive ? "--crop does not go with --adaptive: a pixel's samples depend on the whole picture"
-                       : "--crop: the scene's `adaptive` makes a pixel's samples depend on the whole picture",
-      {request.adaptive ? "leave out --adaptive, or render the whole" : "add --no-adaptive, or render the whole"});
+  const std::string_view part = request.crop ? "--crop" : request.long_render.sample_range ? "--sample-range" : "";
+  if (part.empty() || !runtime::resolve(scene, request.options).noise_threshold) return std::nullopt;
+  return fail(streams, kUsage,
+              fmt::format("{} does not go with {}: a pixel's samples depend on the whole picture", part,
+                          asked ? "--noise-threshold" : "the scene's `noise_threshold`"),
+              {asked ? "leave out --noise-threshold, or render the whole" : "add --uniform, or render the whole"});
 }
 
 std::optional<ExitCode> check_watch(const RenderRequest& request, const Streams& streams) {
@@ -108,8 +109,8 @@ std::optional<ExitCode> check_together(const RenderRequest& request, const Strea
   }
   if (const auto code = check_watch(request, streams)) return code;
   if (request.denoise && request.no_denoise) return fail(streams, kUsage, "--denoise does not go with --no-denoise");
-  if (request.adaptive && request.no_adaptive) {
-    return fail(streams, kUsage, "--adaptive does not go with --no-adaptive");
+  if (request.options.noise_threshold && request.options.uniform) {
+    return fail(streams, kUsage, "--noise-threshold does not go with --uniform");
   }
   return std::nullopt;
 }
@@ -128,7 +129,6 @@ void put_flags(RenderRequest& request) {
   }
   if (request.denoise) options.layers.first_hit = options.layers.halves = true;
   options.threads = request.threads.value_or(0);
-  if (request.adaptive || request.no_adaptive) options.adaptive = request.adaptive;
   if (request.light_sampling >= 0) {
     options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
   }
@@ -206,13 +206,9 @@ std::optional<ExitCode> override_scene(RenderRequest& request, compiler::Compile
   if (const auto code = override_camera(request, scene, streams)) return code;
   scene.film.exposure = request.exposure.value_or(scene.film.exposure);
   if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
-  if (const auto code = check_adaptive(request, scene, streams)) return code;
+  if (const auto code = check_noise_threshold(request, scene, streams)) return code;
   if (const auto code = apply(request.long_render, scene, request.options, streams)) return code;
   if (!request.crop) return std::nullopt;
-  if (request.options.noise) {
-    return fail(streams, kUsage, "--crop does not go with --noise, which judges tiles of the whole picture",
-                {"leave out --noise, or render the whole"});
-  }
   const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
   if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;
   request.options.crop = std::get<runtime::PixelRect>(crop);

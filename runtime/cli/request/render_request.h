@@ -45,7 +45,6 @@ struct RenderRequest {
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
   int light_sampling = -1;  // a runtime::LightSampling; -1: not given
-  bool adaptive = false, no_adaptive = false;
   bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
   bool no_denoise = false;
   LongRender long_render;

@@ -93,9 +93,9 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
   const Result other = folder.run("merge a.film d.film -o m.exr");
   CHECK(other.code == 65);
   CHECK_THAT(other.err, Contains("different renders") && Contains("scene is ") && Contains("program is "));
-  REQUIRE(folder.run("render ball.json -s 8 -q -o e.film --adaptive").code == 0);
+  REQUIRE(folder.run("render ball.json -s 8 -q -o e.film --noise-threshold 0").code == 0);
   CHECK(folder.run("merge a.film e.film -o m.exr").code == 65);
-  REQUIRE(folder.run("render ball.json -s 8 -q -o e.exr --adaptive").code == 0);
+  REQUIRE(folder.run("render ball.json -s 8 -q -o e.exr --noise-threshold 0").code == 0);
   CHECK(folder.run("merge e.film -o m.exr").code == 0);  // but e.film alone can become an image
   CHECK(folder.read("m.exr") == folder.read("e.exr"));
   CHECK_FALSE(folder.has("out.png"));
@@ -163,7 +163,7 @@ TEST_CASE("cli merge: usage, files that are none, and outputs in the way") {
   for (const char* wrong : {"5", "3:2", "2:2", "-1:2", "1:99", "a:b"}) {
     CHECK(folder.run(std::string("render ball.json -s 4 -o b.film --sample-range ") + wrong).code == 2);
   }
-  CHECK(folder.run("render ball.json -s 16 -o b.film --adaptive --sample-range 0:8").code == 2);
+  CHECK(folder.run("render ball.json -s 16 -o b.film --noise-threshold 0 --sample-range 0:8").code == 2);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
                   {"type": "sphere", "radius": 0.4, "translate": [1, 2, 0], "material": "lamp"}]})";
   const auto with = [&](const std::string& more) { return std::string(scene).replace(scene.find('%'), 1, more); };
   folder.write("lit.json", with(""));
-  folder.write("shared.json", with(R"(, "adaptive": true)"));
+  folder.write("shared.json", with(R"(, "noise_threshold": 0)"));
   const auto picture = [&](const std::string& flags) {
     REQUIRE(folder.run("render " + flags + " -o a.png").code == 0);
     return folder.read("a.png");
@@ -208,16 +208,16 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
     CHECK(result.err == "");
     return result.out;
   };
-  const std::string plain = picture("lit.json"), shared = picture("lit.json --adaptive");
+  const std::string plain = picture("lit.json"), shared = picture("lit.json --noise-threshold 0");
   CHECK(plain != shared);
-  CHECK_THAT(numbers("lit.json --adaptive"), Contains("\"primary_rays\": 1536,"));
+  CHECK_THAT(numbers("lit.json --noise-threshold 0"), Contains("\"primary_rays\": 1536,"));
   CHECK(picture("shared.json") == shared);
-  CHECK(picture("shared.json --no-adaptive") == plain);
+  CHECK(picture("shared.json --uniform") == plain);
   CHECK(picture("shared.json -s 7") == picture("lit.json -s 7"));
   CHECK_THAT(folder.run("render shared.json --crop 0,0,4,4 -o a.png").err,
-             Contains("--crop: the scene's `adaptive`") && Contains("add --no-adaptive"));
+             Contains("--crop: the scene's `noise_threshold`") && Contains("add --uniform"));
   CHECK(folder.run("render shared.json --crop 0,0,4,4 -o a.png").code == 2);
-  CHECK(folder.run("render shared.json --crop 0,0,4,4 --no-adaptive -o a.png").code == 0);
+  CHECK(folder.run("render shared.json --crop 0,0,4,4 --uniform -o a.png").code == 0);
   CHECK_THAT(folder.run("render shared.json -vvv -o a.png").err, Contains(", adaptive"));
 
   CHECK_THAT(numbers("lit.json --light-sampling hits"), Contains("\"shadow_rays\": 0,"));

@@ -252,45 +252,44 @@ TEST_CASE("film: merging fills a sum and says so") {
   CHECK(sum.means(0, 0).radiance.y == Approx(0x1p31 / 3));
 }
 
-TEST_CASE("film: of two stages radiance is weighted, the rest is of all samples", "[runtime]") {
+// Adds the samples of `part` to a stage.
+void add_stage(Film& film, std::size_t stage, std::uint32_t first, int n) {
+  Film part(1, 1, film.layers());
+  add_count(part, first, n);
+  film.merge(part, stage);
+}
+
+TEST_CASE("film: of two halves radiance has the mean of both means, the rest is of all samples", "[runtime]") {
   FilmLayers layers = kAllLayers;
   layers.halves = true;
   Film film(1, 1, layers);
-  add_count(film, 0, 4);
-  const PixelMeans first = film.means(0, 0);
-  film.begin_second_stage(0.25);
-  CHECK(film.means(0, 0).radiance == first.radiance);  // the second stage is still empty
-  CHECK(film.means(0, 0).variance == first.variance);
-  add_count(film, 4, 9);
-  film.add(0, 0, {.number = 13});
+  film.begin_stages(4);
+  add_stage(film, 0, 0, 4);
+  CHECK(film.means(0, 0).radiance.x == 2.5);  // half B is still empty
+  add_stage(film, 1, 4, 9);
   const PixelMeans both = film.means(0, 0);
-  CHECK(both.radiance.x == Approx(0.25 * 2.5 + 0.75 * 4.5));
-  // The variance of the mean, s^2 / n, of 1..n is (n + 1) / 12. That of 0..9 equals that of 1..10.
-  CHECK(both.variance.x == Approx((0.0625 * 5 + 0.5625 * 11) / 12));
-  CHECK(both.halves[0].x == Approx(0.25 * 2 + 0.75 * 5));
-  CHECK(both.halves[1].x == Approx(0.25 * 3 + 0.75 * 4));
-  CHECK(both.samples == 14);
+  CHECK(both.radiance.x == Approx(0.5 * 2.5 + 0.5 * 5));
+  // The variance of the mean, s^2 / n, of 1..n is (n + 1) / 12.
+  CHECK(both.variance.x == Approx(0.25 * (5 + 10) / 12));
+  CHECK(both.halves[0].x == 2.5);
+  CHECK(both.halves[1].x == 5);
+  CHECK(both.samples == 13);
   CHECK(both.hits == 13);
-  CHECK(both.depth == 3);
-  CHECK(both.albedo.x == Approx(0.5 * 13 / 14));
   CHECK(both.surface_id == 1);
+  add_stage(film, 3, 20, 10);  // no mean uses these
+  CHECK(film.means(0, 0).radiance == both.radiance);
+  CHECK(film.means(0, 0).samples == 13);
+  CHECK(film.samples() == 13);
 }
 
-TEST_CASE("film: a half that one stage lacks is the other's", "[runtime]") {
-  Film film(1, 1, {.halves = true});
-  add_count(film, 0, 2);
-  film.begin_second_stage(0.5);
-  film.add(0, 0, sample_of(7, 0));
-  CHECK(film.means(0, 0).halves[0].x == 4);
-  CHECK(film.means(0, 0).halves[1].x == 2);
-}
-
-TEST_CASE("film: the order of samples within a stage leaves no trace, the stage does", "[runtime]") {
+TEST_CASE("film: the stage of a sample leaves a trace", "[runtime]") {
   const auto film_of = [](std::array<std::uint32_t, 4> numbers) {
     Film film(1, 1, kAllLayers);
+    film.begin_stages(2);
     for (std::size_t i = 0; i < 4; ++i) {
-      if (i == 2) film.begin_second_stage(0.5);
-      film.add(0, 0, numbered(numbers[i]));
+      Film part(1, 1, kAllLayers);
+      part.add(0, 0, numbered(numbers[i]));
+      film.merge(part, i / 2);
     }
     return film.hash();
   };

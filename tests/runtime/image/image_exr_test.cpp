@@ -83,7 +83,7 @@ TEST_CASE("image_exr: layers that a film does not keep are not there", "[runtime
   const ImageRows rows = rows_of(film, 2, 2, glm::dvec3(0), {});
   CHECK(rows.find("R") >= 0);
   CHECK(rows.find("sampleCount") >= 0);
-  for (const char* name : {"Z", "N.X", "P.X", "id.object", "variance.R", "steps"}) CHECK(rows.find(name) < 0);
+  for (const char* name : {"Z", "N.X", "P.X", "id.object", "variance.R", "evaluations"}) CHECK(rows.find(name) < 0);
 }
 
 TEST_CASE("image_exr: an image read and written again has the same bytes", "[runtime]") {

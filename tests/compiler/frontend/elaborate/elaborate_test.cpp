@@ -103,7 +103,8 @@ TEST_CASE("settings are read", "[elaborate]") {
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
       "film": {"width": 65535, "height": 1, "exposure": -1.5, "tone": "agx"},
-      "render": {"spp": 1048576, "bounces": 0, "tile": 1024, "seed": 9007199254740992, "far": 100, "adaptive": true},
+      "render": {"spp": 1048576, "bounces": 0, "tile": 1024, "seed": 9007199254740992, "far": 100,
+                 "noise_threshold": 0.25},
       "background": {"top": [0.5, 0.7, 1]})");
   CHECK(e.camera.position == glm::dvec3(1, 2, 3));
   CHECK(e.camera.target == glm::dvec3(4, 5, 6));
@@ -114,14 +115,14 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK((e.settings.spp == 1048576 && e.settings.bounces == 0 && e.settings.tile == 1024));
   CHECK(e.settings.seed == 9007199254740992u);
   CHECK(e.settings.far.value() == 100);
-  CHECK(e.settings.adaptive);
+  CHECK(e.settings.noise_threshold == 0.25);
   CHECK(e.background.bottom == glm::dvec3(0));
   CHECK(e.background.top == glm::dvec3(0.5, 0.7, 1));
   const Elaborated o = of_objects(R"({"type": "sphere", "radius": 1})",
                                   R"(, "camera": {"type": "orthographic", "width": 7}, "background": [1, 2, 3])");
   CHECK(o.camera.projection == Camera::Projection::Orthographic);
   CHECK(o.camera.width == 7);
-  CHECK_FALSE(o.settings.adaptive);
+  CHECK_FALSE(o.settings.noise_threshold);
   CHECK(o.background.bottom == glm::dvec3(1, 2, 3));
   CHECK(o.background.top == glm::dvec3(1, 2, 3));
 }

@@ -37,7 +37,7 @@ TEST_CASE("cli: the closing lines say what part was drawn, and by how many sampl
   const Folder folder;
   CHECK_THAT(folder.run("render ball.json -o a.png --crop 0,0,8,4 -s 1").err,
              Contains("drew ball.json: 8x4 pixels of 32x16, 1 sample per pixel\n"));
-  CHECK_THAT(folder.run("render ball.json -o a.png -s 64 --noise 1000").err,
+  CHECK_THAT(folder.run("render ball.json -o a.png -s 64 --noise-threshold 1000").err,
              Contains(", ended by noise below limit\n"));
 }
 

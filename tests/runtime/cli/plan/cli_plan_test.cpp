@@ -202,7 +202,7 @@ TEST_CASE("cli plan: what does not go together is refused by what differs") {
         {"plan ball.json --tiles 64x1 --no-pilot -o q.json", 2, "more than the 32x16 pixels"},
         {"plan ball.json --size 2000x2000 --tiles 2000x2000 -s 999 --sample-block 1 --no-pilot -o q.json", 2,
          "1000000000 units at most"},
-        {"plan ball.json --adaptive -s 16 -o q.json", 2, "adaptive sampling"},
+        {"plan ball.json --noise-threshold 0 -s 16 -o q.json", 2, "a noise threshold"},
         {"plan ball.json -o ball.json", 2, "ball.json"},
         {"plan ball.json --json -o q.json", 2, "go with --status"}}) {
     INFO(bad.arguments);
