@@ -88,7 +88,7 @@ TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[do
   folder.write("small.fathom",
                "fathom 1\ndef gear(teeth) =\n  let radius = require(teeth >= 6, \"a gear needs 6 teeth or more\", "
                "teeth/10)\n  in cylinder(radius, 0.2)\nobject gear(4)\n");
-  const std::string page = read_file(FATHOM_SOURCE_DIR "/docs/reference/language.md");
+  const std::string page = read_file(FATHOM_SOURCE_DIR "/docs/tutorial/language.md");
   CHECK(check_page(folder, page) == 1);
   int scenes = 0;
   for (const Block& block : blocks_of(page)) {
