@@ -1,5 +1,5 @@
 // A compiled scene as a file, .fbc: everything a render reads of it, where its instructions come from, and the text
-// it was compiled from. docs/BYTECODE.md has the layout, byte by byte.
+// it was compiled from. docs/reference/bytecode.md has the layout, byte by byte.
 //
 //     std::vector<std::uint8_t> bytes = write_file(scene, {});
 //     auto file = open_file(bytes);                    // CompiledFile, or FileError

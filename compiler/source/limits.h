@@ -1,7 +1,7 @@
-// Limits on the size of scenes, in one table that `--limit NAME=VALUE`, `fathom help limits`, docs/LIMITS.md and the
-// tests read. Code that enforces a limit takes the Limits and reports where the scene exceeds the limit, by how much,
-// and how to allow it (`raise()`). Tested by: tests/compiler/source/limits_test.cpp,
-// tests/runtime/cli/input/cli_limits_test.cpp, tests/hostile
+// Limits on the size of scenes, in one table that `--limit NAME=VALUE`, `fathom help limits`,
+// docs/reference/limits.md and the tests read. Code that enforces a limit takes the Limits and reports where the
+// scene exceeds the limit, by how much, and how to allow it (`raise()`). Tested by:
+// tests/compiler/source/limits_test.cpp, tests/runtime/cli/input/cli_limits_test.cpp, tests/hostile
 #pragma once
 
 #include <array>

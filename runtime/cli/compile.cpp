@@ -75,7 +75,7 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   SceneArguments scene_arguments;
   std::optional<std::string> output;
   bool strip = false, no_text = false;
-  Arguments arguments("compile", "Compiles a scene to a file; see docs/BYTECODE.md.", kCompileExamples);
+  Arguments arguments("compile", "Compiles a scene to a file; see docs/reference/bytecode.md.", kCompileExamples);
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "File to write, usually .fbc; - is standard output", any_text(output));
   arguments.flag("--strip", "Leave out the names of instructions and their places in the scene", strip);

@@ -90,8 +90,8 @@ std::string manual() {
   text += ".SH EXIT STATUS\n";
   for (const ExitCodeInfo& row : kExitCodes) text += tagged(fmt::format("\\fB{}\\fR", int{row.code}), row.meaning);
   text +=
-      ".SH SEE ALSO\nThe scene language is described in docs/SCENES.md, and more in the files beside it. They are\n"
-      "installed under share/doc/fathom, example scenes under share/fathom/scenes.\n";
+      ".SH SEE ALSO\nThe scene language is described in docs/reference/scene-file.md, and more in the files\n"
+      "beside it. They are installed under share/doc/fathom, example scenes under share/fathom/scenes.\n";
   text += ".SH ENVIRONMENT\n";
   text += tagged("\\fBCOLUMNS\\fR", "The width that help is wrapped to, in place of the terminal's.");
   text += tagged("\\fBNO_COLOR\\fR", "When set, messages have no colours.");

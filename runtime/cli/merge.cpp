@@ -40,7 +40,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.flag("--denoise", "Denoise the pictures; the noisy ones go to FILE-noisy", request.denoise);
   arguments.flag("-q,--quiet", "Print only errors, warnings and notes", request.quiet);
   add_limit_option(arguments, request.limits);
-  arguments.group("Plans (docs/FARM.md)");
+  arguments.group("Plans (docs/how-to/farm.md)");
   arguments.option("--plan", "FILE", "Add up the units of a plan; #### in -o is a frame's number",
                    any_text(request.plan));
   add_frames_option(arguments, "Frames A to B-1 of the plan, every S-th; 7 is one frame (all)", request.frames);

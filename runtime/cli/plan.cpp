@@ -66,7 +66,7 @@ void add_options(Arguments& arguments, PlanRequest& request) {
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, PlanRequest& request) {
-  Arguments arguments("plan", "Cuts a render into units for many machines; see docs/FARM.md.", kPlanExamples);
+  Arguments arguments("plan", "Cuts a render into units for many machines; see docs/how-to/farm.md.", kPlanExamples);
   add_scene_arguments(arguments, request.render.scene);
   add_options(arguments, request);
   arguments.group("Picture");

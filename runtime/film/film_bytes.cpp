@@ -1,4 +1,4 @@
-// The film's sums as bytes and back: what film files are made of (docs/FILM.md).
+// The film's sums as bytes and back: what film files are made of (docs/reference/film-file.md).
 // Tested by: tests/runtime/film/film_file_test.cpp
 #include "runtime/film/film.h"
 #include "vm/encoding/bytes.h"

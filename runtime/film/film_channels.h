@@ -1,4 +1,4 @@
-// The channels an OpenEXR file of a render has, in one table; docs/LAYERS.md says what each is for.
+// The channels an OpenEXR file of a render has, in one table; docs/reference/layers.md says what each is for.
 // Tested by: tests/runtime/image/image_exr_test.cpp
 #pragma once
 

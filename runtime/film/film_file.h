@@ -1,5 +1,6 @@
 // Film files: what there is of a render, as sums, with all it takes to go on, to add it to other parts of the same
-// render, and to write pictures. A checkpoint is one, `-o part.film` writes one. docs/FILM.md gives every byte.
+// render, and to write pictures. A checkpoint is one, `-o part.film` writes one. docs/reference/film-file.md
+// gives every byte.
 //
 // Two films are of the same render when their identities agree: every setting that changes a sample, by name. What is
 // read may be anything: nothing is set aside for what is not there, and every part has a checksum.

@@ -1,4 +1,4 @@
-// The head of a film file as bytes and back (docs/FILM.md).
+// The head of a film file as bytes and back (docs/reference/film-file.md).
 // Tested by: tests/runtime/film/film_file_test.cpp
 #pragma once
 

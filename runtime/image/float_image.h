@@ -1,7 +1,7 @@
 // An image of floats: channels by name, as in an OpenEXR file, whole in memory or row by row.
 //
 // runtime/film/film_channels.h lists the channels of a render. All are means over a pixel's samples unless said
-// otherwise (docs/LAYERS.md).
+// otherwise (docs/reference/layers.md).
 #pragma once
 
 #include <fmt/format.h>

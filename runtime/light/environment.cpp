@@ -140,7 +140,8 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
   return sum;
 }
 
-// Returns 0 for a gradient, which is so even that BSDF sampling finds its light with less noise (docs/LIGHT.md).
+// Returns 0 for a gradient, which is so even that BSDF sampling finds its light with less noise
+// (docs/explanation/light.md).
 float Environment::mean() const {
   return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
 }

@@ -1,5 +1,5 @@
 // The adversarial catalogue, rows I9 to I16: rays that leave bodies or start inside them, invalid rays, and solids
-// cut out of each other. docs/ACCURACY.md lists all rows.
+// cut out of each other. docs/explanation/accuracy.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
-// The adversarial catalogue, rows F5 and F6: blends of extreme widths, shells of shells. docs/ACCURACY.md lists all
-// rows.
+// The adversarial catalogue, rows F5 and F6: blends of extreme widths, shells of shells. docs/explanation/accuracy.md
+// lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 // The adversarial catalogue, rows F7, F13 and F14: the Mandelbulb where its formula is undefined, coordinates too
-// small for normal floats, and NaNs. docs/ACCURACY.md lists all rows.
+// small for normal floats, and NaNs. docs/explanation/accuracy.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,7 @@
 // The adversarial catalogue, rows F1, F2 and F8 to F12: distances of solids whose formulas are often printed wrong,
 // and of parameters for which formulas divide by zero. All primitives against brute force, and all Lipschitz
-// constants against random graphs: tests/compiler/shapes/shapes_test.cpp. docs/ACCURACY.md lists all rows.
+// constants against random graphs: tests/compiler/shapes/shapes_test.cpp. docs/explanation/accuracy.md lists all
+// rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

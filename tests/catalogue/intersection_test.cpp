@@ -1,7 +1,7 @@
 // The adversarial catalogue, rows I1 to I8: rays at one surface, for which methods fail that call a small distance a
 // hit or give up after a number of steps. The truth is a closed form in long double for exactly the rays that are
-// marched. Naive sphere tracing runs in addition if its result shows why the row exists. docs/ACCURACY.md lists all
-// rows.
+// marched. Naive sphere tracing runs in addition if its result shows why the row exists. docs/explanation/accuracy.md
+// lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,6 +1,6 @@
 // The adversarial catalogue, rows N1 to N5: normals compared with exact gradients in long double. Differences and a
 // cone's usual formula are measured for comparison. Random shapes and graphs: tests/compiler/shapes/normals_test.cpp.
-// docs/ACCURACY.md lists all rows.
+// docs/explanation/accuracy.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>

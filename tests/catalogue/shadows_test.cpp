@@ -1,5 +1,5 @@
 // The adversarial catalogue, rows S1 to S4: shadow acne, leaks, contact shadows, grooves. Rays that start on a
-// surface and whole images are compared with closed forms. docs/ACCURACY.md lists all rows.
+// surface and whole images are compared with closed forms. docs/explanation/accuracy.md lists all rows.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>

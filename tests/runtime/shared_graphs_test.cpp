@@ -4,8 +4,8 @@
 // seconds of processor time than even a slow machine needs.
 //
 // Random scenes are checked in the same way. Each node uses a few earlier nodes, translated, rotated, scaled or with
-// another material, or is an example of docs/GALLERY.md, which has one of each node type. A verb succeeds or refuses
-// the scene with an error.
+// another material, or is an example of docs/reference/gallery.md, which has one of each node type. A verb succeeds
+// or refuses the scene with an error.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -99,10 +99,11 @@ TEST_CASE("shared graphs: every verb visits a node that is used in many ways onc
                       R"({"type": "smooth_union", "k": 0.001, "of": [$, $]})"));
 }
 
-// The examples of docs/GALLERY.md that are nodes, outlines extruded or revolved, and the node types in them.
+// The examples of docs/reference/gallery.md that are nodes, outlines extruded or revolved, and the node types in
+// them.
 struct Examples {
   Examples() {
-    const std::string page = tests::read_file(FATHOM_SOURCE_DIR "/docs/GALLERY.md"), begin = "```json\n";
+    const std::string page = tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/gallery.md"), begin = "```json\n";
     for (std::size_t at = page.find(begin); at != page.npos; at = page.find(begin, at)) {
       at += begin.size();
       const std::string text = page.substr(at, page.find("```", at) - at);

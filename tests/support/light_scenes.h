@@ -1,6 +1,6 @@
 // Scenes whose radiance is known in closed form. Each text is the part of the scene file after `"version": 1`. The
 // camera sees the same value in all pixels, or the closed form is the mean of the image. Sources: P1 to P10 in the
-// names of tests are those of docs/ACCURACY.md.
+// names of tests are those of docs/explanation/accuracy.md.
 #pragma once
 
 #include <array>

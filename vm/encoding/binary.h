@@ -1,5 +1,5 @@
-// Programs as bytes; docs/BYTECODE.md has the layout. Programs are verified when read, and refused with the reason.
-// Tested by: tests/vm/encoding/binary_test.cpp
+// Programs as bytes; docs/reference/bytecode.md has the layout. Programs are verified when read, and refused with the
+// reason. Tested by: tests/vm/encoding/binary_test.cpp
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// Printer of a JSON scene as an equivalent text (docs/LANGUAGE.md). Reading the text gives an equal tree.
+// Printer of a JSON scene as an equivalent text (docs/reference/language.md). Reading the text gives an equal tree.
 // Tested by: tests/compiler/frontend/text/text_convert_test.cpp
 #pragma once
 

@@ -1,4 +1,4 @@
-// Reader for scenes in Fathom's own notation (docs/LANGUAGE.md), such as
+// Reader for scenes in Fathom's own notation (docs/reference/language.md), such as
 //
 //     fathom 1
 //     def post(height) = cylinder(0.1, height/2).translate([0, height/2, 0])

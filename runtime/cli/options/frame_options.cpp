@@ -66,7 +66,7 @@ void add_frame_options(Arguments& arguments, FrameOptions& options) {
 }
 
 void add_motion_options(Arguments& arguments, FrameOptions& options) {
-  arguments.group("Animation (docs/ANIMATION.md)");
+  arguments.group("Animation (docs/how-to/animate.md)");
   add_frame_options(arguments, options);
   arguments.flag("--fixed-noise", "Use the same random numbers for all frames: their noise stands still",
                  options.fixed_noise);

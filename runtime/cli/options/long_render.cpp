@@ -36,7 +36,7 @@ void add_interval_option(Arguments& arguments, LongRender& request) {
 }
 
 void add_long_render_options(Arguments& arguments, LongRender& request) {
-  arguments.group("Long renders (docs/RENDERING.md)");
+  arguments.group("Long renders (docs/how-to/render.md)");
   arguments.option("--checkpoint", "FILE",
                    "File that keeps the samples so far, written at intervals and when a signal or --time-limit ends "
                    "the render (the first output's name with .checkpoint, which goes when the render is done)",

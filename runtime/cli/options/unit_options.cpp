@@ -66,7 +66,7 @@ constexpr std::array<std::string_view, 7> kRunning = {
 }  // namespace
 
 void add_unit_options(Arguments& arguments, UnitOptions& options) {
-  arguments.group("Units of a plan (docs/FARM.md)");
+  arguments.group("Units of a plan (docs/how-to/farm.md)");
   arguments.option("--plan", "FILE",
                    "Render units of this plan of `fathom plan`, which has the scene and its settings",
                    any_text(options.plan));

@@ -1,5 +1,5 @@
 // The attributes that an OpenEXR file stores about its render. Attributes of pbrt-v4 keep their names, and our own
-// begin with `fathom.`. docs/LAYERS.md lists them.
+// begin with `fathom.`. docs/reference/layers.md lists them.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #pragma once
 

@@ -1,7 +1,7 @@
 // A plan: one render, of a still or of frames, cut into units that machines render independently. A unit is a
 // rectangle of a frame's pixels and a range of their samples, identified by its number. The plan contains everything
 // that a worker needs: the scene's text with its imports, the options, and the environment map. The plan is a JSON
-// file (docs/FARM.md) whose size does not depend on the number of units.
+// file (docs/how-to/farm.md) whose size does not depend on the number of units.
 //
 // Units are films in a folder next to the plan, frame.json -> frame.units/000/000007.film, in subfolders of a
 // thousand.

@@ -161,7 +161,8 @@ void add_comparing_options(Arguments& arguments, RenderRequest& request) {
 void add_marching_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Ray marching (for comparisons; the defaults are right for pictures)");
   arguments.option("--march", "METHOD",
-                   "Method: tiered (default), sphere, relaxed, automatic or certified; see docs/ACCURACY.md",
+                   "Method: tiered (default), sphere, relaxed, automatic or certified; see "
+                   "docs/explanation/accuracy.md",
                    one_of(method_names(), request.method));
   arguments.flag("--reference", "Search every ray in double precision; the same as --march certified",
                  request.reference);

@@ -1,5 +1,5 @@
-// Checks that docs/BYTECODE.md contains the current table of opcodes and list of fields. FATHOM_UPDATE_GOLDEN=1 in
-// the environment rewrites both parts of the document.
+// Checks that docs/reference/bytecode.md contains the current table of opcodes and list of fields.
+// FATHOM_UPDATE_GOLDEN=1 in the environment rewrites both parts of the document.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -141,8 +141,8 @@ std::string with_part(const std::string& document, const std::string& mark, cons
 
 }  // namespace
 
-TEST_CASE("docs/BYTECODE.md has the table of opcodes and the list of fields", "[golden]") {
-  const std::string path = FATHOM_SOURCE_DIR "/docs/BYTECODE.md";
+TEST_CASE("docs/reference/bytecode.md has the table of opcodes and the list of fields", "[golden]") {
+  const std::string path = FATHOM_SOURCE_DIR "/docs/reference/bytecode.md";
   const std::string document = tests::read_file(path);
   const std::string expected = with_part(with_part(document, "opcodes", opcode_table()), "fields", field_table());
   if (std::getenv("FATHOM_UPDATE_GOLDEN") != nullptr) {

@@ -170,9 +170,9 @@ TEST_CASE("limits: a chain of twenty thousand unions compiles to as many instruc
   CHECK(chain.instructions <= 20002);
 }
 
-TEST_CASE("limits: docs/LIMITS.md is the table", "[limits]") {
+TEST_CASE("limits: docs/reference/limits.md is the table", "[limits]") {
   std::stringstream page;
-  page << std::ifstream(std::string(FATHOM_SOURCE_DIR) + "/docs/LIMITS.md").rdbuf();
+  page << std::ifstream(std::string(FATHOM_SOURCE_DIR) + "/docs/reference/limits.md").rdbuf();
   const std::string text = page.str();
   std::size_t rows = 0;
   for (std::size_t at = text.find("\n| `"); at != text.npos; at = text.find("\n| `", at + 1)) ++rows;

@@ -29,7 +29,9 @@ TEST_CASE("cli: cmake --install installs a program that renders an installed sce
   CHECK(folder.read(share + "zsh/site-functions/_fathom") == folder.run("completion zsh").out);
   CHECK(folder.read(share + "fish/vendor_completions.d/fathom.fish") == folder.run("completion fish").out);
   CHECK(folder.read(share + "man/man1/fathom.1") == folder.run("man").out);
-  for (const char* file : {"README.md", "LICENSE", "docs/SCENES.md"}) CHECK(folder.has(share + "doc/fathom/" + file));
+  for (const char* file : {"README.md", "LICENSE", "docs/reference/scene-file.md"}) {
+    CHECK(folder.has(share + "doc/fathom/" + file));
+  }
 }
 
 }  // namespace fathom::cli_install_test

@@ -1,6 +1,6 @@
-// Fields that are 0 over a volume: nothing is solid there (docs/ACCURACY.md). Rays pass such a plateau from outside,
-// and leave a solid where a plateau begins, both in float and in the search in double. The field along each ray is
-// the truth for both.
+// Fields that are 0 over a volume: nothing is solid there (docs/explanation/accuracy.md). Rays pass such a plateau
+// from outside, and leave a solid where a plateau begins, both in float and in the search in double. The field along
+// each ray is the truth for both.
 #include <fmt/format.h>
 
 #include <algorithm>

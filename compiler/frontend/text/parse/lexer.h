@@ -1,4 +1,4 @@
-// Lexer for scenes in text notation (docs/LANGUAGE.md).
+// Lexer for scenes in text notation (docs/reference/language.md).
 // Tested by: tests/compiler/text_parser_test.cpp
 #pragma once
 

@@ -1,4 +1,4 @@
-// Recursive descent parser for texts, by the grammar of docs/LANGUAGE.md.
+// Recursive descent parser for texts, by the grammar of docs/reference/language.md.
 //
 // A statement ends at a line that is not indented further than the statement's first word. After an error the parser
 // continues at the next such line, so that it reports several errors.

@@ -4,7 +4,7 @@
 //
 // is a Statement::Let named tooth, whose value is a Call of rotate with two arguments, the first of which is a Call
 // of box.
-// docs/LANGUAGE.md has the grammar. Tested by: tests/compiler/text_parser_test.cpp
+// docs/reference/language.md has the grammar. Tested by: tests/compiler/text_parser_test.cpp
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Runs the commands shown in README.md and docs/TUTORIAL.md on the scenes of these pages: the output must be as
-// shown.
+// Runs the commands shown in README.md and docs/tutorial/first-scene.md on the scenes of these pages: the output must
+// be as shown.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
@@ -80,7 +80,7 @@ int check_page(const Folder& folder, const std::string& page) {
 }  // namespace
 
 TEST_CASE("docs: the tutorial's commands print what it shows", "[docs]") {
-  CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/TUTORIAL.md")) >= 5);
+  CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/tutorial/first-scene.md")) >= 5);
 }
 
 TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[docs]") {
@@ -88,7 +88,7 @@ TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[do
   folder.write("small.fathom",
                "fathom 1\ndef gear(teeth) =\n  let radius = require(teeth >= 6, \"a gear needs 6 teeth or more\", "
                "teeth/10)\n  in cylinder(radius, 0.2)\nobject gear(4)\n");
-  const std::string page = read_file(FATHOM_SOURCE_DIR "/docs/LANGUAGE.md");
+  const std::string page = read_file(FATHOM_SOURCE_DIR "/docs/tutorial/language.md");
   CHECK(check_page(folder, page) == 1);
   int scenes = 0;
   for (const Block& block : blocks_of(page)) {
