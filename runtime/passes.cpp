@@ -14,7 +14,7 @@ namespace {
 
 Stats run_threads(const PassWork& pass, int threads) {
   std::vector<Stats> stats(static_cast<std::size_t>(threads));
-  // Each thread makes its worker itself, so that what it writes to lies in memory of its own.
+  // Each thread allocates its own worker, so that the memory it writes to is its own.
   const auto work = [&](Stats& counted) {
     const auto worker = std::make_unique<UnitWorker>(pass);
     worker->run();
@@ -32,7 +32,7 @@ Stats run_threads(const PassWork& pass, int threads) {
 // PathSample::number of the first sample of half B.
 constexpr std::uint32_t kSecondHalf = 1u << 30;
 
-// Number of samples that the decided halves have when they are complete.
+// Returns the number of samples that the decided halves have when complete.
 std::uint64_t samples_of(const AdaptiveState& state, PixelRect area) {
   const Tiles tiles(area, kAdaptiveTile);
   std::uint64_t samples = 0;
@@ -136,16 +136,17 @@ Stats Passes::run_shares() {
   return stats;
 }
 
-// `besides` counts as done already.
+// Treats `besides` as done, in addition to the samples in the film.
 Stats Passes::run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
                        const Coverage& besides) {
   const Settings& settings = world_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);
   Coverage done = besides;
-  picture_.change([&] { done.add(render_.covered[stage]); });  // who looks may be tidying it
+  picture_.change([&] { done.add(render_.covered[stage]); });  // look() may be tidying it
   done.tidy();
-  // Who sets a limit wants a whole picture early, whatever it is worth.
+  // With a time limit the first round has one sample per pixel: a user who sets a limit wants an early image of all
+  // pixels, however noisy.
   UnitQueue units(crop, side, rounds_of(samples, options_.time_limit ? 1 : kFirstRound), done);
   return run_threads({world_, pass, stage, limits, units, picture_}, settings.threads);
 }

@@ -1,4 +1,5 @@
-// The passes of a render: all samples at once, or in stages that depend on what those before have shown.
+// The passes of a render: one pass for all samples, or with a noise threshold several passes, each of which depends
+// on the results of the passes before.
 // Tested by: tests/runtime/render_test.cpp, film/adaptive_test.cpp
 #pragma once
 
@@ -11,20 +12,20 @@ namespace fathom::runtime {
 
 class Passes {
  public:
-  // Adds to `render`, which `picture` shows, what it lacks.
+  // The passes add missing samples to `render`, the render of `picture`.
   Passes(const World& world, const RenderOptions& options, PartialRender& render, SharedPicture& picture)
       : world_(world), options_(options), render_(render), picture_(picture) {}
 
-  // Until all samples are taken, those among `samples` where they are not shared out, or the options say stop; what
-  // was counted, of all threads together. Once.
+  // Renders until all samples are taken or the options say stop. Without a noise threshold, takes only samples in
+  // `samples`. Returns the counts of all threads together. Call run() once.
   Stats run(SampleRange samples);
-  // Why run() came back.
+  // Returns the reason why run() ended.
   RenderEnd end() const;
 
  private:
   Stats run_adaptive();
   Stats run_round(std::uint32_t end);  // both halves of all open tiles, from the last judgement up to `end`
-  Stats run_shares();                  // the samples that the halves have left
+  Stats run_shares();                  // the remaining samples of both halves of all tiles
   Pass pass_of(std::size_t half) const;
   Stats run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
                  const Coverage& besides = {});

@@ -21,8 +21,8 @@ namespace {
 
 using Clock = SharedPicture::Clock;
 
-// Whether building regions has to end. The layer of costs tells how much of the program was evaluated, so a limit of
-// time is not looked at where it is asked for: a render that goes on has the same regions.
+// Returns the function that interrupts building regions. The cost layer shows how much of the program was evaluated,
+// so a render that keeps this layer ignores the time limit here: a resumed render then has the same regions.
 std::function<bool()> interruption(const Settings& settings, const RenderOptions& options, Clock::time_point start) {
   const std::optional<double> limit = settings.layers.cost ? std::nullopt : options.time_limit;
   return [cancel = options.cancel, limit, start] {
@@ -31,7 +31,7 @@ std::function<bool()> interruption(const Settings& settings, const RenderOptions
   };
 }
 
-// Calls on_tick now and then until it is destroyed.
+// Calls on_tick every kTickSeconds, from a thread of its own, until the Ticker is destroyed.
 class Ticker {
  public:
   Ticker(const RenderOptions& options, SharedPicture& picture) {
@@ -64,10 +64,11 @@ class Ticker {
 
 std::uint64_t samples_of(const Settings& settings) {
   const std::uint32_t each = settings.samples.size();
-  return std::uint64_t{settings.crop.pixels()} * (settings.noise_threshold ? each / 2 * 2 : each);  // halves of the same size
+  // With a noise threshold the samples are two halves of the same size.
+  return std::uint64_t{settings.crop.pixels()} * (settings.noise_threshold ? each / 2 * 2 : each);
 }
 
-// Whether a surface's number says which it is in either scene.
+// True if a number names the same surface or material in both scenes.
 bool same_numbers(const compiler::CompiledScene& a, const compiler::CompiledScene& b) {
   const auto same_surface = [](const compiler::Surface& one, const compiler::Surface& other) {
     return one.name == other.name && one.material == other.material;
@@ -79,7 +80,8 @@ bool same_numbers(const compiler::CompiledScene& a, const compiler::CompiledScen
          std::ranges::equal(a.materials, b.materials, same_name);
 }
 
-// Of each pixel, by all moments whose regions would be the same: together they are to pay for them.
+// Returns the samples per pixel of all moments that have the same regions as `scene`: together these samples have to
+// repay the cost of building the regions.
 int samples_with(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options) {
   if (options.moments.empty()) return settings.spp;
   std::uint32_t samples = 0;
@@ -130,7 +132,7 @@ void check(const Settings& settings) {
   CHECK(whole || !settings.noise_threshold, "samples shared out in a part");
 }
 
-// The runs of samples, each with its scene.
+// Returns the ranges of samples to take, each with its scene.
 std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Settings& settings,
                                const RenderOptions& options) {
   if (options.moments.empty()) return {{&scene, settings.samples}};
@@ -158,7 +160,8 @@ void count_regions(const World& world, const RenderOptions& options, Stats& stat
 
 }  // namespace
 
-// A render may be stopped after its first samples, so building takes no longer than a few samples without regions.
+// A user may stop a render after its first samples, so building regions takes no longer than a few samples without
+// regions.
 RegionOptions region_options(const Settings& settings) {
   constexpr double kEvaluationsPerRay = 10;
   constexpr int kMaxSamples = 16;

@@ -1,4 +1,4 @@
-// The renderer's one function: CompiledScene -> picture.
+// The renderer's one function: CompiledScene -> film.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
@@ -10,21 +10,21 @@
 
 namespace fathom::runtime {
 
-// The film, and what of the work is in it.
+// The film and the samples in it, with the settings and the counts.
 struct RenderResult : PartialRender {
-  Settings settings;  // those used
+  Settings settings;  // resolved: the values that were used
   Stats stats;
 };
 
-// Whether a render with these settings can go on from `render`: films of others are refused before by their identity
-// (runtime/film/film_file.h), so a file that says no was made up.
+// True if a render with these settings can resume from `render`. The check of identities (runtime/film/film_file.h)
+// has refused films of other renders before, so a film for which this is false was forged.
 bool can_resume(const PartialRender& render, const Settings& settings);
 
-// How a render with these settings builds regions: the same for every part of a picture and for any number of
-// threads, for the layer of costs depends on it.
+// Returns the options for building regions in a render with these settings. The options are equal for every part of
+// an image and for any number of threads, because the cost layer depends on the regions.
 RegionOptions region_options(const Settings& settings);
 
-// The film's bits depend on the scene and on the settings but for `threads` and `tile`.
+// Renders a scene. The film's bits depend only on the scene and on the settings except `threads` and `tile`.
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options = {});
 
 }  // namespace fathom::runtime

@@ -1,4 +1,4 @@
-// The picture that the threads of a render add their units to, and that others may look at meanwhile.
+// The image that the threads of a render add their units to, and that other threads may read meanwhile.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
@@ -18,30 +18,30 @@ class SharedPicture {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `samples` is how many there are to be in all; seconds are counted from `start`.
+  // `samples` is the number of samples of the whole render. seconds() counts from `start`.
   SharedPicture(PartialRender& render, std::uint64_t samples, const RenderOptions& options, Clock::time_point start);
 
-  // A unit is done: its samples, of a stage of the film, were added up in `film`, by so many rays. False when some
-  // sum is full.
+  // Adds a finished unit to a stage of the film: `film` holds the unit's sums over `samples` samples, which took
+  // `rays` rays. Returns false if a sum was clamped.
   bool add(const Film& film, const SampleBlock& unit, std::size_t stage, std::uint64_t samples, std::uint64_t rays);
 
-  // What there is, while all who want to add wait.
+  // Calls `use` with the render so far. Threads that call add() wait until `use` returns.
   void look(const std::function<void(const PartialRender&)>& use);
 
-  // Does to the render what no one may look at meanwhile.
+  // Calls `make`, which may change the render: no other thread adds to the render or reads it meanwhile.
   void change(const std::function<void()>& make);
 
-  // How many samples there are to be from now on, where that shows late; to be called within change().
+  // Sets the number of samples left, once the render itself has decided the number. Call within change().
   void expect(std::uint64_t left);
 
-  // To be asked when there is more to do: whether it is to be left. That is then how the render ended. Without the
-  // `first` samples of a pixel there is no picture: no time limit holds for them.
+  // True if the render has to stop; end() is then the reason. Call before beginning more work. `first` says that the
+  // work is the first samples of pixels: no time limit holds for these, because there is no image without them.
   bool stopped(bool first = false);
   RenderEnd end() const { return end_; }
   double seconds() const;
 
  private:
-  void report() const;  // how far it is; while nobody adds
+  void report() const;  // calls on_progress; the mutex must be locked
 
   PartialRender& render_;
   const RenderOptions& options_;

@@ -1,6 +1,7 @@
-// One thread's work on a render: takes units, has their paths followed, and hands each in when its last path ended.
+// One thread's work on a render: takes units, has the integrator follow their paths, and adds each unit to the image
+// when the unit's last path has ended.
 //
-// Paths of a stream end in no order, so that a few units are open at once.
+// The paths of a stream end in any order, so a few units are open at once.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace fathom::runtime {
 
-// How many samples a pass may take of each pixel: of all as many as its units say, or at most so many of each.
+// Max samples per pixel of a pass. Without limits a pass takes all samples of its units.
 class SampleLimits {
  public:
   SampleLimits() = default;
@@ -28,11 +29,11 @@ class SampleLimits {
   std::vector<int> each_;  // [y][x]; empty: no limits
 };
 
-// What the threads of one pass share.
+// Data that the threads of one pass share.
 struct PassWork {
   const World& world;
   Pass pass;
-  std::size_t stage;  // of the film
+  std::size_t stage;  // stage of the film
   const SampleLimits& limits;
   UnitQueue& units;
   SharedPicture& picture;
@@ -49,7 +50,7 @@ class UnitWorker : private PathExchange {
   struct OpenUnit {
     SampleBlock block;
     Film film;
-    std::uint64_t begun = 0, ended = 0;  // paths
+    std::uint64_t begun = 0, ended = 0;  // numbers of paths
     bool all_begun = false;
   };
 
@@ -61,11 +62,11 @@ class UnitWorker : private PathExchange {
 
   const PassWork& work_;
   std::vector<OpenUnit> open_;       // [PathKey::unit]
-  std::vector<std::uint32_t> free_;  // places in it
-  bool taking_ = false;              // paths are being taken from open_[unit_]
+  std::vector<std::uint32_t> free_;  // unused indices of open_
+  bool taking_ = false;              // true while next() takes paths from open_[unit_]
   std::uint32_t unit_ = 0;
   int x_ = 0, y_ = 0;
-  std::uint32_t sample_ = 0, end_ = 0;  // of the pixel
+  std::uint32_t sample_ = 0, end_ = 0;  // of the pixel (x_, y_): next sample, and the end
   std::uint64_t reported_rays_ = 0, full_sums_ = 0;
   Integrator integrator_;
 };

@@ -1,8 +1,8 @@
-// The work of a render, in units: the samples of a range, of the pixels of a tile.
+// Units of a render's work: a range of samples of the pixels of a tile.
 //
-// A unit's samples are summed in a film of its own, which is added to the picture's once all of them are there. So
-// the picture's film holds whole units at any moment and can be kept, and none of its pixels is written to by two
-// threads. Long renders go over the picture in rounds, so that a picture of what there is so far is a whole picture.
+// A unit has a film of its own for its sums. The worker adds this film to the image's film when the unit is complete.
+// The image's film therefore contains whole units at any moment and can be saved, and no two threads write to the
+// same pixel. Long renders go over the image in rounds, so that an image of the samples so far covers all pixels.
 //
 // Tested by: tests/runtime/units_test.cpp
 #pragma once
@@ -16,15 +16,16 @@
 
 namespace fathom::runtime {
 
-// A range of samples cut into rounds: the first `first` of them, then as many as there were before, up to a limit
-// that keeps units short.
+// Cuts a range of samples into rounds: first the first `first` samples, then each time as many samples as all rounds
+// before together, up to kMostInRound, which keeps units short.
 inline constexpr std::uint32_t kFirstRound = 16, kMostInRound = 256;
 std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first = kFirstRound);
 
-// The units that are left: round by round, tile by tile, without what is covered. take() is safe from any thread.
+// Queue of the units that are left: round by round, tile by tile, without covered samples. Any thread may call
+// take().
 class UnitQueue {
  public:
-  // `covered` must be tidy and live as long as the queue.
+  // `covered` must be tidy and must outlive the queue.
   UnitQueue(PixelRect area, int tile_side, std::vector<SampleRange> rounds, const Coverage& covered);
 
   std::optional<SampleBlock> take();
@@ -39,7 +40,7 @@ class UnitQueue {
   std::mutex mutex_;
   std::size_t round_ = 0;
   std::int64_t tile_ = 0;
-  std::vector<SampleBlock> pieces_;  // of the last tile, to be taken from the back
+  std::vector<SampleBlock> pieces_;  // units of the last tile; take() takes them from the back
 };
 
 }  // namespace fathom::runtime

@@ -1,6 +1,7 @@
-# add_emitted_scene(target header scene namespace): emitted/`header` in the binary folder is what `fathom emit cpp` makes
-# of the scene file `scene` (from the project's root) with its function in `namespace`, there before `target` is compiled.
-# It is made anew when the program or the scene changes, and what includes it is compiled anew only when its text does.
+# add_emitted_scene(target header scene namespace): `fathom emit cpp` writes the scene file `scene` (relative to the
+# project's root) as C++ to emitted/`header` in the binary folder, with its function in `namespace`, before `target`
+# is compiled. A change of the program or of the scene emits the header again. Sources that include the header are
+# compiled again only if the header's text changes.
 function(add_emitted_scene target header scene namespace)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/emitted)
   set(output ${folder}/${header})

@@ -13,21 +13,21 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr double kMinShare = 0.5, kMaxShare = 4;  // of the average
+constexpr double kMinShare = 0.5, kMaxShare = 4;  // limits of a share, relative to the average
 constexpr std::uint32_t kFirstJudgement = 8;      // samples of a half
 
 std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(std::max(2, spp / 8)); }
 
-// Variance of the pixel's mean luminance over its luminance. The variance is an upper bound: the channels count as
-// fully correlated.
+// Returns the variance of the pixel's mean luminance over its luminance. The variance is an upper bound: the channels
+// count as fully correlated.
 double visible_variance(glm::dvec3 radiance, glm::dvec3 variance) {
   const auto deviation = static_cast<double>(luminance(glm::vec3(glm::sqrt(variance))));
   const auto brightness = static_cast<double>(luminance(glm::vec3(radiance)));
   return deviation * deviation / (std::max(brightness, 0.0) + kDark);
 }
 
-// Mean over the tile's pixels of the visible standard deviation of one sample. Unlike the root of a mean variance it
-// does not jump with a single bright sample.
+// Returns the mean over the tile's pixels of the visible standard deviation of one sample. Unlike the root of a mean
+// variance, this mean does not jump with a single bright sample.
 double deviation_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages) {
   double sum = 0;
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -39,8 +39,8 @@ double deviation_of(const Film& film, PixelRect tile, std::initializer_list<std:
   return sum / static_cast<double>(tile.pixels());
 }
 
-// Convolves [row][column] with the binomial weights 1 2 1 in both directions. Values at the edge stand for those
-// outside.
+// Convolves [row][column] with the binomial weights 1 2 1 in both directions. A value outside equals the nearest
+// value at the edge.
 std::vector<double> smoothed(const std::vector<double>& values, int columns) {
   const int rows = static_cast<int>(values.size()) / columns;
   std::vector<double> result;
@@ -59,7 +59,8 @@ std::vector<double> smoothed(const std::vector<double>& values, int columns) {
   return result;
 }
 
-// What one tile may get of the samples of a half.
+// Claim of one tile on the samples of a half: the tile's number of pixels, its weight, and its min and max samples
+// per pixel.
 struct Claim {
   double pixels, weight, min, max;
 };
@@ -77,13 +78,13 @@ double fitting_factor(const std::vector<Claim>& claims, double budget) {
   return low;
 }
 
-// The shares of one half, decided by the other one.
+// Computes the shares of each half, which the other half decides.
 class Shares {
  public:
   Shares(const Film& film, int spp, double threshold, const AdaptiveState& state)
       : film_(film), tiles_(film.area(), kAdaptiveTile), average_(spp / 2), threshold_(threshold), state_(state) {}
 
-  // [tile] number of samples of `half`.
+  // Returns [tile] the number of samples per pixel of `half`.
   std::vector<std::uint32_t> of(std::size_t half) const {
     const std::vector<double> weights = weights_by(1 - half);
     double budget = average_ * static_cast<double>(film_.area().pixels());
@@ -98,10 +99,10 @@ class Shares {
     }
     const double factor = fitting_factor(open, budget);
     std::vector<std::uint32_t> counts;
-    double carried = 0;  // samples that rounding down has left
+    double carried = 0;  // samples left over by rounding down
     for (const Claim& claim : claims) {
       const double share = std::clamp(factor * claim.weight, claim.min, claim.max);
-      constexpr double kRounding = 1e-6;  // of the factor's bisection
+      constexpr double kRounding = 1e-6;  // error of the factor's bisection
       const double count = std::min(claim.max, std::floor(share + carried / claim.pixels + kRounding));
       carried += claim.pixels * (share - count);
       counts.push_back(static_cast<std::uint32_t>(count));
@@ -112,7 +113,7 @@ class Shares {
  private:
   PixelRect tile(std::size_t i) const { return tiles_.at(static_cast<std::int64_t>(i)); }
 
-  // Square roots of the deviations, none of them 0.
+  // Returns [tile] the square root of the deviation that half `judge` measures, always above 0.
   std::vector<double> weights_by(std::size_t judge) const {
     std::vector<double> deviations;
     for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
@@ -141,7 +142,7 @@ class Shares {
 
   const Film& film_;
   const Tiles tiles_;
-  const double average_;  // samples of a half per pixel
+  const double average_;  // samples per pixel of a half
   const double threshold_;
   const AdaptiveState& state_;
 };

@@ -1,5 +1,5 @@
-// Adaptive sampling without bias: the samples of an image are shared out by tile, more to noisy tiles, and no more to
-// tiles whose noise is below a threshold.
+// Adaptive sampling without bias: noisy tiles of an image get more samples, and tiles whose noise is below a
+// threshold get no more.
 //
 // A pixel's samples are two halves A and B with independent random numbers. The samples of B decide how many samples
 // A takes, and the samples of A decide for B. The expected mean of each half is therefore the true value, whatever is
@@ -38,7 +38,7 @@ namespace fathom::runtime {
 class Film;
 
 inline constexpr double kDark = 0.01;     // luminance below which noise is not visible
-inline constexpr int kAdaptiveTile = 16;  // pixels per side, counted from the corner of the image
+inline constexpr int kAdaptiveTile = 16;  // side of a tile, pixels; tiles begin at the image's corner
 inline constexpr int kMinAdaptiveSpp = 8;
 
 struct AdaptiveTile {
@@ -49,26 +49,26 @@ struct AdaptiveTile {
 };
 
 struct AdaptiveState {
-  std::uint32_t judged = 0;         // samples of each half at the last judgement
-  std::vector<AdaptiveTile> tiles;  // of Tiles(area, kAdaptiveTile); empty: all pixels take the same number
+  std::uint32_t judged = 0;         // number of samples of each half at the last judgement
+  std::vector<AdaptiveTile> tiles;  // [tile of Tiles(area, kAdaptiveTile)]; empty: the same number everywhere
 
   bool operator==(const AdaptiveState&) const = default;
 };
 
-// Returns the number of stages of the film: the two halves, and with a threshold above 0 two more for samples that
-// only decide.
+// Returns the number of stages of the film: the two halves, and with a threshold above 0 two more stages for samples
+// that only decide.
 std::size_t adaptive_stages(double threshold);
 
-// Seed of the random numbers of half B.
+// Returns the seed of the random numbers of half B.
 std::uint64_t second_seed(std::uint64_t seed);
 
 // Returns the number of samples of each half at the next judgement, or 0 after the last one, which has a quarter of
 // the samples. `spp` is the average over the image, at least kMinAdaptiveSpp.
 std::uint32_t next_round(std::uint32_t judged, int spp, double threshold);
 
-// Returns the noise of an image made of two such halves: the root of the mean over the tile's pixels of
-// v / (2 (b + kDark)), with v the variance of the half's mean luminance and b its luminance. The half is the sum of
-// the given stages. This is the error as the eye sees it, a standard deviation over the root of the luminance
+// Returns the noise of an image made of two halves, each like the sum of the given stages: the root of the mean over
+// the tile's pixels of v / (2 (b + kDark)), with v the variance of the half's mean luminance and b the half's
+// luminance. This measure is the error as the eye sees it, a standard deviation over the root of the luminance
 // (Dammertz, Hanika, Keller, Lensch, "A Hierarchical Automatic Stopping Condition for Monte Carlo Global
 // Illumination", 2010).
 double noise_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages);
@@ -76,12 +76,12 @@ double noise_of(const Film& film, PixelRect tile, std::initializer_list<std::siz
 // Returns the noise of the image that the film shows, in the same measure.
 double image_noise(const Film& film, PixelRect tile);
 
-// Decides every half of an open tile whose noise, by the other half, is at most `threshold`. The halves of open tiles
-// have `end` samples.
+// Decides each half of an open tile for which the other half measures a noise of at most `threshold`. The halves of
+// open tiles have `end` samples.
 void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state);
 
-// Decides every half that is left. All halves together have at most `spp` samples per pixel of the image. A half gets
-// between half and four times the average, fewer if fewer are enough for the threshold.
+// Decides all halves that are still undecided. All halves together have at most `spp` samples per pixel of the image.
+// A half gets between half and four times the average, or fewer samples if fewer are enough for the threshold.
 void assign_shares(const Film& film, int spp, double threshold, AdaptiveState& state);
 
 }  // namespace fathom::runtime

@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnit = kFilmStep;
 constexpr std::int64_t kFull = std::numeric_limits<std::int64_t>::max();
 
-// Nearest multiple of 2^-32; `value` must be finite. Half-way cases go away from zero.
+// Returns the nearest multiple of 2^-32, clamped. `value` must be finite. Ties round away from zero.
 std::int64_t to_fixed(double value) {
   const double scaled = value / kUnit;
   if (scaled >= 0x1p63) return kFull;
@@ -20,7 +20,7 @@ std::int64_t to_fixed(double value) {
   return static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }
 
-// What goes beyond is cut off, and so is told.
+// Adds and clamps. Returns false if the sum or the term is clamped.
 bool add_to(std::int64_t& sum, std::int64_t term) {
   std::int64_t result;
   if (!__builtin_add_overflow(sum, term, &result)) {
@@ -65,8 +65,8 @@ WideSum square(std::int64_t value) {
   return magnitude * magnitude;
 }
 
-// Variance of the mean of n values, s^2/n with s^2 = (n * sum of squares - (sum)^2) / (n (n - 1)): in whole numbers,
-// so that what cancels leaves no error, unless a square is beyond them.
+// Returns the variance of the mean of n values, s^2/n with s^2 = (n * sum of squares - (sum)^2) / (n (n - 1)).
+// Integers make the cancellation exact, unless n times the sum of squares overflows 128 bits.
 double variance_of_mean(std::int64_t sum, WideSum squares, std::uint32_t count) {
   if (count < 2) return 0;
   const double n = count;
@@ -76,7 +76,7 @@ double variance_of_mean(std::int64_t sum, WideSum squares, std::uint32_t count) 
   if (__builtin_mul_overflow(squares, static_cast<WideSum>(count), &scaled)) {
     spread = static_cast<double>(squares) * n - static_cast<double>(squared_sum);
   } else {
-    spread = scaled > squared_sum ? static_cast<double>(scaled - squared_sum) : 0;  // a full sum may be less
+    spread = scaled > squared_sum ? static_cast<double>(scaled - squared_sum) : 0;  // negative only if clamped
   }
   return std::max(0.0, spread) * kUnit * kUnit / (n * n * (n - 1));
 }
@@ -183,7 +183,7 @@ bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::si
   return room;
 }
 
-// What all stages have in common.
+// Merges the sums that all stages share.
 bool Film::merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count) {
   bool room = true;
   for (std::size_t i = 0; layers_.first_hit && i < count; ++i) {
@@ -259,8 +259,8 @@ RadianceMeans Film::radiance_of(std::initializer_list<std::size_t> stages, int x
   return means_of(pixel, squares, odd);
 }
 
-// The means of the stages are independent, given their numbers of samples: the variances add up with the squares of the
-// weights.
+// The means of the stages are independent, given their numbers of samples, so the variances add up with the squares
+// of the weights.
 void Film::read_radiance(int x, int y, PixelMeans& means) const {
   const RadianceMeans first = radiance_of({0}, x, y);
   const RadianceMeans second = stages_.size() > 1 ? radiance_of({1}, x, y) : RadianceMeans();
@@ -286,7 +286,7 @@ RadianceMeans Film::means_of(const Pixel& pixel, const Squares& squares, const O
   means.half_samples[0] = pixel.samples - odd.samples;
   means.half_samples[1] = odd.samples;
   for (int i = 0; i < 3; ++i) {
-    // In double, for full sums may be further apart than 64 bits reach.
+    // In double, because the difference of clamped sums may overflow 64 bits.
     const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
     if (means.half_samples[0] > 0) means.halves[0][i] = rest * kUnit / means.half_samples[0];
   }

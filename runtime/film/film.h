@@ -1,14 +1,15 @@
-// The film: what the paths brought home, summed for each pixel.
+// The film: for each pixel, sums over its camera paths.
 //
-// Sums are whole multiples of 2^-32 in 64 bits, those of squares of 2^-64 in 128 bits: the exact squares of the
-// terms. Integer addition does not depend on its order, and a pixel's ids are those of its sample with the least
-// number, so any partition of the work gives the same bits. A sum may reach 2^31 (of squares 2^63); beyond that it is
-// cut off, which add() and merge() tell, and what it is then depends on the order: terms of the other sign come after
-// the cut or before it.
+// Sums are integer multiples of 2^-32 in 64 bits. Sums of squares are multiples of 2^-64 in 128 bits, which hold the
+// squares of the terms exactly. Integer addition does not depend on its order, and a pixel's ids are the ids of its
+// sample with the lowest number, so every partition of the work gives the same bits. A sum may reach 2^31, a sum of
+// squares 2^64. The film clamps larger sums, which add() and merge() report. A clamped sum depends on the order of
+// its terms: terms of the other sign count in full or not, depending on whether they come after the clamping or
+// before it.
 //
-// A film in stages (runtime/film/adaptive.h) keeps radiance and the number of samples of each stage apart. Stages 0
-// and 1 are two halves of the samples, whose means weigh the same. No mean uses stages 2 and 3. Films of any parts of
-// the work add up to the film of the whole: merge(). As bytes: film_bytes.cpp.
+// A film in stages (runtime/film/adaptive.h) keeps the radiance and the number of samples of each stage separately.
+// Stages 0 and 1 are two halves of the samples, whose means have equal weight. No mean uses stages 2 and 3. merge()
+// adds films of parts of the work up to the film of the whole. film_bytes.cpp converts sums to bytes and back.
 //
 // Tested by: tests/runtime/film/film_test.cpp
 #pragma once
@@ -30,38 +31,38 @@ class ByteWriter;
 
 namespace fathom::runtime {
 
-// What the samples of a pixel may add up to.
+// Max magnitude of the sum over a pixel's samples.
 inline constexpr double kFullPixel = 0x1p31;
-// Fainter samples may be off by more than a hundredth, and are 0 below half of kFilmStep.
+// A sample below kFaintLight may be off by more than a hundredth, and is 0 below half of kFilmStep.
 inline constexpr double kFilmStep = 0x1p-32, kFaintLight = 50 * kFilmStep;
 
 inline constexpr std::uint32_t kNoId = ~0u;
 
-// What one camera path adds to its pixel.
+// Contribution of one camera path to its pixel.
 struct PathSample {
   glm::vec3 radiance{0};     // linear sRGB
-  std::uint32_t number = 0;  // among the pixel's samples
-  // Of the first surface met; unused when there was none.
+  std::uint32_t number = 0;  // index among the pixel's samples
+  // First hit of the path. The members from `albedo` to `material` are unused when `hit` is false.
   bool hit = false;
   glm::vec3 albedo{0};
   glm::vec3 normal{0};                      // unit length, towards the camera
   double depth = 0;                         // along the ray, scene units
   glm::dvec3 position{0};                   // scene units
   std::uint32_t surface = 0, material = 0;  // indices into the scene's tables, or kNoId
-  // Of the field, for all the path's rays.
+  // Number of evaluations of the field by all rays of the path.
   std::uint64_t evaluations = 0;
-  std::uint64_t instructions = 0;  // over those evaluations
+  std::uint64_t instructions = 0;  // in all these evaluations
 };
 
 // The layers of a film in addition to radiance (32 bytes per pixel). Each further stage takes the bytes of radiance
 // and variance again.
 struct FilmLayers {
-  bool first_hit = true;  // albedo, normal, depth: 56 bytes a pixel
+  bool first_hit = true;  // albedo, normal, depth: 56 bytes per pixel
   bool cost = false;      // evaluations, instructions: 16
-  bool position = false;  // of the first surface: 24
-  bool ids = false;       // of the first surface: 12
+  bool position = false;  // of the first hit: 24
+  bool ids = false;       // of the first hit's surface and material: 12
   bool variance = false;  // of radiance, as if samples were independent: 48
-  // radiance of two halves of the samples, for the denoiser: 32 in a film of one stage, 0 with stages
+  // Radiance of two halves of the samples, for the denoiser: 32 in a film of one stage, 0 with more stages.
   bool halves = false;
 
   bool operator==(const FilmLayers&) const = default;
@@ -73,35 +74,36 @@ inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 struct PixelMeans {
   glm::dvec3 radiance{0};
   glm::dvec3 noisy{0};  // radiance before it was denoised; otherwise the same
-  // of stages 0 and 1; in a film of one stage of the samples with even and odd numbers
+  // Radiance of stages 0 and 1. In a film of one stage, radiance of the samples with even and with odd numbers.
   glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};
-  // Of `noisy`, the mean, as if the samples were independent: that of the samples by their number; 0 for fewer than
-  // two. Of samplers that spread samples evenly, sobol and blue, the mean's own variance is less.
+  // Variance of the mean `noisy`, as if the samples were independent: the variance of the samples over their number;
+  // 0 for fewer than two samples. The samplers sobol and blue spread samples evenly, so the mean's true variance is
+  // less.
   glm::dvec3 variance{0};
-  glm::dvec3 albedo{0};    // 0 where nothing was hit
-  glm::dvec3 normal{0};    // not normalised; 0 where nothing was hit
-  double depth = 0;        // over the samples that hit; 0 when none did
-  glm::dvec3 position{0};  // likewise
-  // Of the sample with the least number among those that hit: its surface and material counted from 1; 0 when none
-  // did.
+  glm::dvec3 albedo{0};    // 0 when no sample hit
+  glm::dvec3 normal{0};    // not normalised; 0 when no sample hit
+  double depth = 0;        // over the samples that hit; 0 when no sample hit
+  glm::dvec3 position{0};  // like `depth`
+  // Surface and material, counted from 1, of the sample with the lowest number among the samples that hit; 0 when no
+  // sample hit.
   std::uint32_t surface_id = 0, material_id = 0;
   double evaluations = 0;
   double instructions = 0;
   std::uint32_t hits = 0, samples = 0;
 };
 
-// The mean radiance of a pixel's samples of some stages, all weighing the same; a half without samples has none.
+// Mean radiance over a pixel's samples of some stages, all with equal weight. A half without samples has radiance 0.
 struct RadianceMeans {
-  glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // as PixelMeans has them
+  glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // like the members of PixelMeans
   std::uint32_t samples = 0, half_samples[2] = {0, 0};
 };
 
-__extension__ typedef unsigned __int128 WideSum;  // C++ has no name of its own for it
+__extension__ typedef unsigned __int128 WideSum;  // ISO C++ has no 128-bit integers
 
 class Film {
  public:
   Film() = default;
-  // A whole picture of that size, or a part of one.
+  // Makes an empty film of a whole image of that size, or of the part `area` of an image.
   Film(int width, int height, FilmLayers layers = {}) : Film(PixelRect{0, 0, width, height}, layers) {}
   explicit Film(PixelRect area, FilmLayers layers = {});
 
@@ -110,42 +112,45 @@ class Film {
   int height() const { return area_.height(); }
   FilmLayers layers() const { return layers_; }
 
-  // Turns an empty film into one of 2 or 4 stages. A pixel without samples in one of stages 0 and 1 has the mean of
-  // the other.
+  // Turns an empty film of one stage into a film of 2 or 4 stages. If stage 0 or 1 has no samples of a pixel, the
+  // pixel's mean is the mean of the other stage.
   void begin_stages(std::size_t count);
   std::size_t stages() const { return stages_.size(); }
 
-  // Empty again, and of another area.
+  // Makes the film empty, with one stage and a new area.
   void restart(PixelRect area);
 
-  // (x, y) is a pixel of the whole picture, within area(). To the last stage. Not to be called for one pixel by two
-  // threads at once. False when some sum is full.
+  // Adds a sample to the last stage. (x, y) is a pixel of the whole image, within area(). Two threads must not add to
+  // one pixel at once. Returns false if a sum was clamped.
   bool add(int x, int y, const PathSample& sample);
-  // Everything that `part` has, which is a film of one stage with the same layers and lies within area(), is added to
-  // the given stage; its radiance alone, where means() does not look at that. False when some sum is full.
+  // Adds `part`, a film of one stage with the same layers and within area(), to the given stage. For stages 2 and 3,
+  // which means() does not use, adds only radiance, its squares and the numbers of samples. Returns false if a sum
+  // was clamped.
   bool merge(const Film& part, std::size_t stage = 0);
 
   PixelMeans means(int x, int y) const;
-  std::uint32_t samples(int x, int y) const;  // as means() has them
-  std::uint64_t samples() const;              // of all pixels
+  std::uint32_t samples(int x, int y) const;  // same as means(x, y).samples
+  std::uint64_t samples() const;              // sum over all pixels
   RadianceMeans radiance_of(std::initializer_list<std::size_t> stages, int x, int y) const;
 
-  // The sums of the pixels in a rectangle within area(), for a file; read_sums() is false when the bytes end before.
+  // Write and read the sums of the pixels in a rectangle within area(), for film files. read_sums() returns false if
+  // the bytes end too early.
   void write_sums(PixelRect rect, vm::ByteWriter& out) const;
   bool read_sums(PixelRect rect, vm::ByteReader& in);
-  // How many bytes a pixel takes there, and in memory.
+  // Return the number of bytes per pixel in a film file and in memory.
   static std::size_t file_bytes_per_pixel(FilmLayers layers, std::size_t stages);
   static std::size_t memory_per_pixel(FilmLayers layers, std::size_t stages);
 
-  // From now on means().radiance is this, [y][x][rgb] over area(); no sum changes.
+  // Makes means() return this radiance, [y][x][rgb] over area(). No sum changes.
   void set_denoised(std::vector<float> radiance);
   bool denoised() const { return !denoised_.empty(); }
 
-  // A hash of every sum but the cost's: equal for equal pictures. FNV-1a (Fowler, Noll, Vo, 1991) over 64-bit words.
+  // Returns a hash of all sums except the cost: equal for equal images. FNV-1a (Fowler, Noll, Vo, 1991) over 64-bit
+  // words.
   std::uint64_t hash() const;
 
  private:
-  // Sums in 2^-32.
+  // Sums in units of 2^-32.
   struct Pixel {
     std::int64_t radiance[3] = {};
     std::uint32_t hits = 0, samples = 0;
@@ -154,7 +159,7 @@ class Film {
     std::int64_t albedo[3] = {}, normal[3] = {};
     std::int64_t depth = 0;
   };
-  // The sums over odd numbers; the others are what is left of the pixel's.
+  // Sums over the samples with odd numbers. The rest of the pixel's sums belongs to even numbers.
   struct OddHalf {
     std::int64_t radiance[3] = {};
     std::uint32_t samples = 0;
@@ -162,27 +167,28 @@ class Film {
   struct Position {
     std::int64_t sums[3] = {};
   };
-  // In 2^-64.
+  // Sums of squares in units of 2^-64.
   struct Squares {
     WideSum sums[3] = {};
   };
-  // The radiance of one stage, [y][x]; a layer that is not kept has none. Odd halves are of a film of one stage.
+  // Radiance of one stage, [y][x]. A layer that the film does not keep is empty. Only films of one stage have odd
+  // halves.
   struct Stage {
     std::vector<Pixel> pixels;
     std::vector<Squares> squares;
     std::vector<OddHalf> odd_halves;
   };
-  // Of the sample `number`; all bits set when none hit.
+  // Surface and material of the sample `number`; all bits are set when no sample hit.
   struct Ids {
     std::uint32_t number = ~0u, surface = kNoId, material = kNoId;
     auto operator<=>(const Ids&) const = default;
   };
-  // Plain sums: 64 bits of instructions take a pixel a lifetime.
+  // Unscaled sums: a pixel would take a lifetime to overflow 64 bits of instructions.
   struct Cost {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
-  static constexpr std::size_t kSeenStages = 2;  // of those that means() looks at
+  static constexpr std::size_t kSeenStages = 2;  // number of stages that means() uses
   std::span<const Stage> seen_stages() const {
     return std::span(stages_).first(std::min(kSeenStages, stages_.size()));
   }
@@ -190,7 +196,7 @@ class Film {
   static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
   bool add_squares(Squares& squares, glm::vec3 radiance);
   bool add_first_hit(std::size_t at, const PathSample& sample);
-  // Of a row of pixels.
+  // Merge `count` pixels of a row, from index `from` of `part` to index `to` of this film.
   bool merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to, std::size_t count);
   bool merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count);
   RadianceMeans means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const;
@@ -199,13 +205,13 @@ class Film {
 
   PixelRect area_;
   FilmLayers layers_;
-  std::vector<Stage> stages_;  // 1, 2 or 4
-  // [y][x], of both stages; a layer that is not kept has none.
+  std::vector<Stage> stages_;  // 1, 2 or 4 stages
+  // [y][x], sums over stages 0 and 1. A layer that the film does not keep is empty.
   std::vector<FirstHit> first_hits_;
   std::vector<Position> positions_;
   std::vector<Ids> ids_;
   std::vector<Cost> costs_;
-  std::vector<float> denoised_;  // [y][x][rgb]; empty until there is one
+  std::vector<float> denoised_;  // [y][x][rgb]; empty until set_denoised()
 };
 
 }  // namespace fathom::runtime

@@ -1,4 +1,4 @@
-// The film's sums as bytes and back: what film files are made of (docs/reference/film-file.md).
+// Converts the film's sums to the bytes of film files and back (docs/reference/film-file.md).
 // Tested by: tests/runtime/film/film_file_test.cpp
 #include "runtime/film/film.h"
 #include "vm/encoding/bytes.h"
@@ -6,7 +6,8 @@
 namespace fathom::runtime {
 namespace {
 
-// One walk over a pixel's sums serves both directions: `Sink` writes what it is given or fills it in.
+// visit_pixel() passes each sum of a pixel to a Sink, in the same order for both directions: Writing writes the sum,
+// Reading fills the sum in.
 struct Writing {
   vm::ByteWriter& bytes;
 

@@ -16,18 +16,19 @@
 
 namespace fathom::runtime {
 
-// The names and values of what renders must agree in; any order, but always the same.
+// Names and values in which all films of one render agree. Their order is arbitrary, but always the same.
 using Identity = std::vector<std::pair<std::string, std::string>>;
 
 struct FilmHeader {
   Identity identity;
-  Attributes attributes;      // of the pictures that are made of it, but for those about how many samples it has
-  int width = 0, height = 0;  // of the whole picture, pixels
-  SampleRange samples;        // of each pixel, that the film is to have when it is done
-  glm::dvec3 origin{0};       // of its positions in the scene, scene units
+  // Attributes of images made of the film, except attributes about the film's number of samples.
+  Attributes attributes;
+  int width = 0, height = 0;  // of the whole image, pixels
+  SampleRange samples;        // range of each pixel's samples in the finished film
+  glm::dvec3 origin{0};       // scene position of the film's zero, scene units
 };
 
-// What the film is, whether its sums were read or not.
+// Shape of a film, known even if the sums are not read.
 struct FilmShape {
   PixelRect area;
   FilmLayers layers;

@@ -18,9 +18,9 @@
 namespace fathom::runtime {
 namespace {
 
-constexpr std::size_t kPreamble = 4 + 8;  // after the magic: format, size of the head
-// A head's bytes and what they become in memory take at most so many times its size: attributes with the shortest
-// names and values are nodes of 144 bytes made of 12.
+constexpr std::size_t kPreamble = 4 + 8;  // bytes after the magic: format, size of the head
+// Max memory for a head, relative to its size in the file: its bytes and the objects made of them. An attribute with
+// the shortest name and value has 12 bytes in the file and a node of 144 bytes in memory.
 constexpr double kHeadGrowth = 16;
 
 void write_digest(std::span<const std::uint8_t> bytes, AtomicFile& file) {
@@ -31,7 +31,7 @@ void write_digest(std::span<const std::uint8_t> bytes, AtomicFile& file) {
   file.write(out.bytes());
 }
 
-// A file that is read from front to back, with a checksum after each part.
+// Reads a file from front to back, with a checksum after each part.
 class Input {
  public:
   explicit Input(const std::string& path) : path_(path) {
@@ -49,7 +49,7 @@ class Input {
   const std::optional<UnreadFilm>& unread() const { return unread_; }
   std::uint64_t left() const { return left_; }
 
-  // The next bytes; none when there are fewer or they cannot be read.
+  // Returns the next bytes; none if the file has fewer or cannot be read.
   std::span<const std::uint8_t> take(std::uint64_t count) {
     if (unread_) return {};
     if (count > left_) return refuse("it ends too early");
@@ -61,7 +61,7 @@ class Input {
     left_ -= count;
     return bytes_;
   }
-  // The same with the checksum that follows them.
+  // Like take(), but also reads the checksum that follows the bytes, and refuses the file if the two do not match.
   std::span<const std::uint8_t> take_checked(std::uint64_t count) {
     if (count > left_) return refuse("it ends too early");
     const std::span<const std::uint8_t> all = take(count + kDigestSize);

@@ -1,9 +1,10 @@
-// Film files: what there is of a render, as sums, with all it takes to go on, to add it to other parts of the same
-// render, and to write pictures. A checkpoint is one, `-o part.film` writes one. docs/reference/film-file.md
-// gives every byte.
+// Film files hold a render, finished or not, as sums, with all data needed to resume the render, to add it to other
+// parts of the same render, and to write images. A checkpoint is a film file, and `-o part.film` writes a film file.
+// docs/reference/film-file.md specifies every byte.
 //
-// Two films are of the same render when their identities agree: every setting that changes a sample, by name. What is
-// read may be anything: nothing is set aside for what is not there, and every part has a checksum.
+// Two films belong to the same render if their identities agree. An identity lists, by name, every setting that
+// changes a sample. A file may hold any bytes, so the reader allocates no memory for data that the file does not
+// have, and verifies a checksum of every part.
 //
 //     FilmFile file = std::get<FilmFile>(read_film("part.film"));
 //     if (auto problem = write_film(file.header, file.render, "copy.film")) ...
@@ -24,27 +25,28 @@
 
 namespace fathom::runtime {
 
-// What two identities differ in, for people, with words for where each is: "spp is 64 there and 128 here".
+// Returns a message for each difference of two identities, such as "spp is 64 there and 128 here". `there` and `here`
+// say where the first and the second identity come from.
 std::vector<std::string> differences(const Identity& first, const Identity& second, std::string_view there = "there",
                                      std::string_view here = "here");
 
 struct UnreadFilm {
-  std::string problem;  // for people
-  bool missing;         // there is no such file, or it cannot be read
-  bool foreign;         // it does not begin as a film: it is something else of somebody's
+  std::string problem;  // a message
+  bool missing;         // the file does not exist or cannot be read
+  bool foreign;         // the file does not begin like a film, so it is some other file of the user
 };
 
-// Appends everything to the file, whose problems are its own.
+// Appends the film to `file`, which records problems.
 void write_film(const FilmHeader& header, const PartialRender& render, AtomicFile& file);
 [[nodiscard]] std::optional<std::string> write_film(const FilmHeader& header, const PartialRender& render,
                                                     const std::string& path);
 
-// Refuses one that would take more memory than the limits say before it takes it.
+// Reads a film file. Refuses a film above the limits before allocating its memory.
 std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const ReadLimits& limits = {});
-// The same without the sums: the film has no pixels.
+// Like read_film(), but without the sums: the film has no pixels.
 std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits = {});
-// From now on memory that is freed is not given back to the system page by page: of many films read one after the
-// other, each else takes new pages, which is half the time.
+// Makes the process keep freed memory instead of returning it to the system page by page. Otherwise each of many
+// films read in turn would take new pages, which is half the time.
 void keep_freed_memory();
 
 }  // namespace fathom::runtime

@@ -10,10 +10,11 @@ namespace fathom::runtime {
 namespace {
 
 constexpr const char* kBadHeader = "its head makes no sense";
-// Of an identity: some ten times as many as there are, for comparing takes their square.
+// Max rows of an identity, about ten times the number that a render writes: comparing identities takes quadratic
+// time.
 constexpr std::size_t kMostRows = 256;
 
-// The bits of a film's layers.
+// Layers of a film, by bit from the lowest.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
                                             &FilmLayers::ids,       &FilmLayers::variance, &FilmLayers::halves};
 
@@ -33,7 +34,7 @@ FilmLayers read_layers(vm::ByteReader& in) {
   return layers;
 }
 
-// As long as it likes, for scenes name things as they like: no longer than what is there.
+// Reads a text of any length up to the rest of the head, because scenes may use names of any length.
 std::string text_of(vm::ByteReader& in) { return in.text(in.left()); }
 
 void write_value(const Attribute& value, vm::ByteWriter& out) {
@@ -51,7 +52,7 @@ void write_value(const Attribute& value, vm::ByteWriter& out) {
   }
 }
 
-// In the order of Attribute's alternatives.
+// Reads a value. Kinds count in the order of Attribute's alternatives.
 Attribute read_value(vm::ByteReader& in) {
   const auto number = [&] { return std::bit_cast<float>(in.u32()); };
   switch (in.u8()) {
@@ -87,7 +88,7 @@ PixelRect read_rect(vm::ByteReader& in) {
   return rect;
 }
 
-// Whether it is a rectangle with pixels, within `outer`.
+// True if `rect` has pixels and lies within `outer`.
 bool is_within(PixelRect rect, PixelRect outer) {
   return outer.x0 <= rect.x0 && rect.x0 < rect.x1 && rect.x1 <= outer.x1 && outer.y0 <= rect.y0 &&
          rect.y0 < rect.y1 && rect.y1 <= outer.y1;
@@ -97,8 +98,8 @@ bool is_range(SampleRange samples) {
   return samples.first < samples.last && samples.last <= static_cast<std::uint32_t>(compiler::kMaxSpp);
 }
 
-// Blocks that are not in their one form may be there twice. That is looked at, not made: what is read may be
-// anything, and tidying what overlaps takes far longer than reading it.
+// Refuses blocks that are not in the canonical form, because they may overlap. Checks the form instead of making it:
+// the file may hold any blocks, and tidying overlapping blocks takes far longer than reading them.
 Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   Coverage covered;
   const std::size_t count = in.count(24);
@@ -117,7 +118,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   return covered;
 }
 
-// Reads the state of adaptive sampling: all tiles of a film with stages, none of a film without.
+// Reads the state of adaptive sampling: all tiles of a film with several stages, no tiles of a film with one stage.
 AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   constexpr auto kMost = static_cast<std::uint32_t>(compiler::kMaxSpp);
   AdaptiveState state;
@@ -196,7 +197,7 @@ std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   const std::size_t attributes = in.count(5);
   for (std::size_t i = 0; i < attributes && !in.failed(); ++i) {
     const std::string name = text_of(in);
-    if (!header.attributes.empty() && header.attributes.rbegin()->first >= name) in.fail();  // as they are written
+    if (!header.attributes.empty() && header.attributes.rbegin()->first >= name) in.fail();  // names are in order
     header.attributes[name] = read_value(in);
   }
   header.width = static_cast<int>(in.u32());

@@ -1,4 +1,4 @@
-// The layers of a film, as pictures.
+// The layers of a film as images.
 // Tested by: tests/runtime/image/image_test.cpp
 #pragma once
 
@@ -7,10 +7,10 @@
 
 namespace fathom::runtime {
 
-// Refers to the film.
+// Returns the values of a layer, which refer to the film.
 LayerValues layer_of(const Film& film, Layer layer);
 
-// In one step.
+// Converts a layer of the film to an image of 8 bits.
 inline Picture layer_picture(const Film& film, Layer layer, ToneMapping tone = {}) {
   return to_picture(Shown(layer_of(film, layer), tone));
 }

@@ -1,4 +1,4 @@
-// A render under way or done: its film, and which samples are in it. What a checkpoint holds.
+// A render in progress or finished, as a checkpoint stores it: its film, and the samples that are in the film.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace fathom::runtime {
 
 struct PartialRender {
   Film film;
-  std::vector<Coverage> covered;  // [stage of the film]; the samples counted from 0 in each
+  std::vector<Coverage> covered;  // [stage of the film]; each stage counts its samples from 0
   AdaptiveState adaptive;         // no tiles if all pixels take the same number of samples
 };
 

@@ -1,7 +1,7 @@
-"""Checks the manifests of examples/farm against Kubernetes' and AWS Batch's own models: check_manifests.py FOLDER.
+"""Checks the manifests of examples/farm against the models of Kubernetes and AWS Batch: check_manifests.py FOLDER.
 
-An indexed job is read by Kubernetes' client library, which knows the fields that must be there, and written again: a field
-that it does not know is lost on the way. AWS Batch's requests are checked by botocore's model of the service.
+Kubernetes' client library, which knows the required fields, reads an indexed job and writes it again. A field that
+the library does not know is lost on the way. botocore's model of the service checks the requests to AWS Batch.
 """
 
 import json

@@ -11,12 +11,12 @@
 namespace fathom::cli {
 namespace {
 
-// Of the film, of denoising it and of the picture written. A file of all layers is written row by row, but held whole
-// on its way to standard output.
+// Returns the bytes per pixel of the film, of denoising and of the image that is written. A file with all layers is
+// written row by row, except to standard output, before which it is held whole.
 double bytes_per_pixel(const runtime::Settings& settings, const RenderRequest& request) {
   const auto film =
       static_cast<double>(runtime::Film::memory_per_pixel(settings.layers, runtime::stages_of(settings)));
-  // SIGUSR1 denoises a copy, beside which the render goes on.
+  // SIGUSR1 denoises a copy of the film while the render continues.
   return film + kPictureBytes + (request.denoise ? film + kDenoiserBytes : 0) +
          (holds_whole(request.outputs) ? film : 0);
 }
@@ -44,7 +44,8 @@ void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene) {
   const double left = allowed_memory(request.scene.limits) -
                       static_cast<double>(settings.crop.pixels()) * bytes_per_pixel(settings, request);
   const auto most = static_cast<double>(request.options.region_memory);
-  // Half of it, for building them takes more than they do; whole MiB, as the render's identity has it.
+  // Half of the rest, because building regions takes more memory than the regions. Whole MiB, because the render's
+  // identity states MiB.
   request.options.region_memory = static_cast<std::size_t>(std::clamp(left / 2, 0.0, most)) >> 20 << 20;
 }
 

@@ -1,4 +1,4 @@
-// The memory that a render is going to take, before it does, and how much of it is left to its regions.
+// Predicts the memory of a render, and limits the memory of its regions.
 // Tested by: tests/runtime/cli/input/cli_limits_test.cpp
 #pragma once
 
@@ -9,12 +9,13 @@
 
 namespace fathom::cli {
 
-// An ExitCode, after a message, when the render would take more than is allowed: kUsage when its size is the command
-// line's, else kBadScene.
+// Prints a message and returns an exit code if the render would take more memory than is allowed: kUsage if the
+// command line sets the size, else kBadScene.
 std::optional<ExitCode> check_memory(const RenderRequest& request, const compiler::CompiledScene& scene,
                                      const Streams& streams);
 
-// Leaves the render's regions no more memory than the limit leaves beside the film: they change no picture.
+// Limits the render's regions to the memory that the limit leaves in addition to the film. Regions do not change the
+// image.
 void fit_regions(RenderRequest& request, const compiler::CompiledScene& scene);
 
 }  // namespace fathom::cli

@@ -64,7 +64,7 @@ void add_file_options(Arguments& arguments, RenderRequest& request) {
   add_profile_option(arguments, request);
 }
 
-// Of the picture that the files hold; of the same group.
+// Adds the options of the image in the files, to the current group.
 void add_film_options(Arguments& arguments, RenderRequest& request) {
   arguments.option("-r,--res,--resolution", "WIDTH", "Width in pixels; the height follows from the aspect ratio",
                    whole(request.resolution, 1, compiler::kMaxSide));
@@ -119,7 +119,7 @@ void add_renderer_options(Arguments& arguments, RenderRequest& request) {
                    into(read_positive, options.far));
 }
 
-// How the work is done; of the same group.
+// Adds the options of how the work is done, to the current group.
 void add_running_options(Arguments& arguments, RenderRequest& request) {
   add_threads_option(arguments, request);
   arguments.flag("--watch", "Render again whenever the scene's file changes; Ctrl-C ends (status 130)",

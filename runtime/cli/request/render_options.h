@@ -1,4 +1,4 @@
-// The options of `fathom render`, and which of them `fathom plan` has, too.
+// The options of `fathom render`, some of which `fathom plan` shares.
 // Tested by: tests/runtime/cli/cli_test.cpp, tests/runtime/cli/plan/cli_plan_test.cpp
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace fathom::cli {
 
-// Those that say what is rendered, whatever files it goes to and however the work is done.
+// Adds the options that define the image, independent of output files and of how the work is done.
 void add_picture_options(Arguments& arguments, RenderRequest& request);
 
-// The request for what a plan says with options of add_picture_options() and --define, and whoever runs it with those
-// in `running`: a plan comes from strangers, and can neither name files nor raise limits. Or the exit code after a
-// message.
+// Parses the request of a plan. `planned` holds the plan's options: those of add_picture_options() and --define.
+// `running` holds the options of the user who runs the plan. A plan may come from a stranger, so its options can
+// neither name files nor raise limits. Prints a message and returns an exit code if options are invalid.
 std::variant<RenderRequest, ExitCode> parse_planned(std::span<const std::string> planned,
                                                     std::span<const std::string> running, const Streams& streams);
 
-// The request, or the exit code after help or a message.
+// Parses the command line. Prints help or a message and returns an exit code if there is nothing to render.
 std::variant<RenderRequest, int> parse_render(std::span<const std::string> args, const Streams& streams);
 
 }  // namespace fathom::cli

@@ -14,7 +14,7 @@ namespace {
 constexpr int kPreviewShrink = 4;
 constexpr int kPreviewSpp = 4;
 
-// The marching asked for, or the exit code after a message about options that do not go together.
+// Returns the requested marching. Prints a message and returns an exit code if options conflict.
 std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& request, const Streams& streams) {
   runtime::Marching marching;
   if (request.method >= 0) marching.method = runtime::kMethods[request.method].method;
@@ -48,7 +48,8 @@ int pixel_of(const CropSides::Side& side, int length) {
   return static_cast<int>(std::min(side.percent ? std::round(side.value * length / 100) : side.value, 1e9));
 }
 
-// The crop's pixels, or the exit code after a message.
+// Returns the crop's pixels. Prints a message and returns an exit code if the crop is empty or reaches beyond the
+// image.
 std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int width, int height,
                                                    const Streams& streams) {
   const runtime::PixelRect area{pixel_of(crop.x0, width), pixel_of(crop.y0, height), pixel_of(crop.x1, width),
@@ -65,7 +66,8 @@ std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int wi
   return area;
 }
 
-// Reports options that do not go with a noise threshold. A scene that has one and too few samples goes without.
+// Prints a message and returns an exit code if options conflict with a noise threshold. Too few samples only disable
+// a threshold that the scene sets.
 std::optional<ExitCode> check_noise_threshold(const RenderRequest& request, const compiler::CompiledScene& scene,
                                               const Streams& streams) {
   const bool asked = request.options.noise_threshold.has_value();
@@ -97,7 +99,7 @@ std::optional<ExitCode> check_watch(const RenderRequest& request, const Streams&
   return std::nullopt;
 }
 
-// Of options that do not go together, whatever the scene.
+// Prints a message and returns an exit code if options conflict, whatever the scene.
 std::optional<ExitCode> check_together(const RenderRequest& request, const Streams& streams) {
   if (request.size && (request.resolution || request.aspect)) {
     return fail(streams, kUsage, "--size gives width and height; it does not go with --resolution or --aspect");
@@ -115,7 +117,7 @@ std::optional<ExitCode> check_together(const RenderRequest& request, const Strea
   return std::nullopt;
 }
 
-// What the flags mean for the renderer.
+// Translates the flags to options of the renderer.
 void put_flags(RenderRequest& request) {
   runtime::RenderOptions& options = request.options;
   if (request.preview) {

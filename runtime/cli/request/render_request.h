@@ -21,8 +21,8 @@ namespace fathom::cli {
 struct RenderRequest {
   SceneArguments scene;
   std::vector<Output> outputs;  // at least one
-  int format = -1;              // of -o -, see put_formats()
-  bool default_output = false;  // the name was made from the scene's
+  int format = -1;              // index of --format; -1: not given; see put_formats()
+  bool default_output = false;  // true if the output's name comes from the scene's name
   bool albedo = false, depth = false, normal = false;
   std::optional<double> aspect, fov;  // width over height; radians
   CameraOptions camera;
@@ -34,7 +34,7 @@ struct RenderRequest {
   int bits = 0;                    // an index into 8, 16
   std::optional<int> threads;
   int sampler = -1, filter = -1;   // a SamplerKind, a FilterKind; -1: not given
-  runtime::RenderOptions options;  // width and height are not set; crop is by override_scene()
+  runtime::RenderOptions options;  // without width and height; override_scene() sets crop
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
@@ -45,36 +45,36 @@ struct RenderRequest {
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
   int light_sampling = -1;  // a runtime::LightSampling; -1: not given
-  bool denoise = false;  // settled: of --denoise, --no-denoise and --preview
+  bool denoise = false;     // after settle(): also for --preview without --no-denoise
   bool no_denoise = false;
   LongRender long_render;
   FrameOptions frames;
   UnitOptions units;
-  // Of a request for one frame of several: its number, and which it is of how many.
+  // In a request for one of several frames: the frame's number, its index among the frames, and the number of frames.
   struct Frame {
     int number, index, count;
   };
   std::optional<Frame> frame;
-  // Of a request for one unit of a plan: its number.
+  // In a request for one unit of a plan: the unit's number.
   std::optional<std::uint64_t> unit;
   bool preview = false, watch = false;
   bool quiet = false;
 };
 
-// The name of the checkpoint when the command line does not say it: beside the first output that is a file. None
-// when standard output is the only one.
+// Returns the checkpoint's default name, next to the first output that is a file; nullopt if standard output is the
+// only output.
 std::optional<std::string> default_checkpoint(const RenderRequest& request);
 
-// Puts what was asked for together. An ExitCode, after a message, when some of it does not go with other of it,
-// whatever the scene.
+// Combines the options. Prints a message and returns an exit code if options conflict, whatever the scene.
 std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams);
 
-// Puts the request's camera, size, tone and crop over the scene's. An ExitCode, after a message, when they do not fit
-// together.
+// Overrides the scene's camera, size, tone and crop with the request's. Prints a message and returns an exit code if
+// they do not fit together.
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
 
-// Puts the request's field of view and camera over those of the scene, whose film is settled. Likewise.
+// Overrides the scene's field of view and camera with the request's. The size of the scene's film must be final.
+// Prints a message and returns an exit code if they do not fit together.
 std::optional<ExitCode> override_camera(const RenderRequest& request, compiler::CompiledScene& scene,
                                         const Streams& streams);
 

@@ -1,5 +1,5 @@
-// Options of `fathom render` that do not go with where its pictures go: to standard output, or to a file for each
-// frame.
+// Checks for options of `fathom render` that conflict with the destination of its images: standard output, or a file
+// per frame.
 // Tested by: tests/runtime/cli/options/cli_output_test.cpp, tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace fathom::cli {
 
-// An ExitCode, after a message, when another option of the request does not go with `-o -`.
+// Prints a message and returns an exit code if another option of the request conflicts with `-o -`.
 std::optional<ExitCode> check_standard_output(const RenderRequest& request, const Streams& streams);
 
-// An ExitCode, after a message, when another option of the request does not go with --frames, or one that does is
-// given without.
+// Prints a message and returns an exit code if another option of the request conflicts with --frames, or if the
+// request has an option that needs --frames without --frames.
 std::optional<ExitCode> check_frames(const RenderRequest& request, const Streams& streams);
 
 }  // namespace fathom::cli
