@@ -130,43 +130,14 @@ enum class Kind : std::uint8_t {
   // Paint: the child's points belong to surface number params[0] (compiled_scene.h) unless a Paint further in says
   // otherwise.
   Paint,
-  // functions of numbers, for formulas
+  // numbers and functions of numbers, for formulas
   X,
   Y,
   Z,
   Constant,
-  Negate,
-  Abs,
-  Square,
-  Sqrt,
-  Sin,
-  Cos,
-  Tan,
-  Asin,
-  Acos,
-  Atan,
-  Exp,
-  Log,
-  Floor,
-  Ceil,
-  Nearest,
-  Sign,
-  Not,
-  Add,
-  Minus,
-  Multiply,
-  Divide,
-  Modulo,
-  ModuloEuclid,
-  Minimum,
-  Maximum,
-  Atan2,
-  Power,
-  Compare,
-  And,
-  Or,
-  Step,
-  Noise,
+#define FUNCTION(Name, ...) Name,
+#define FUNCTION_OF(Name, ...) Name,
+#include "vm/program/functions.def"
 };
 
 inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;

@@ -86,6 +86,8 @@ struct NodeSpec {
 
   // sort of the node's value; Solid also if the operands decide (see `operand`)
   Sort sort = Sort::Solid;
+  // true for a function whose operands may be exchanged
+  bool commutes = false;
   // sort of the children; nullopt: solids or outlines, and the node's value is of the same sort
   std::optional<Sort> operand = std::nullopt;
 

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "vm/program/opcode_rows.h"
+
 namespace fathom::compiler {
-namespace {
-
-
-}  // namespace
 
 Code one(vm::Opcode opcode, std::vector<double> immediates) {
   Code code;
   code.after.push_back({opcode, std::move(immediates)});
+  if (vm::has(opcode, vm::Fact::Commutes)) code.swapped_join = code.after;
   return code;
 }
 

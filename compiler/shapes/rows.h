@@ -32,6 +32,8 @@ ParamSpec corner(std::string_view name);
 ParamSpec thickness();
 ParamSpec blend_width();
 
+// Returns code of one instruction, which takes two operands in either order if the opcode's row says that they
+// commute.
 Code one(vm::Opcode opcode, std::vector<double> immediates);
 // Returns code of one instruction, whose immediates are the parameters or the result of `Immediates`.
 template <vm::Opcode Op>

@@ -66,6 +66,11 @@ constexpr bool has(Fact facts, Fact wanted) {
   return (static_cast<std::uint16_t>(facts) & static_cast<std::uint16_t>(wanted)) != 0;
 }
 
+// Returns the number of values that a function takes; 0 for the other forms.
+constexpr int operand_count(Form form) {
+  return form == Form::Unary ? 1 : form == Form::Binary ? 2 : form == Form::Ternary ? 3 : 0;
+}
+
 // Change of the two stacks' heights by an instruction; *_needed is the height required before the instruction.
 struct StackEffect {
   int values_needed, values_change;
@@ -105,7 +110,7 @@ struct OpcodeInfo {
   std::string_view immediate_names;  // separated by blanks; ":24" marks an integer from 1 to 24
   int immediates;                    // number of words after the opcode word, in an Outline per group
   Choice choice;
-  int cost;            // multiply-adds per point, in an Outline per group
+  int cost;  // multiply-adds per point, in an Outline per group
   Fact facts;
   StackEffect effect;  // of the instruction without kMoved, kJoined or Sources
   bool has_operand;    // true if the opcode word's high 24 bits are a number
