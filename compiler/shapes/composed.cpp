@@ -13,7 +13,6 @@
 namespace fathom::compiler {
 namespace {
 
-
 NodeId place(Graph& graph, NodeId child, const std::array<double, 13>& transform, const Origin& origin) {
   return graph.add(Kind::Transform, transform, std::array{child}, origin);
 }
