@@ -6,10 +6,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/shapes/node_table.h"
+#include "compiler/shapes/bounds.h"
+#include "tests/compiler/shapes/primitives.h"
+#include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random/random_scene.h"
-#include "vm/interpret/evaluate.h"
 
 namespace fathom::test::solids_test {
 namespace {
@@ -31,6 +31,28 @@ double distance_to_cubes(dvec3 p, dvec3 centre, double half, int levels) {
 }
 
 }  // namespace
+
+TEST_CASE("solids composed of others have the judge's distance, a box and a constant that hold", "[shapes]") {
+  vm::Workspace workspace;
+  for (const compiler::NodeSpec& row : compiler::node_table()) {
+    if (row.expand == nullptr) continue;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      INFO(s.name << ", seed " << seed);
+      const compiler::Knowledge known = compiler::analyse(s.scene.graph)[s.scene.root];
+      const vm::VerifiedProgram program = plain_lowering(s.scene);
+      for (int i = 0; i < 50; ++i) {
+        const dvec3 p = random_point(random), q = p + random.direction() * random.length(1e-3, 2);
+        const double d = vm::evaluate_distance(program, p, workspace);
+        CHECK(std::abs(d - judge_distance(s.scene.graph, s.scene.root, p)) <= 1e-13 * scale_of(p));
+        CHECK((known.box.contains(p) || d > -1e-14));
+        CHECK(std::abs(d - vm::evaluate_distance(program, q, workspace)) <=
+              known.lipschitz * glm::length(p - q) + 1e-12 * scale_of(p));
+      }
+    }
+  }
+}
 
 TEST_CASE("a Menger sponge is what its cubes are, and its field never more than their distance", "[shapes]") {
   vm::Workspace workspace;
