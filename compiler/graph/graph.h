@@ -41,6 +41,7 @@ enum class Kind : std::uint8_t {
   CutSphere,
   CutHollowSphere,
   DeathStar,
+  Tube,
   Vesica,
   Rhombus,
   HexagonalPrism,

@@ -104,6 +104,26 @@ TEST_CASE("a link is all within its radius of a racetrack", "[shapes]") {
   }
 }
 
+// In the half-plane of the distance from the axis and y, the wall is a rectangle.
+TEST_CASE("a tube is as far as its wall", "[shapes]") {
+  vm::Workspace workspace;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const std::vector<double> k = random_params(Kind::Tube, random);
+    const compiler::Scene scene = single(Kind::Tube, k);
+    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    CHECK((known.outside == compiler::Exactness::Exact && known.inside == compiler::Exactness::Exact));
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p = random.in_box(2);
+      const double beside = std::abs(std::hypot(p.x, p.z) - k[0]) - k[2], above = std::abs(p.y) - k[1];
+      const double outside = std::hypot(std::max(beside, 0.0), std::max(above, 0.0));
+      const double truth = outside > 0 ? outside : std::max(beside, above);
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - truth) <= 1e-14 * 4);
+    }
+  }
+}
+
 // A point is inside if its orbit stays in the ball outside which every orbit escapes.
 TEST_CASE("a Julia set is negative where orbits stay, positive where they leave, and never NaN", "[shapes]") {
   vm::Workspace workspace;
