@@ -3,15 +3,14 @@
 
 #include "compiler/graph/rewrite.h"
 #include "compiler/passes/passes.h"
+#include "compiler/shapes/node_table.h"
 
 namespace fathom::compiler {
 
 Scene share(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     const Kind kind = scene.graph.kind(id);
-    const bool commutes =
-        kind == Kind::Add || kind == Kind::Multiply || kind == Kind::Minimum || kind == Kind::Maximum;
-    if (commutes) {
+    if (spec(kind).commutes) {
       const std::array<NodeId, 2> operands = {std::min(children[0], children[1]), std::max(children[0], children[1])};
       return out.add(kind, {}, operands, scene.graph.origin(id));
     }

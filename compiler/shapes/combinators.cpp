@@ -102,8 +102,8 @@ Complaint check_morph(Params params) {
 }
 
 Code any_order(Opcode opcode) {
-  Code code{.after = {{opcode}}, .any_order = true};
-  code.swapped_join = code.after;
+  Code code = one(opcode, {});
+  code.any_order = true;
   return code;
 }
 Code union_code(Params) { return any_order(Opcode::Min); }
@@ -117,16 +117,6 @@ Code subtraction_code(Params) {
 // divide by the width.
 std::vector<double> blend_immediates(Params params) {
   return {params[0], params[0] > kLeastBlend ? 0.25 / params[0] : 0};
-}
-Code smooth_union_code(Params params) {
-  Code code = code_of<Opcode::SmoothMin, blend_immediates>(params);
-  code.swapped_join = code.after;
-  return code;
-}
-Code smooth_intersection_code(Params params) {
-  Code code = code_of<Opcode::SmoothMax, blend_immediates>(params);
-  code.swapped_join = code.after;
-  return code;
 }
 Code smooth_subtraction_code(Params params) {
   Code code = code_of<Opcode::SmoothSubtract, blend_immediates>(params);
@@ -189,9 +179,10 @@ std::vector<NodeSpec> combinator_rows() {
                  know_subtraction),
       combinator(Kind::Xor, "xor", {}, "what is in an odd number of the nodes", xor_code, know_xor),
       combinator(Kind::SmoothUnion, "smooth_union", {blend_width()}, "union, blended from the left",
-                 smooth_union_code, know_smooth_union),
+                 code_of<Opcode::SmoothMin, blend_immediates>, know_smooth_union),
       combinator(Kind::SmoothIntersection, "smooth_intersection", {blend_width()},
-                 "intersection, blended from the left", smooth_intersection_code, know_smooth_intersection),
+                 "intersection, blended from the left", code_of<Opcode::SmoothMax, blend_immediates>,
+                 know_smooth_intersection),
       combinator(Kind::SmoothSubtraction, "smooth_subtraction", {blend_width()}, "subtraction, blended from the left",
                  smooth_subtraction_code, know_smooth_subtraction),
       combinator(Kind::ChamferUnion, "chamfer_union", {width}, "union, its inner edges filled at 45 degrees",

@@ -13,7 +13,6 @@
 namespace fathom::compiler {
 namespace {
 
-
 NodeId place(Graph& graph, NodeId child, const std::array<double, 13>& transform, const Origin& origin) {
   return graph.add(Kind::Transform, transform, std::array{child}, origin);
 }
@@ -63,6 +62,17 @@ Complaint check_cut_hollow_sphere(Params p) {
   if (std::abs(p[1]) < p[0] && p[2] < p[0]) return std::nullopt;
   return fmt::format("`height` {} must lie between -radius and radius, and `thickness` {} be less than `radius` {}",
                      p[1], p[2], p[0]);
+}
+
+// Turns the wall, a rectangle beside the axis, about that axis.
+NodeId tube_around(Graph& graph, Params p, const Origin& origin) {
+  const NodeId wall = graph.add(Kind::Rectangle, std::array{p[2], p[1]}, {}, origin);
+  return graph.add(Kind::Revolve, std::array{p[0], 1.0}, std::array{wall}, origin);
+}
+Complaint check_tube(Params p) {
+  if (p[2] < p[0]) return std::nullopt;
+  return fmt::format("`thickness` {} is not smaller than `radius` {}, which leaves no hole; use `cylinder`", p[2],
+                     p[0]);
 }
 
 // The sides of a diamond with half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle. Rounding takes its
@@ -154,6 +164,14 @@ std::vector<NodeSpec> composed_rows() {
        .doc = "a ball with a dent the shape of a ball",
        .check = check_outline<Kind::Moon>,
        .expand = revolved<Kind::Moon>},
+      {.kind = Kind::Tube,
+       .name = "tube",
+       .category = kPrimitive,
+       .params = {length("radius", "of the middle of the wall"), length("half_height", "along y"), thickness()},
+       .doc = "a pipe: a cylinder with a hole along y, flat ends",
+       .check = check_tube,
+       .expand = tube_around,
+       .between = Between{"half_height", 0.5}},
       {.kind = Kind::Vesica,
        .name = "vesica",
        .category = kPrimitive,

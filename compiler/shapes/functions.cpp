@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compiler/shapes/rows.h"
+#include "vm/program/opcode_rows.h"
 
 namespace fathom::compiler {
 namespace {
@@ -24,35 +25,25 @@ Knowledge know_number(Params, std::span<const Knowledge>) {
 }
 
 template <Opcode Op>
-Code commutative(Params) {
-  Code code;
-  code.after = {{Op}};
-  code.swapped_join = code.after;
+Code function_code(Params params) {
+  Code code = code_of<Op>(params);
+  // a - b equals -b + a, to the last bit.
+  if (Op == Opcode::Minus) code.swapped_first = {{Opcode::Negate}}, code.swapped_join = {{Opcode::Add}};
+  code.all_at_once = vm::info(Op).form == vm::Form::Ternary;
   return code;
-}
-// a - b equals -b + a, to the last bit.
-Code minus_code(Params) {
-  return {.after = {{Opcode::Minus}}, .swapped_first = {{Opcode::Negate}}, .swapped_join = {{Opcode::Add}}};
 }
 
 template <Opcode Op>
-Code all_at_once(Params) {
-  Code code;
-  code.after = {{Op}};
-  code.all_at_once = true;
-  return code;
-}
-
-NodeSpec function(Kind kind, std::string_view name, Code (*code)(Params), std::string_view doc,
-                  std::vector<ParamSpec> params = {}) {
+NodeSpec function(Kind kind, std::string_view name, std::string_view doc, std::vector<ParamSpec> params = {}) {
   return {.kind = kind,
           .name = name,
           .category = Category::Function,
           .params = std::move(params),
           .doc = doc,
           .sort = Sort::Number,
+          .commutes = vm::has(Op, vm::Fact::Commutes),
           .operand = Sort::Number,
-          .code = code,
+          .code = function_code<Op>,
           .know = know_number};
 }
 
@@ -82,47 +73,20 @@ Code bounded_code(Params p) {
   return code;
 }
 
-}  // namespace
-
-std::vector<NodeSpec> function_rows() {
-  const ParamSpec value = number("value", "a number");
+std::vector<NodeSpec> scalar_rows() {
   return {
-      function(Kind::X, "x", code_of<Opcode::X>, "the point's x"),
-      function(Kind::Y, "y", code_of<Opcode::Y>, "the point's y"),
-      function(Kind::Z, "z", code_of<Opcode::Z>, "the point's z"),
-      function(Kind::Constant, "constant", code_of<Opcode::Constant>, "a number", {value}),
-      function(Kind::Negate, "negate", code_of<Opcode::Negate>, "-a"),
-      function(Kind::Abs, "abs", code_of<Opcode::Abs>, "a without its sign"),
-      function(Kind::Square, "square", code_of<Opcode::Square>, "a times a"),
-      function(Kind::Sqrt, "sqrt", code_of<Opcode::Sqrt>, "the square root"),
-      function(Kind::Sin, "sin", code_of<Opcode::Sin>, "the sine, a in radians"),
-      function(Kind::Cos, "cos", code_of<Opcode::Cos>, "the cosine, a in radians"),
-      function(Kind::Tan, "tan", code_of<Opcode::Tan>, "the tangent, a in radians"),
-      function(Kind::Asin, "asin", code_of<Opcode::Asin>, "the angle whose sine is a, radians"),
-      function(Kind::Acos, "acos", code_of<Opcode::Acos>, "the angle whose cosine is a, radians"),
-      function(Kind::Atan, "atan", code_of<Opcode::Atan>, "the angle whose tangent is a, radians"),
-      function(Kind::Exp, "exp", code_of<Opcode::Exp>, "e to the power of a"),
-      function(Kind::Log, "log", code_of<Opcode::Log>, "the natural logarithm"),
-      function(Kind::Floor, "floor", code_of<Opcode::Floor>, "the largest whole number up to a"),
-      function(Kind::Ceil, "ceil", code_of<Opcode::Ceil>, "the smallest whole number from a"),
-      function(Kind::Nearest, "nearest", code_of<Opcode::Nearest>, "the nearest whole number, the even one of two"),
-      function(Kind::Sign, "sign", code_of<Opcode::Sign>, "-1, 0 or 1"),
-      function(Kind::Not, "not", code_of<Opcode::Not>, "1 where a is 0, else 0"),
-      function(Kind::Add, "add", commutative<Opcode::Add>, "a + b"),
-      function(Kind::Minus, "minus", minus_code, "a - b"),
-      function(Kind::Multiply, "multiply", commutative<Opcode::Multiply>, "a times b"),
-      function(Kind::Divide, "divide", code_of<Opcode::Divide>, "a divided by b"),
-      function(Kind::Modulo, "modulo", code_of<Opcode::Modulo>, "a - b floor(a / b)"),
-      function(Kind::ModuloEuclid, "modulo_euclid", code_of<Opcode::ModuloEuclid>, "what is left of a, at least 0"),
-      function(Kind::Minimum, "min", commutative<Opcode::Min>, "the lesser of a and b"),
-      function(Kind::Maximum, "max", commutative<Opcode::Max>, "the greater of a and b"),
-      function(Kind::Atan2, "atan2", code_of<Opcode::Atan2>, "the angle of the point (b, a), radians"),
-      function(Kind::Power, "power", code_of<Opcode::Power>, "a to the power of b"),
-      function(Kind::Compare, "compare", code_of<Opcode::Compare>, "-1, 0 or 1 as a is less than, equal to, above b"),
-      function(Kind::And, "and", code_of<Opcode::And>, "b where a is not 0, else a"),
-      function(Kind::Or, "or", code_of<Opcode::Or>, "a where it is not 0, else b"),
-      function(Kind::Step, "step", code_of<Opcode::Step>, "0 where b is less than a, else 1"),
-      function(Kind::Noise, "noise", all_at_once<Opcode::Noise>, "gradient noise at the point (a, b, c)"),
+      function<Opcode::X>(Kind::X, "x", "the point's x"),
+      function<Opcode::Y>(Kind::Y, "y", "the point's y"),
+      function<Opcode::Z>(Kind::Z, "z", "the point's z"),
+      function<Opcode::Constant>(Kind::Constant, "constant", "a number", {number("value", "a number")}),
+#define FUNCTION(Name, name, form, cost, facts, meaning, doc, ...) function<Opcode::Name>(Kind::Name, name, doc),
+#define FUNCTION_OF(Name, name, form, opcode, doc, ...) function<Opcode::opcode>(Kind::Name, name, doc),
+#include "vm/program/functions.def"
+  };
+}
+
+std::vector<NodeSpec> field_rows() {
+  return {
       {.kind = Kind::Expression,
        .name = "expression",
        .category = Category::Alteration,
@@ -143,7 +107,7 @@ std::vector<NodeSpec> function_rows() {
        .name = "displaced",
        .category = Category::Internal,
        .doc = "a node's distance and a formula, added",
-       .code = [](Params) { return one(Opcode::Add, {}); },
+       .code = [](Params) { return Code{.after = {{Opcode::Add}}}; },  // in order: the first has the surface
        .know = know_number},
       {.kind = Kind::Bounded,
        .name = "bounded",
@@ -153,6 +117,14 @@ std::vector<NodeSpec> function_rows() {
        .code = bounded_code,
        .know = know_bounded},
   };
+}
+
+}  // namespace
+
+std::vector<NodeSpec> function_rows() {
+  std::vector<NodeSpec> rows = scalar_rows();
+  for (NodeSpec& row : field_rows()) rows.push_back(std::move(row));
+  return rows;
 }
 
 }  // namespace fathom::compiler

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,6 +64,9 @@ struct Code {
   bool any_order = false;
 };
 
+// Most corners of a polygon.
+inline constexpr std::size_t kMostCorners = 4096;
+
 // Facts about a primitive in addition to its box.
 struct PrimitiveFacts {
   Exactness outside = Exactness::Exact, inside = Exactness::Exact;
@@ -86,6 +90,8 @@ struct NodeSpec {
 
   // sort of the node's value; Solid also if the operands decide (see `operand`)
   Sort sort = Sort::Solid;
+  // true for a function whose operands may be exchanged
+  bool commutes = false;
   // sort of the children; nullopt: solids or outlines, and the node's value is of the same sort
   std::optional<Sort> operand = std::nullopt;
 
@@ -98,6 +104,8 @@ struct NodeSpec {
   Box (*bound)(Params params) = nullptr;
   PrimitiveFacts facts = {};
   double (*magnitude)(Params params) = nullptr;  // as Knowledge::magnitude; null: 0
+  // Returns the corners in order of an outline that has only straight edges. Null for all other rows.
+  std::vector<glm::dvec2> (*corners)(Params params) = nullptr;
   // Returns the node's facts, given the children's. Null for primitives, whose rows have `bound` and `facts`.
   Knowledge (*know)(Params params, std::span<const Knowledge> children) = nullptr;
 

@@ -11,8 +11,8 @@ namespace {
 
 std::vector<NodeSpec> make_table() {
   std::vector<NodeSpec> table;
-  for (auto rows : {solid_rows, composed_rows, outline_rows, alteration_rows, domain_rows, repetition_rows,
-                    combinator_rows, function_rows}) {
+  for (auto rows : {solid_rows, polyhedron_rows, fractal_rows, composed_rows, outline_rows, round_outline_rows,
+                    alteration_rows, domain_rows, repetition_rows, combinator_rows, function_rows}) {
     std::vector<NodeSpec> some = rows();
     table.insert(table.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
   }

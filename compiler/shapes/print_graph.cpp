@@ -14,19 +14,8 @@ namespace {
 // Returns the number of leading operands whose order matters. The operands after them may come in any order, which a
 // pass may change (compiler/passes/share.cpp).
 std::size_t ordered_operands(Kind kind, std::size_t operands) {
-  switch (kind) {
-    case Kind::Add:
-    case Kind::Multiply:
-    case Kind::Minimum:
-    case Kind::Maximum:
-    case Kind::Union:
-    case Kind::Intersection:
-      return 0;
-    case Kind::Subtraction:
-      return 1;
-    default:
-      return operands;
-  }
+  if (spec(kind).commutes || kind == Kind::Union || kind == Kind::Intersection) return 0;
+  return kind == Kind::Subtraction ? 1 : operands;
 }
 
 // Returns the operands in print order. With names by place, operands whose order does not matter are printed in the

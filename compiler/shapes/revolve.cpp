@@ -14,9 +14,7 @@
 #include <vector>
 
 #include "compiler/geometry/affine.h"
-#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/rows.h"
-#include "compiler/shapes/vec2.h"
 
 namespace fathom::compiler {
 namespace {
@@ -27,48 +25,6 @@ using glm::dvec3;
 constexpr double kRounding = 1e-12;  // of places after transforms, as a share of the largest coordinate
 // maximum nodes of an outline that are rebuilt; a shared node counts once per use
 constexpr int kMostNodes = 256;
-constexpr std::size_t kMostCorners = 4096;
-
-
-dvec2 at_polar(double radius, double degrees) {
-  const SineCosine at = sine_cosine(degrees);
-  return {radius * at.sine, radius * at.cosine};
-}
-
-std::vector<dvec2> cross_corners(Params p) {
-  const double l = p[0], w = p[1];
-  return {{w, l}, {w, w}, {l, w}, {l, -w}, {w, -w}, {w, -l}, {-w, -l}, {-w, -w}, {-l, -w}, {-l, w}, {-w, w}, {-w, l}};
-}
-
-// Returns the corners of an outline that has only straight edges; empty for every other node.
-std::vector<dvec2> corners_of(Kind kind, Params p) {
-  std::vector<dvec2> corners;
-  switch (kind) {
-    case Kind::Rectangle:
-      return {{p[0], p[1]}, {-p[0], p[1]}, {-p[0], -p[1]}, {p[0], -p[1]}};
-    case Kind::Polygon:
-      for (std::size_t i = 0; i + 1 < p.size(); i += 2) corners.push_back(vec2_at(p, i));
-      return corners;
-    case Kind::RegularPolygon:
-      for (int i = 0; i < static_cast<int>(p[0]); ++i) corners.push_back(at_polar(p[1], 360 * i / p[0]));
-      return corners;
-    case Kind::Star:
-      for (int i = 0; i < 2 * static_cast<int>(p[0]); ++i) corners.push_back(at_polar(p[i % 2 ? 2 : 1], 180 * i / p[0]));
-      return corners;
-    case Kind::Trapezoid:
-      return {{p[0], -p[2]}, {p[1], p[2]}, {-p[1], p[2]}, {-p[0], -p[2]}};
-    case Kind::Parallelogram:
-      return {{p[0] + p[2], p[1]}, {-p[0] + p[2], p[1]}, {-p[0] - p[2], -p[1]}, {p[0] - p[2], -p[1]}};
-    case Kind::RhombusOutline:
-      return {{p[0], 0}, {0, p[1]}, {-p[0], 0}, {0, -p[1]}};
-    case Kind::IsoscelesTriangle:
-      return {{0, 0}, {p[0], p[1]}, {-p[0], p[1]}};
-    case Kind::Cross:
-      return cross_corners(p);
-    default:
-      return corners;
-  }
-}
 
 // Removes the edges of a polygon on the axis and beyond. At least one corner is at x > rounding.
 class PolygonTrimmer {
@@ -192,7 +148,9 @@ class OutlineTrimmer {
   }
 
   Trimmed trim_corners(NodeId id, const Affine& place) {
-    std::vector<dvec2> corners = corners_of(maker_.graph().kind(id), maker_.graph().params(id));
+    const auto corners_of = spec(maker_.graph().kind(id)).corners;
+    if (corners_of == nullptr) return {id, false};
+    std::vector<dvec2> corners = corners_of(maker_.graph().params(id));
     double largest = std::abs(place.translation.x), least_x = largest, most_x = -largest;
     for (dvec2& q : corners) {
       q = dvec2(place(dvec3(q, 0)));
@@ -200,7 +158,7 @@ class OutlineTrimmer {
       least_x = std::min(least_x, q.x), most_x = std::max(most_x, q.x);
     }
     const double rounding = kRounding * largest;
-    if (corners.empty() || most_x <= rounding) return {id, false};
+    if (most_x <= rounding) return {id, false};
     if (least_x > rounding) return {id, true};
     if (maker_.graph().kind(id) == Kind::Rectangle && (place.rows[0].x == 0 || place.rows[0].y == 0)) {
       return {mirrored_rectangle(id, place), true};

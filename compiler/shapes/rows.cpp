@@ -4,15 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "vm/program/opcode_rows.h"
+
 namespace fathom::compiler {
-namespace {
-
-
-}  // namespace
 
 Code one(vm::Opcode opcode, std::vector<double> immediates) {
   Code code;
   code.after.push_back({opcode, std::move(immediates)});
+  if (vm::has(opcode, vm::Fact::Commutes)) code.swapped_join = code.after;
   return code;
 }
 
@@ -31,6 +30,18 @@ ParamSpec corner(std::string_view name) {
 }
 ParamSpec thickness() { return length("thickness", "to either side of the surface"); }
 ParamSpec blend_width() { return length_or_zero("k", "width of the blend; the surface moves by at most k/4"); }
+
+std::vector<double> slanted_profile(double bottom, double top, double half_height) {
+  const double slant = std::sqrt(4 * half_height * half_height + (bottom - top) * (bottom - top));
+  return {half_height, bottom, top, 2 * half_height / slant, (bottom - top) / slant, slant};
+}
+
+// The side touches both balls, so its outward normal in the half-plane is (sqrt(1 - b^2), b) with b = (r1 - r2) / h.
+std::vector<double> round_profile(Params p) {
+  const double b = (p[0] - p[1]) / p[2];
+  // Balls that touch from inside (b = +-1) have no side. A normal of not quite 0 keeps the cases apart on the axis.
+  return {p[0], p[1], p[2], std::max(1e-30, std::sqrt((1 - b) * (1 + b))), b};
+}
 
 double largest_coordinate(const Box& box) {
   if (box.empty()) return 0;

@@ -11,8 +11,11 @@ namespace fathom::compiler {
 inline constexpr double kSqrt2 = 1.4142135623730951, kSqrt3 = 1.7320508075688772, kSqrt6 = 2.4494897427831781;
 
 std::vector<NodeSpec> solid_rows();
+std::vector<NodeSpec> polyhedron_rows();
+std::vector<NodeSpec> fractal_rows();
 std::vector<NodeSpec> composed_rows();
 std::vector<NodeSpec> outline_rows();
+std::vector<NodeSpec> round_outline_rows();
 std::vector<NodeSpec> alteration_rows();
 std::vector<NodeSpec> domain_rows();
 std::vector<NodeSpec> repetition_rows();
@@ -32,6 +35,8 @@ ParamSpec corner(std::string_view name);
 ParamSpec thickness();
 ParamSpec blend_width();
 
+// Returns code of one instruction, which takes two operands in either order if the opcode's row says that they
+// commute.
 Code one(vm::Opcode opcode, std::vector<double> immediates);
 // Returns code of one instruction, whose immediates are the parameters or the result of `Immediates`.
 template <vm::Opcode Op>
@@ -42,6 +47,13 @@ template <vm::Opcode Op, std::vector<double> (*Immediates)(Params)>
 Code code_of(Params params) {
   return one(Op, Immediates(params));
 }
+
+// Returns the immediates of a straight side from (bottom, -half_height) to (top, half_height), of a cone or a
+// trapezoid: the sizes, the side's outward normal, the side's length.
+std::vector<double> slanted_profile(double bottom, double top, double half_height);
+// Returns the immediates of a side that touches two balls or disks, whose radii and distance are the parameters: the
+// parameters, then the side's outward normal.
+std::vector<double> round_profile(Params params);
 
 // Returns the largest magnitude of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
 double largest_coordinate(const Box& box);
@@ -54,8 +66,8 @@ double outline_magnitude(Params params) {
   return largest_coordinate(box);
 }
 
-inline constexpr std::array<bool, 3> kAllAxes = {true, true, true};
-inline constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes};
+inline constexpr std::array<bool, 3> kAllAxes = {true, true, true}, kXAndZ = {true, false, true};
+inline constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes}, kUpright{.symmetric = kXAndZ};
 
 // Combines the facts of several children by taking the worst of each: Lipschitz constants, certificates, reach and
 // symmetry. The caller sets the box and the exactness inside.

@@ -15,9 +15,10 @@ namespace {
 // forgotten.
 constexpr std::string_view kMachine = "fathom machine 1\n";
 
-// Columns of the opcode table that a program's result depends on. Cost is an estimate and not included.
+// Columns of the opcode table that a program's result depends on. The cost is an estimate, and the facts follow from
+// the meaning.
 constexpr std::string_view kRows =
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
+#define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) \
   mnemonic " " #form " " immediates " " #choice " " #meaning "\n"
 #include "vm/program/opcodes.def"
 #undef OP

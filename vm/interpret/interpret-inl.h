@@ -17,7 +17,7 @@
 
 #include "vm/interpret/meanings-inl.h"
 #include "vm/interpret/workspace.h"
-#include "vm/program/convexity.h"
+#include "vm/program/opcode_rows.h"
 #include "vm/program/verify.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -230,7 +230,7 @@ class Machine {
   HWY_INLINE void apply_point(Cursor& c) {
     const auto immediates = take<Count>(c);
     if constexpr (Traits::kConvex) {
-      constexpr std::uint64_t kAffine = keeps_convex(Op::kOpcode) ? 1 : 0;
+      constexpr std::uint64_t kAffine = has(Op::kOpcode, Fact::Affine) ? 1 : 0;
       c.affine = c.affine << 1 | (c.affine & kAffine);
     }
     const Place* from = c.point;
@@ -253,7 +253,7 @@ class Machine {
         return;
       }
     }
-    const bool convex = is_convex(Op::kOpcode) && c.affine & 1;
+    const bool convex = has(Op::kOpcode, Fact::Convex) && c.affine & 1;
     for_used([&](std::size_t i) HWY_ATTR {
       const T value = Traits::lift(
           Places::template shape<Op, Count>(from[i], moved, by.k, immediates.k, immediates.words), convex);

@@ -73,7 +73,7 @@ namespace fathom::vm::HWY_NAMESPACE {
     }                                                               \
   };
 #define OP_Machine(Name, meaning)
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, (meaning))
+#define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) OP_##form(Name, (meaning))
 #include "vm/program/opcodes.def"
 #include "vm/program/opcodes_end.def"
 

@@ -32,21 +32,24 @@ constexpr StackEffect plain_effect(Opcode opcode, Form form) {
   }
 }
 
-constexpr std::array<OpcodeInfo, kOpcodeCount> kTable = {{
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning)                              \
-  {Opcode::Name,                                                                                 \
-   mnemonic,                                                                                     \
-   Form::form,                                                                                   \
-   immediates,                                                                                   \
-   count_names(immediates),                                                                      \
-   Choice::choice,                                                                               \
-   cost,                                                                                         \
-   plain_effect(Opcode::Name, Form::form),                                                       \
-   Opcode::Name == Opcode::Tee || Opcode::Name == Opcode::Load || Opcode::Name == Opcode::Tag || \
-       Form::form == Form::Outline},
+constexpr auto kTable = [] {
+  using enum Fact;
+  return std::array<OpcodeInfo, kOpcodeCount>{{
+#define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) \
+  {Opcode::Name,                                                           \
+   mnemonic,                                                               \
+   Form::form,                                                             \
+   immediates,                                                             \
+   count_names(immediates),                                                \
+   Choice::choice,                                                         \
+   cost,                                                                   \
+   facts,                                                                  \
+   plain_effect(Opcode::Name, Form::form),                                 \
+   Form::form == Form::Outline || has(facts, Numbered)},
 #include "vm/program/opcodes.def"
 #undef OP
-}};
+  }};
+}();
 
 // Returns the blank-separated word number `index` of `names`, or an empty view.
 std::string_view nth_name(std::string_view names, int index) {
@@ -68,9 +71,7 @@ std::uint32_t group_count(std::uint32_t word) {
   return kTable[word & 0xff].form == Form::Outline ? operand_of(word) : 1;
 }
 
-std::uint32_t minimum_groups(Opcode opcode) {
-  return opcode == Opcode::Polygon ? 3 : 1;  // two corners enclose nothing
-}
+std::uint32_t minimum_groups(Opcode opcode) { return has(info(opcode).facts, Fact::ThreeGroups) ? 3 : 1; }
 
 int leading_immediates(std::uint32_t word) {
   const Form form = kTable[word & 0xff].form;

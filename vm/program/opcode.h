@@ -1,4 +1,5 @@
 // Opcodes and their properties, generated from vm/program/opcodes.def.
+// Tested by: tests/vm/program/: opcode_test.cpp, nonexpansive_test.cpp, convexity_test.cpp
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,53 @@ inline constexpr int kOpcodeCount = 0
 
 enum class Form : std::uint8_t { Point, Shape, Outline, Unary, Binary, Ternary, Machine };
 enum class Choice : std::uint8_t { None, Lesser, Greater, Carve, Either };
+
+// Facts about an opcode, in the column `facts` of its row. The forms that a fact is about precede it.
+enum class Fact : std::uint16_t {
+  None = 0,
+  // Point: an affine map, so a function that is convex in the Point's output is also convex in its input.
+  Affine = 1 << 0,
+  // Point, Shape, Outline: changes faster than its point moves. All other rows have Lipschitz constant 1, |f(p) -
+  // f(q)| <= |p - q|, at all finite points, for immediates as the compiler derives them.
+  Expansive = 1 << 1,
+  // Shape: a convex function of the point for all immediates; its solid is then convex too.
+  Convex = 1 << 2,
+  // Shape, Outline: the method for the range over a box (vm/range/enclosed-inl.h). Formula: the formula over the box,
+  // for rows for which a ball gives no bound or a looser one. Ball: the value at the centre of a ball that contains
+  // the points, plus or minus its radius. Both: the intersection of the two. The formula is exact over a box, but a
+  // rotated point's box contains more than its ball. Both takes twice as long as Ball, and leaves a fifth to a third
+  // fewer of 1000 spheres and boxes in a cell.
+  Formula = 1 << 3,
+  Ball = 1 << 4,
+  Both = Formula | Ball,
+  // Shape, Outline: features may be far from the origin even if the surface passes the origin, and the float error
+  // grows with the largest immediate. The node table gives these shapes a magnitude (compiler/graph/knowledge.h).
+  Far = 1 << 5,
+  // Shape: the last immediate is a flag, not a size.
+  LastIsFlag = 1 << 6,
+  // Outline: has at least three groups.
+  ThreeGroups = 1 << 7,
+  // Binary: pruning may remove an operand of this choice. Hard: the result always is one of the operands. Smooth: if
+  // they differ by at least the row's first immediate.
+  Hard = 1 << 8,
+  Smooth = 1 << 9,
+  // Binary: the operands may be exchanged. The order only decides the sign of a zero, and which NaN is lost.
+  Commutes = 1 << 10,
+  // Machine: the opcode word's operand is a number.
+  Numbered = 1 << 11,
+};
+constexpr Fact operator|(Fact a, Fact b) {
+  return static_cast<Fact>(static_cast<std::uint16_t>(a) | static_cast<std::uint16_t>(b));
+}
+// True if `facts` has any of `wanted`.
+constexpr bool has(Fact facts, Fact wanted) {
+  return (static_cast<std::uint16_t>(facts) & static_cast<std::uint16_t>(wanted)) != 0;
+}
+
+// Returns the number of values that a function takes; 0 for the other forms.
+constexpr int operand_count(Form form) {
+  return form == Form::Unary ? 1 : form == Form::Binary ? 2 : form == Form::Ternary ? 3 : 0;
+}
 
 // Change of the two stacks' heights by an instruction; *_needed is the height required before the instruction.
 struct StackEffect {
@@ -62,7 +110,8 @@ struct OpcodeInfo {
   std::string_view immediate_names;  // separated by blanks; ":24" marks an integer from 1 to 24
   int immediates;                    // number of words after the opcode word, in an Outline per group
   Choice choice;
-  int cost;            // multiply-adds per point, in an Outline per group
+  int cost;  // multiply-adds per point, in an Outline per group
+  Fact facts;
   StackEffect effect;  // of the instruction without kMoved, kJoined or Sources
   bool has_operand;    // true if the opcode word's high 24 bits are a number
 };

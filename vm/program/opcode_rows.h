@@ -1,8 +1,11 @@
-// Inline copy of columns of the opcode table (vm/program/opcode.h). Reading and pruning programs takes hundreds of
-// thousands of lookups per image, and a function call per lookup took half of the time.
+// Inline copy of columns of the opcode table (vm/program/opcode.h). The evaluators need facts at compile time.
+// Reading and pruning programs takes hundreds of thousands of lookups per image, and a function call per lookup took
+// half of the time.
 // Tested by: tests/vm/program/opcode_test.cpp
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "vm/program/opcode.h"
@@ -12,17 +15,25 @@ namespace fathom::vm {
 struct OpcodeRow {
   Opcode opcode;
   Form form;
-  bool choice;
+  Choice choice;
+  Fact facts;
   int immediates;  // as OpcodeInfo::immediates
   int cost;        // as OpcodeInfo::cost
 };
 
-inline constexpr OpcodeRow kOpcodeRows[] = {
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) \
-  {Opcode::Name, Form::form, Choice::choice != Choice::None, count_names(immediates), cost},
+inline constexpr auto kOpcodeRows = [] {
+  using enum Fact;
+  return std::array<OpcodeRow, kOpcodeCount>{{
+#define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) \
+  {Opcode::Name, Form::form, Choice::choice, facts, count_names(immediates), cost},
 #include "vm/program/opcodes.def"
 #undef OP
-};
+  }};
+}();
+
+constexpr bool has(Opcode opcode, Fact wanted) {
+  return has(kOpcodeRows[static_cast<std::size_t>(opcode)].facts, wanted);
+}
 
 inline const OpcodeRow& row_of(std::uint32_t word) { return kOpcodeRows[word & 0xff]; }
 

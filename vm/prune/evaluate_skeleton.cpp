@@ -46,11 +46,11 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
 #define OP_Machine(Name, ...)
 #define OP_Shape(Name, immediates, cost)                                           \
   case Opcode::Name:                                                               \
-    if constexpr (can_be_any_shape(Opcode::Name, immediates, cost)) {              \
+    if constexpr (can_be_any_shape(immediates, cost)) {                            \
       value = Name##Op::apply(p, k, static_cast<const std::uint32_t*>(nullptr));   \
     }                                                                              \
     break;
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) OP_##form(Name, immediates, cost)
+#define OP(Name, mnemonic, form, immediates, choice, cost, ...) OP_##form(Name, immediates, cost)
 #include "vm/program/opcodes.def"
 #include "vm/program/opcodes_end.def"
       // clang-format on

@@ -55,7 +55,7 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint3
       }
       if (sources.a == Source::Stack) sound = take(node.a) && sound;
       if (sources.a == Source::Local) sound = use_local(sources.local, node.a) && sound;
-      if (row.choice) enter_choice(node, self);
+      if (row.choice != Choice::None) enter_choice(node, self);
       break;
     }
     case Form::Ternary:

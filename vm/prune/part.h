@@ -58,7 +58,7 @@ class PartWriter {
                     std::uint32_t count) {
     write(node, word, from, count);
     const Sources sources = sources_of(word);
-    cost_ += static_cast<std::uint64_t>(row.cost), choices_ += row.choice;
+    cost_ += static_cast<std::uint64_t>(row.cost), choices_ += row.choice != Choice::None;
     values_ += (sources.a == Source::Stack) + (row.form == Form::Binary && sources.b == Source::Stack) - 1;
     most_values_ = std::max(most_values_, values_);
   }

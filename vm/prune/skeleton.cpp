@@ -17,7 +17,7 @@ bool is_outline(std::uint32_t word) { return find_opcode(word & 0xff)->form == F
 
 bool is_any_shape(std::uint32_t word) {
   const OpcodeInfo& row = *find_opcode(word & 0xff);
-  return row.form == Form::Shape && can_be_any_shape(row.opcode, row.immediate_names, row.cost);
+  return row.form == Form::Shape && can_be_any_shape(row.immediate_names, row.cost);
 }
 
 // Returns the opcode word that a skeleton has for a part's opcode word.

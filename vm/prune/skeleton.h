@@ -41,13 +41,13 @@ inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
 inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an integer number of quads
 
 // True if a shape can be laid out as any shape (kAnyShape): its translation, up to kAnyShapeImmediates immediates,
-// its opcode.
+// its opcode. A shape that costs nothing is a number of a formula.
 inline constexpr std::size_t kAnyShapeImmediates = 4;
-constexpr bool can_be_any_shape(Opcode opcode, std::string_view immediates, int cost) {
+constexpr bool can_be_any_shape(std::string_view immediates, int cost) {
   constexpr int kMostCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
   const auto count = static_cast<std::size_t>(count_names(immediates));
-  return count > 0 && count <= kAnyShapeImmediates && immediates.find(':') == std::string_view::npos &&
-         opcode != Opcode::Constant && cost <= kMostCost;
+  return count > 0 && count <= kAnyShapeImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
+         cost <= kMostCost;
 }
 
 // Constants of a whole program by instruction, in the layout that lanes load. In a program with both spheres and

@@ -15,27 +15,14 @@ static_assert(kEnclosedBoxes == 16);
 // Returns the link of the choice at word `at`, without the operands.
 ChoiceLink link_of(const Code& code, std::uint32_t at) {
   const std::uint32_t word = code.words[at];
-  const auto link = [&](ChoiceRule rule, bool opposite, bool blends) {
-    const std::size_t own = at + 1 + static_cast<std::size_t>(leading_immediates(word));
-    return ChoiceLink{rule,       opposite,  false, blends ? std::bit_cast<float>(code.words[own]) : 0,
-                      {kNone, 0}, {kNone, 0}};
-  };
-  switch (static_cast<Opcode>(word & 0xff)) {
-    case Opcode::Min:
-      return link(ChoiceRule::Least, false, false);
-    case Opcode::Max:
-      return link(ChoiceRule::Greatest, false, false);
-    case Opcode::Subtract:
-      return link(ChoiceRule::Greatest, true, false);
-    case Opcode::SmoothMin:
-      return link(ChoiceRule::Least, false, true);
-    case Opcode::SmoothMax:
-      return link(ChoiceRule::Greatest, false, true);
-    case Opcode::SmoothSubtract:
-      return link(ChoiceRule::Greatest, true, true);
-    default:
-      return link(row_of(word).form == Form::Shape ? ChoiceRule::Least : ChoiceRule::Keep, false, false);
+  const OpcodeRow& row = row_of(is_joined(word) ? opcode_word(Opcode::Min) : word);
+  const std::size_t own = at + 1 + static_cast<std::size_t>(leading_immediates(word));
+  ChoiceRule rule = ChoiceRule::Keep;
+  if (has(row.facts, Fact::Hard | Fact::Smooth)) {
+    rule = row.choice == Choice::Lesser ? ChoiceRule::Least : ChoiceRule::Greatest;
   }
+  const float width = has(row.facts, Fact::Smooth) ? std::bit_cast<float>(code.words[own]) : 0;
+  return {rule, row.choice == Choice::Carve, false, width, {kNone, 0}, {kNone, 0}};
 }
 
 }  // namespace

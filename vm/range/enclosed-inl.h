@@ -9,7 +9,7 @@
 
 #include "vm/interpret/interpret-inl.h"
 #include "vm/number/enclosure_elementary-inl.h"
-#include "vm/program/nonexpansive.h"
+#include "vm/program/opcode_rows.h"
 #include "vm/range/choice_bounds.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -117,47 +117,6 @@ HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value
   return {value - slack, value + slack};
 }
 
-// Method for a shape's range over a box and a ball. Formula: the formula over the box, for shapes for which the ball
-// gives no bound or a looser one. Ball: the value at the ball's centre plus or minus the radius. Both: the
-// intersection of the two. The formula is exact over a box, but a rotated point's box contains more than its ball.
-// Both takes twice as long as Ball, and leaves a fifth to a third fewer of 1000 spheres and boxes in a cell.
-enum class Method { Formula, Ball, Both };
-constexpr Method method_of(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::X:
-    case Opcode::Y:
-    case Opcode::Z:
-    case Opcode::Constant:
-    case Opcode::Plane:
-    case Opcode::Slab:
-      return Method::Formula;
-    case Opcode::Sphere:
-    case Opcode::Box:
-    case Opcode::RoundBox:
-    case Opcode::BoxBetween:
-    case Opcode::Core:
-    case Opcode::Torus:
-    case Opcode::Cylinder:
-    case Opcode::RoundedCylinder:
-    case Opcode::InfiniteCylinder:
-    case Opcode::Capsule:
-    case Opcode::Circle:
-    case Opcode::Rectangle:
-    case Opcode::RoundedRectangle:
-      return Method::Both;
-    default:
-      return is_nonexpansive(opcode) ? Method::Ball : Method::Formula;
-  }
-}
-// True for shapes whose error grows with features far from the origin even if the surface passes the origin: the
-// shapes to which the node table gives a magnitude (compiler/graph/knowledge.h).
-constexpr bool has_far_features(Opcode opcode) {
-  return opcode == Opcode::Torus || opcode == Opcode::CappedTorus || opcode == Opcode::Triangle ||
-         opcode == Opcode::Quad || opcode == Opcode::Segment || opcode == Opcode::Star ||
-         opcode == Opcode::IsoscelesTriangle || opcode == Opcode::Arc || opcode == Opcode::Ring ||
-         opcode == Opcode::Horseshoe || opcode == Opcode::Moon;
-}
-
 // An entry of the point stack is a box and a ball, both of which contain the point.
 template <>
 struct PointTraits<Enclosure> {
@@ -171,7 +130,7 @@ struct PointTraits<Enclosure> {
     const Vec3<Enclosure> box = Op::apply(p, k);
     if constexpr (Op::kOpcode == Opcode::Translate) {
       return {box, image<Op>(p.ball, k)};
-    } else if constexpr (Op::kOpcode == Opcode::Affine || is_nonexpansive(Op::kOpcode)) {
+    } else if constexpr (has(Op::kOpcode, Fact::Affine) || !has(Op::kOpcode, Fact::Expansive)) {
       return {box, smaller(image<Op>(p.ball, k), ball_around(box))};
     } else {
       return place(box);
@@ -180,19 +139,19 @@ struct PointTraits<Enclosure> {
 
   template <class Op, int Count>
   static HWY_INLINE Enclosure shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
-    constexpr Method kMethod = method_of(Op::kOpcode);
-    if constexpr (kMethod == Method::Formula) {
+    if constexpr (!has(Op::kOpcode, Fact::Ball)) {
       return formula<Op>(p, by, k, w);
     } else {
+      static_assert(!has(Op::kOpcode, Fact::Expansive));
       Batch size = Batch::broadcast(0.0f);
-      if constexpr (has_far_features(Op::kOpcode)) {
-        constexpr int kSizes = Op::kOpcode == Opcode::Star ? Count - 1 : Count;  // a star's last is not a size
+      if constexpr (has(Op::kOpcode, Fact::Far)) {
+        constexpr int kSizes = has(Op::kOpcode, Fact::LastIsFlag) ? Count - 1 : Count;
         for (int i = 0; i < kSizes; ++i) size = max(size, abs(k[i]));
       }
       const Vec3<Batch> centre = TranslateOp::apply(p.ball.centre, by);
       BatchMask known;
       const Enclosure value = around(centre, p.ball.radius, Op::apply(centre, k, w), size, known);
-      if constexpr (kMethod == Method::Both) {
+      if constexpr (has(Op::kOpcode, Fact::Formula)) {
         const Enclosure range = formula<Op>(p, by, k, w);
         return select(known, Enclosure{max(value.lo, range.lo), min(value.hi, range.hi)}, range);
       }
@@ -214,6 +173,7 @@ struct PointTraits<Enclosure> {
 
   template <class Op, class Groups>
   static HWY_INLINE Enclosure outline(const Place& p, const Groups& groups) {
+    static_assert(has(Op::kOpcode, Fact::Ball) && has(Op::kOpcode, Fact::Far) && !has(Op::kOpcode, Fact::Expansive));
     double size = 0;
     for (std::size_t i = 0; i < groups.count(); ++i) {
       size = std::max(size, std::fabs(groups(i, 0)) + std::fabs(groups(i, 1)));

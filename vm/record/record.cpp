@@ -27,7 +27,8 @@ std::vector<Ref> results(const Vec3<Number>& point) { return {point.x.ref, point
 
 std::vector<Ref> run(Opcode opcode, std::span<const std::uint32_t> words) {
   const OpcodeInfo& row = info(opcode);
-  const std::size_t operands = row.form == Form::Unary ? 1 : row.form == Form::Binary ? 2 : 3;
+  const int values = operand_count(row.form);
+  const auto operands = static_cast<std::size_t>(values > 0 ? values : 3);  // a point has three coordinates
   const Vec3<Number> p = point_parameter();
   const Number a = p.x, b = p.y, c = p.z;
   const std::vector<Number> immediates = parameters<Batch>(operands, static_cast<std::size_t>(row.immediates));

@@ -1,4 +1,4 @@
-// Formula as a DAG of operations, named after the machine's functions (vm/program/opcodes.def).
+// Formula as a DAG of operations, named after the machine's functions (vm/program/functions.def).
 #pragma once
 
 #include <cstdint>

@@ -11,34 +11,14 @@
 #include "vm/program/check.h"
 
 namespace fathom::compiler {
-namespace {
-
-int arity(const NodeSpec& row) {
-  const std::vector<double> any(row.params.size(), 0.0);
-  switch (vm::info(row.code(any).after.back().opcode).form) {
-    case vm::Form::Unary:
-      return 1;
-    case vm::Form::Binary:
-      return 2;
-    case vm::Form::Ternary:
-      return 3;
-    default:
-      return 0;
-  }
-}
-
-}  // namespace
 
 std::span<const FunctionSpec> machine_functions() {
-  static const std::vector<FunctionSpec> functions = [] {
-    std::vector<FunctionSpec> made;
-    for (const NodeSpec& row : node_table()) {
-      if (row.category != Category::Function) continue;
-      if (const int operands = arity(row); operands > 0) made.push_back({row.name, operands});
-    }
-    return made;
-  }();
-  return functions;
+  static constexpr FunctionSpec kAll[] = {
+#define FUNCTION(Name, name, form, ...) {name, vm::operand_count(vm::Form::form)},
+#define FUNCTION_OF(Name, name, form, ...) {name, vm::operand_count(vm::Form::form)},
+#include "vm/program/functions.def"
+  };
+  return kAll;
 }
 
 bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {

@@ -19,7 +19,7 @@ namespace {
 using namespace fathom::compiler;
 
 constexpr const char* kMeanings[] = {
-#define OP(Name, mnemonic, form, immediates, choice, cost, meaning) #meaning,
+#define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) #meaning,
 #include "vm/program/opcodes.def"
 #undef OP
 };

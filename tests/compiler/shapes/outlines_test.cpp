@@ -70,6 +70,29 @@ void for_each_outline(const Check& each) {
 
 }  // namespace
 
+TEST_CASE("an outline of straight edges is the polygon of its corners", "[outlines]") {
+  vm::Workspace workspace;
+  int straight = 0;
+  for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
+    const auto corners_of = compiler::spec(kind).corners;
+    if (corners_of == nullptr) return;
+    ++straight;
+    std::vector<dvec2> corners = corners_of(params);
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());  // of a trapezoid that has a tip
+    if (corners.front() == corners.back()) corners.pop_back();
+    std::vector<double> points;
+    for (const dvec2 corner : corners) points.insert(points.end(), {corner.x, corner.y});
+    const vm::VerifiedProgram program = primitive_program(kind, params),
+                              polygon = primitive_program(Kind::Polygon, points);
+    for (int i = 0; i < 20; ++i) {
+      const dvec3 p = point_near_outline(random);
+      const double truth = vm::evaluate_distance(polygon, p, workspace);
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - truth) <= 1e-13 * (1 + glm::length(p)));
+    }
+  });
+  CHECK(straight == 9 * 20);
+}
+
 // The nearest point is on the wall, straight above or below the boundary, or on a cap inside the boundary.
 TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]") {
   vm::Workspace workspace;

@@ -6,10 +6,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "compiler/shapes/node_table.h"
+#include "compiler/shapes/bounds.h"
+#include "tests/compiler/shapes/primitives.h"
+#include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
-#include "tests/support/random/random_scene.h"
-#include "vm/interpret/evaluate.h"
 
 namespace fathom::test::solids_test {
 namespace {
@@ -31,6 +31,28 @@ double distance_to_cubes(dvec3 p, dvec3 centre, double half, int levels) {
 }
 
 }  // namespace
+
+TEST_CASE("solids composed of others have the judge's distance, a box and a constant that hold", "[shapes]") {
+  vm::Workspace workspace;
+  for (const compiler::NodeSpec& row : compiler::node_table()) {
+    if (row.expand == nullptr) continue;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Random random(seed);
+      const Sample s = sample(row.kind, random);
+      INFO(s.name << ", seed " << seed);
+      const compiler::Knowledge known = compiler::analyse(s.scene.graph)[s.scene.root];
+      const vm::VerifiedProgram program = plain_lowering(s.scene);
+      for (int i = 0; i < 50; ++i) {
+        const dvec3 p = random_point(random), q = p + random.direction() * random.length(1e-3, 2);
+        const double d = vm::evaluate_distance(program, p, workspace);
+        CHECK(std::abs(d - judge_distance(s.scene.graph, s.scene.root, p)) <= 1e-13 * scale_of(p));
+        CHECK((known.box.contains(p) || d > -1e-14));
+        CHECK(std::abs(d - vm::evaluate_distance(program, q, workspace)) <=
+              known.lipschitz * glm::length(p - q) + 1e-12 * scale_of(p));
+      }
+    }
+  }
+}
 
 TEST_CASE("a Menger sponge is what its cubes are, and its field never more than their distance", "[shapes]") {
   vm::Workspace workspace;
@@ -77,6 +99,26 @@ TEST_CASE("a link is all within its radius of a racetrack", "[shapes]") {
       const double y = p.y - std::clamp(p.y, -k[2], k[2]);
       const double in_plane = y == 0 ? std::abs(std::abs(p.x) - k[0]) : std::abs(std::hypot(p.x, y) - k[0]);
       const double truth = std::hypot(in_plane, p.z) - k[1];
+      CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - truth) <= 1e-14 * 4);
+    }
+  }
+}
+
+// In the half-plane of the distance from the axis and y, the wall is a rectangle.
+TEST_CASE("a tube is as far as its wall", "[shapes]") {
+  vm::Workspace workspace;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    const std::vector<double> k = random_params(Kind::Tube, random);
+    const compiler::Scene scene = single(Kind::Tube, k);
+    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    CHECK((known.outside == compiler::Exactness::Exact && known.inside == compiler::Exactness::Exact));
+    const vm::VerifiedProgram program = plain_lowering(scene);
+    for (int i = 0; i < 100; ++i) {
+      const dvec3 p = random.in_box(2);
+      const double beside = std::abs(std::hypot(p.x, p.z) - k[0]) - k[2], above = std::abs(p.y) - k[1];
+      const double outside = std::hypot(std::max(beside, 0.0), std::max(above, 0.0));
+      const double truth = outside > 0 ? outside : std::max(beside, above);
       CHECK(std::abs(vm::evaluate_distance(program, p, workspace) - truth) <= 1e-14 * 4);
     }
   }

@@ -4,7 +4,6 @@
 
 #include "compiler/shapes/node_table.h"
 #include "tests/support/random/random_shapes.h"
-#include "vm/program/check.h"
 
 namespace fathom::test {
 namespace {
@@ -57,9 +56,6 @@ std::vector<double> polygon(Random& random) {
 
 std::vector<double> attempt(Kind kind, Random& random) {
   switch (kind) {
-    case Kind::Circle:
-    case Kind::Heart:
-      return {size(random)};
     case Kind::Rectangle:
     case Kind::RhombusOutline:
     case Kind::IsoscelesTriangle:
@@ -121,11 +117,12 @@ std::vector<double> attempt(Kind kind, Random& random) {
       const double length = size(random);
       return {length, share(random, length)};
     }
-    default: {
-      CHECK(kind == Kind::RoundedX, "an outline");
+    case Kind::RoundedX: {
       const double half = size(random);
       return {half, share(random, half * 0.5857)};
     }
+    default:
+      return plain_params(compiler::spec(kind), random);
   }
 }
 

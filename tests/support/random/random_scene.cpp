@@ -8,6 +8,7 @@
 #include "compiler/derive/formula_field.h"
 #include "compiler/shapes/make_node.h"
 #include "tests/support/random/random_shapes.h"
+#include "vm/program/check.h"
 
 namespace fathom::test {
 namespace {
@@ -167,6 +168,23 @@ std::vector<Kind> primitive_kinds(compiler::Sort sort, bool estimates) {
     if (estimates || row.facts.outside != compiler::Exactness::Estimate) kinds.push_back(row.kind);
   }
   return kinds;
+}
+
+std::vector<double> plain_params(const compiler::NodeSpec& row, Random& random) {
+  const auto number = [&](const compiler::ParamSpec& param) {
+    if (param.type == compiler::ParamType::Integer) return 1.0 + random.below(12);
+    if (param.rule == compiler::Rule::NotNegative && random.chance(0.2)) return 0.0;
+    const bool length = param.rule == compiler::Rule::Positive || param.rule == compiler::Rule::NotNegative;
+    return length ? random.length(0.05, 1.5) : rounded(random.uniform(-1.5, 1.5));
+  };
+  for (;;) {
+    std::vector<double> params;
+    for (const compiler::ParamSpec& param : row.params) {
+      CHECK(param.type != compiler::ParamType::Points, "a primitive with a fixed number of parameters");
+      for (int i = 0; i < compiler::width(param.type); ++i) params.push_back(number(param));
+    }
+    if (!row.check || !row.check(params)) return params;
+  }
 }
 
 std::vector<double> random_params(Kind kind, Random& random) {

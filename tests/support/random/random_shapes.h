@@ -5,9 +5,14 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
+#include "compiler/shapes/node_spec.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::test {
+
+// Returns parameters that the rules of the row allow, of size about 1, drawn until they fit together. For kinds whose
+// formulas fail at no extremes.
+std::vector<double> plain_params(const compiler::NodeSpec& row, Random& random);
 
 std::vector<double> random_solid_params(compiler::Kind kind, Random& random);
 std::vector<double> random_outline_params(compiler::Kind kind, Random& random);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "compiler/shapes/node_table.h"
 #include "tests/support/random/random_shapes.h"
 
 namespace fathom::test {
@@ -72,10 +73,6 @@ std::vector<double> random_solid_params(Kind kind, Random& random) {
     return rounded(outer * share[random.below(4)]);
   };
   switch (kind) {
-    case Kind::Sphere:
-      return {size()};
-    case Kind::Box:
-      return {size(), size(), size()};
     case Kind::RoundBox: {
       const double x = size(), y = size(), z = size();
       return {x, y, z, rounding(std::min({x, y, z}))};
@@ -87,8 +84,6 @@ std::vector<double> random_solid_params(Kind kind, Random& random) {
           random.chance(0.3) ? dvec3(0, random.chance(0.5) ? 2 : -1, 0) : random.in_box(2) + dvec3(0, 3, 0);
       return {rounded(n.x), rounded(n.y), rounded(n.z), rounded(random.uniform(-1, 1))};
     }
-    case Kind::Cylinder:
-      return {size(), size()};
     case Kind::RoundedCylinder: {
       const double radius = size(), half_height = size();
       return {radius, half_height, rounding(std::min(radius, half_height))};
@@ -113,17 +108,8 @@ std::vector<double> random_solid_params(Kind kind, Random& random) {
       ring.push_back(size());
       return ring;
     }
-    case Kind::InfiniteCylinder:
-    case Kind::Tetrahedron:
-    case Kind::Octahedron:
-    case Kind::Dodecahedron:
-    case Kind::Icosahedron:
-      return {size()};
     case Kind::InfiniteCone:
       return {rounded(random.uniform(2, 88))};
-    case Kind::Capsule:
-    case Kind::Pyramid:
-      return {size(), size()};
     case Kind::Gyroid:
     case Kind::SchwarzP:
     case Kind::SchwarzD:
@@ -140,12 +126,14 @@ std::vector<double> random_solid_params(Kind kind, Random& random) {
       return sheet(random, false);
     case Kind::Quad:
       return sheet(random, true);
-    default: {  // Mandelbulb
+    case Kind::Mandelbulb: {
       const double detail[] = {0, 0x1p-10, 0x1p-6};
       const double power = 2.0 + random.below(8), iterations = 1.0 + random.below(10);
       const double bailout = 2.0 + random.below(7);
       return {power, iterations, bailout, detail[random.below(3)]};
     }
+    default:
+      return plain_params(compiler::spec(kind), random);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/program/opcode_rows.h"
 
 namespace fathom::test::convexity_test {
 namespace {
@@ -25,7 +26,7 @@ std::set<vm::Opcode> convex_shapes_of(const vm::Code& program) {
   std::set<vm::Opcode> found;
   for (std::size_t at = 0; at < program.size; at += vm::instruction_length(program.words[at])) {
     const auto opcode = static_cast<vm::Opcode>(program.words[at] & 0xff);
-    if (vm::is_convex(opcode)) found.insert(opcode);
+    if (vm::has(opcode, vm::Fact::Convex)) found.insert(opcode);
   }
   return found;
 }

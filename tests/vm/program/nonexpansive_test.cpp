@@ -1,9 +1,9 @@
-// Checks the opcodes for which is_nonexpansive() is true: their result never changes faster than their point moves.
+// Checks the opcodes without Fact::Expansive: their result never changes faster than their point moves.
 #include <set>
 
 #include "tests/support/effort.h"
 #include "tests/vm/range/boxes.h"
-#include "vm/program/nonexpansive.h"
+#include "vm/program/opcode_rows.h"
 
 namespace fathom::test::nonexpansive_test {
 namespace {
@@ -22,7 +22,7 @@ std::vector<Row> rows_of(const vm::VerifiedProgram& program, vm::Form form) {
     const vm::OpcodeInfo& info = *vm::find_opcode(from.words[at] & 0xff);
     const bool shape = info.form == vm::Form::Shape || info.form == vm::Form::Outline;
     if (form == vm::Form::Shape ? !shape : info.form != form) continue;
-    if (!vm::is_nonexpansive(info.opcode)) continue;
+    if (vm::has(info.opcode, vm::Fact::Expansive)) continue;
     Row row;
     const auto begin = static_cast<std::ptrdiff_t>(at);
     const auto end = begin + static_cast<std::ptrdiff_t>(vm::instruction_length(from.words[at]));
@@ -91,7 +91,7 @@ TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosu
     const bool claimed =
         info.form == vm::Form::Shape || info.form == vm::Form::Outline || info.form == vm::Form::Point;
     INFO(info.mnemonic);
-    if (claimed && vm::is_nonexpansive(info.opcode)) CHECK(seen.count(info.opcode) == 1);
+    if (claimed && !vm::has(info.opcode, vm::Fact::Expansive)) CHECK(seen.count(info.opcode) == 1);
   }
 }
 

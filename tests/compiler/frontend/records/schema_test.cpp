@@ -8,9 +8,14 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "compiler/compile.h"
 #include "compiler/frontend/text/read_text.h"
+#include "compiler/shapes/node_table.h"
 #include "tests/support/golden.h"
 #include "tests/support/schema_check.h"
 
@@ -157,6 +162,28 @@ TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[
     }
   });
   CHECK(changes > 1000);
+}
+
+// A row of the document is a line "| `type`, `type` | parameters |".
+TEST_CASE("docs/reference/scene-file.md has a row for every type of node, with its parameters", "[schema]") {
+  std::stringstream page(read_file(FATHOM_SOURCE_DIR "/docs/reference/scene-file.md"));
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (std::string line; std::getline(page, line);) {
+    const std::size_t cell = line.starts_with("| ") ? line.find(" | ") : line.npos;
+    if (cell != line.npos) rows.emplace_back(line.substr(0, cell), line.substr(cell));
+  }
+  const auto has = [](const std::string& cell, std::string_view name) {
+    return cell.find("`" + std::string(name) + "`") != std::string::npos;
+  };
+  for (const NodeSpec& node : node_table()) {
+    if (node.category == Category::Internal || node.category == Category::Function) continue;
+    INFO(node.name);
+    CHECK(std::any_of(rows.begin(), rows.end(), [&](const auto& row) {
+      return has(row.first, node.name) &&
+             std::all_of(node.params.begin(), node.params.end(),
+                         [&](const ParamSpec& param) { return has(row.second, param.name); });
+    }));
+  }
 }
 
 TEST_CASE("schema: every property of the tables is described", "[schema]") {
