@@ -31,7 +31,7 @@ S round_down(double value) {
 }
 
 // Samples to accept after the first attempt to cross that met no surface.
-constexpr double kFirstPenalty = 2;
+constexpr double kFirstBackoff = 2;
 // Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
 // in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
@@ -78,11 +78,11 @@ void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
     put(kOx + axis, origin);
     put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
   }
-  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kPatience}) put(zero, 0);
+  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
   put(kTMax, round_down<S>(rays.length[i]));
   put(kSide, rays.side[i]);
   put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
-  put(kPenalty, seeded_ ? S(kFirstPenalty) : S(1));
+  put(seeded_ ? int{kBackoff} : int{kOverstepped}, seeded_ ? S(kFirstBackoff) : S(1));
   set_course(courses_[lane], rays, i);
   instructions_[lane] = 0;
 }
@@ -136,7 +136,7 @@ void Stream<S>::step() {
 
 template <class S>
 void Stream<S>::finish(std::size_t i) {
-  const auto number = [&](LaneRow row) { return lanes_->row[row][i]; };
+  const auto number = [&](auto row) { return lanes_->row[row][i]; };
   const Course& course = courses_[i];
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
@@ -169,11 +169,11 @@ void Stream<S>::finish(std::size_t i) {
 // with the bracket, widened by the uncertainty.
 template <class S>
 Stretch Stream<S>::what_is_left(std::size_t i) const {
-  const auto number = [&](LaneRow row) { return static_cast<double>(lanes_->row[row][i]); };
-  const double t = number(kT), length = courses_[i].length;
-  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {t, length, 0};
+  const auto number = [&](auto row) { return static_cast<double>(lanes_->row[row][i]); };
+  const double length = courses_[i].length;
+  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {number(kT), length, 0};
   const double slack = std::max(kVagueness * number(kTHi), static_cast<double>(field_.band));
-  return {std::max(0.0, t - slack), length, number(kTHi) + slack};
+  return {std::max(0.0, number(kTLo) - slack), length, number(kTHi) + slack};
 }
 
 template class Stream<float>;
