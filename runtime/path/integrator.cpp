@@ -57,7 +57,7 @@ void Integrator::run() {
 
 bool Integrator::idle() const {
   return std::all_of(marchers_.begin(), marchers_.end(), [](const auto& marcher) {
-    return !marcher || (marcher->empty() && marcher->arrivals().empty());
+    return !marcher || (marcher->empty() && marcher->ray_hits().empty());
   });
 }
 
@@ -73,7 +73,7 @@ void Integrator::advance(std::size_t field) {
   Marcher& marcher = *marchers_[field];
   marchers_[0]->clock().enter(Stage::March);
   marcher.advance();
-  if (marcher.arrivals().size() >= kShadeBatch || marcher.empty()) settle_arrivals(field);
+  if (marcher.ray_hits().size() >= kShadeBatch || marcher.empty()) settle_arrivals(field);
 }
 
 // False when there are no more.
@@ -141,35 +141,35 @@ void Integrator::follow(std::uint32_t id, const Ray& ray) {
 
 void Integrator::settle_arrivals(std::size_t field) {
   StageClock& clock = marchers_[0]->clock();
-  marchers_[field]->take_arrivals(settled_);
+  marchers_[field]->take_ray_hits(settled_);
   if (world_.settings.layers.cost) {
-    for (const Arrival& arrival : settled_) {
-      paths_[arrival.id].result.evaluations += arrival.evaluations;
-      paths_[arrival.id].result.instructions += arrival.instructions;
+    for (const RayHit& ray_hit : settled_) {
+      paths_[ray_hit.id].result.evaluations += ray_hit.evaluations;
+      paths_[ray_hit.id].result.instructions += ray_hit.instructions;
     }
   }
   clock.enter(Stage::Shading);
-  const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
-  const auto tests_shadow = [&](const Arrival& arrival) { return paths_[arrival.id].in_shadow_test; };
+  const auto is_hit = [](const RayHit& ray_hit) { return ray_hit.status == RayHit::Status::Hit; };
+  const auto tests_shadow = [&](const RayHit& ray_hit) { return paths_[ray_hit.id].in_shadow_test; };
   // What stands in the way of light may let some of it straight through.
-  const auto ends_test = [&](const Arrival& arrival) {
-    return tests_shadow(arrival) && (shadows_.empty() || !is_hit(arrival));
+  const auto ends_test = [&](const RayHit& ray_hit) {
+    return tests_shadow(ray_hit) && (shadows_.empty() || !is_hit(ray_hit));
   };
   const auto tests_end = std::partition(settled_.begin(), settled_.end(), ends_test);
   const auto shadows_end = std::partition(tests_end, settled_.end(), tests_shadow);
   const auto hits_end = std::partition(shadows_end, settled_.end(), is_hit);
-  for (const Arrival& arrival : std::span(settled_.begin(), tests_end)) {
-    const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
-    end_shadow_test(arrival.id, free && !is_endless(field, arrival.id));
+  for (const RayHit& ray_hit : std::span(settled_.begin(), tests_end)) {
+    const bool free = ray_hit.status == RayHit::Status::Miss || ray_hit.status == RayHit::Status::Contact;
+    end_shadow_test(ray_hit.id, free && !is_endless(field, ray_hit.id));
   }
-  const auto in_batches = [](std::span<const Arrival> arrivals, const auto& use) {
-    for (std::size_t first = 0; first < arrivals.size(); first += kSurfaceBatch) {
-      use(arrivals.subspan(first, std::min(kSurfaceBatch, arrivals.size() - first)));
+  const auto in_batches = [](std::span<const RayHit> ray_hits, const auto& use) {
+    for (std::size_t first = 0; first < ray_hits.size(); first += kSurfaceBatch) {
+      use(ray_hits.subspan(first, std::min(kSurfaceBatch, ray_hits.size() - first)));
     }
   };
-  in_batches({tests_end, shadows_end}, [&](std::span<const Arrival> some) { pass_shadows(field, some); });
-  in_batches({shadows_end, hits_end}, [&](std::span<const Arrival> some) { shade(field, some); });
-  for (const Arrival& arrival : std::span(hits_end, settled_.end())) leave_scene(arrival);
+  in_batches({tests_end, shadows_end}, [&](std::span<const RayHit> some) { pass_shadows(field, some); });
+  in_batches({shadows_end, hits_end}, [&](std::span<const RayHit> some) { shade(field, some); });
+  for (const RayHit& ray_hit : std::span(hits_end, settled_.end())) leave_scene(ray_hit);
   clock.enter(Stage::Film);
   for (const std::uint32_t id : ended_) hand_in(id);
   ended_.clear();
@@ -182,48 +182,48 @@ bool Integrator::is_endless(std::size_t field, std::uint32_t id) const {
 }
 
 // A path that met nothing more sees the background.
-void Integrator::leave_scene(const Arrival& arrival) {
-  Path& path = paths_[arrival.id];
-  if (arrival.status != Arrival::Status::Invalid && path.space.field == 0) {
+void Integrator::leave_scene(const RayHit& ray_hit) {
+  Path& path = paths_[ray_hit.id];
+  if (ray_hit.status != RayHit::Status::Invalid && path.space.field == 0) {
     const glm::vec3 direction(path.direction);
     const bool sought = path.pdf > 0 && !world_.lights.empty();
     const float share = hit_share(path, sought ? world_.lights.pdf_of_background(path.from, direction) : 0);
     if (share > 0) add_light(path, path.throughput * world_.lights.background(direction) * share, path.bounces);
   }
-  ended_.push_back(arrival.id);
+  ended_.push_back(ray_hit.id);
 }
 
-// The places that rays of path or shadow met; `ray_of` gives an arrival's origin and direction.
+// The places that rays of path or shadow met; `ray_of` gives an ray_hit's origin and direction.
 template <class RayOf>
-void Integrator::find_places(std::size_t number, std::span<const Arrival> arrivals, Places& places,
+void Integrator::find_places(std::size_t number, std::span<const RayHit> ray_hits, Places& places,
                              const RayOf& ray_of) {
   StageClock& clock = marchers_[0]->clock();
   clock.enter(Stage::Normals);
-  for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    const auto& ray = ray_of(arrivals[i].id);
-    places.hits[i] = {ray.origin + arrivals[i].t * ray.direction, glm::vec3(-ray.direction), arrivals[i].side,
-                      arrivals[i].width};
+  for (std::size_t i = 0; i < ray_hits.size(); ++i) {
+    const auto& ray = ray_of(ray_hits[i].id);
+    places.hits[i] = {ray.origin + ray_hits[i].t * ray.direction, glm::vec3(-ray.direction), ray_hits[i].side,
+                      ray_hits[i].width};
   }
-  const std::span<const Hit> hits = std::span(places.hits).first(arrivals.size());
+  const std::span<const Hit> hits = std::span(places.hits).first(ray_hits.size());
   find_surfaces(world_.scene, field(number), hits, places.points, marchers_[number]->workspace());
   fathom::runtime::find_places(world_.scene, field(number), hits, places.points, scratch_);
   clock.enter(Stage::Shading);
 }
 
-void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
+void Integrator::shade(std::size_t number, std::span<const RayHit> ray_hits) {
   Places places;
-  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Path& { return paths_[id]; });
-  for (std::size_t first = 0; first < arrivals.size(); first += vertices_.size()) {
-    const std::size_t count = std::min(vertices_.size(), arrivals.size() - first);
-    shade_vertices(arrivals.subspan(first, count), std::span(places.hits).subspan(first, count),
+  find_places(number, ray_hits, places, [&](std::uint32_t id) -> const Path& { return paths_[id]; });
+  for (std::size_t first = 0; first < ray_hits.size(); first += vertices_.size()) {
+    const std::size_t count = std::min(vertices_.size(), ray_hits.size() - first);
+    shade_vertices(ray_hits.subspan(first, count), std::span(places.hits).subspan(first, count),
                    std::span(places.points).subspan(first, count));
   }
 }
 
-void Integrator::pass_shadows(std::size_t number, std::span<const Arrival> arrivals) {
+void Integrator::pass_shadows(std::size_t number, std::span<const RayHit> ray_hits) {
   Places places;
-  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Ray& { return shadows_[id].ray; });
-  for (std::size_t i = 0; i < arrivals.size(); ++i) pass_shadow(arrivals[i], places.hits[i], places.points[i]);
+  find_places(number, ray_hits, places, [&](std::uint32_t id) -> const Ray& { return shadows_[id].ray; });
+  for (std::size_t i = 0; i < ray_hits.size(); ++i) pass_shadow(ray_hits[i], places.hits[i], places.points[i]);
 }
 
 void Integrator::hand_in(std::uint32_t id) {

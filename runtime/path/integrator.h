@@ -107,11 +107,11 @@ class Integrator {
     std::array<SurfacePoint, kSurfaceBatch> points;
   };
   template <class RayOf>
-  void find_places(std::size_t field, std::span<const Arrival> arrivals, Places& places, const RayOf& ray_of);
-  void shade(std::size_t field, std::span<const Arrival> arrivals);
-  void pass_shadows(std::size_t field, std::span<const Arrival> arrivals);
+  void find_places(std::size_t field, std::span<const RayHit> ray_hits, Places& places, const RayOf& ray_of);
+  void shade(std::size_t field, std::span<const RayHit> ray_hits);
+  void pass_shadows(std::size_t field, std::span<const RayHit> ray_hits);
   void follow(std::uint32_t id, const Ray& ray);
-  void leave_scene(const Arrival& arrival);
+  void leave_scene(const RayHit& ray_hit);
   void hand_in(std::uint32_t id);  // and frees the id
 
   Marcher& marcher(std::size_t field);
@@ -125,10 +125,10 @@ class Integrator {
     int crossings = 0;  // made before
   };
   void look_along(std::uint32_t id, const ShadowRay& shadow);
-  void pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
-  void shade_vertices(std::span<const Arrival> arrivals, std::span<const Hit> hits,
+  void pass_shadow(const RayHit& ray_hit, const Hit& hit, const SurfacePoint& point);
+  void shade_vertices(std::span<const RayHit> ray_hits, std::span<const Hit> hits,
                       std::span<const SurfacePoint> points);
-  void meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, const SurfacePoint& point);
+  void meet(Vertex& vertex, const RayHit& ray_hit, const Hit& hit, const SurfacePoint& point);
   void find_material(Vertex& vertex);
   MaterialPoint mix_of(const vm::SurfaceShares& shares, glm::dvec3 place);
   bool is_inside(const Vertex& vertex) const;
@@ -137,7 +137,7 @@ class Integrator {
   float relative_index(const Vertex& vertex) const;
   Space beyond(const Vertex& vertex);
   Space no_medium(const Vertex& vertex, glm::dvec3 place);
-  void record_first_hit(const Vertex& vertex, const Arrival& arrival);
+  void record_first_hit(const Vertex& vertex, const RayHit& ray_hit);
   void add_emission(const Vertex& vertex);
   bool is_endless(std::size_t field, std::uint32_t id) const;
   float hit_share(const Path& path, float light_pdf) const;
@@ -156,7 +156,7 @@ class Integrator {
   std::vector<Path> paths_;                         // [id]
   std::vector<ShadowRay> shadows_;                  // [id], where surfaces may let light straight through
   std::vector<std::uint32_t> free_ids_, ended_;
-  std::vector<Arrival> settled_;  // scratch
+  std::vector<RayHit> settled_;   // scratch
   std::vector<Vertex> vertices_;  // scratch
   Vertex passed_;                 // scratch: what a shadow ray goes through
   RealScratch scratch_;

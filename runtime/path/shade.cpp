@@ -74,10 +74,10 @@ void Integrator::add_light(Path& path, glm::vec3 radiance, int bounces) {
 }
 
 // In steps of one kind each, so that the processor has several paths' in hand.
-void Integrator::shade_vertices(std::span<const Arrival> arrivals, std::span<const Hit> hits,
+void Integrator::shade_vertices(std::span<const RayHit> ray_hits, std::span<const Hit> hits,
                                 std::span<const SurfacePoint> points) {
-  const std::span<Vertex> vertices = std::span(vertices_).first(arrivals.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) meet(vertices[i], arrivals[i], hits[i], points[i]);
+  const std::span<Vertex> vertices = std::span(vertices_).first(ray_hits.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) meet(vertices[i], ray_hits[i], hits[i], points[i]);
   for (Vertex& vertex : vertices) sample_bsdf(vertex);
   for (Vertex& vertex : vertices) sample_light(vertex);
   for (Vertex& vertex : vertices) {
@@ -92,11 +92,11 @@ void Integrator::shade_vertices(std::span<const Arrival> arrivals, std::span<con
   }
 }
 
-void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
-  Path& path = paths_[arrival.id];
-  path.throughput *= transmittance(path.space, arrival.t);
-  path.space.side = arrival.side;
-  vertex.id = arrival.id;
+void Integrator::meet(Vertex& vertex, const RayHit& ray_hit, const Hit& hit, const SurfacePoint& point) {
+  Path& path = paths_[ray_hit.id];
+  path.throughput *= transmittance(path.space, ray_hit.t);
+  path.space.side = ray_hit.side;
+  vertex.id = ray_hit.id;
   vertex.path = &path;
   vertex.hit = &hit;
   vertex.point = &point;
@@ -104,7 +104,7 @@ void Integrator::meet(Vertex& vertex, const Arrival& arrival, const Hit& hit, co
   find_material(vertex);
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
-  if (path.bounces + path.crossings == 0) record_first_hit(vertex, arrival);
+  if (path.bounces + path.crossings == 0) record_first_hit(vertex, ray_hit);
   add_emission(vertex);
   vertex.bsdf.emplace(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
 }
@@ -200,13 +200,13 @@ Space Integrator::no_medium(const Vertex& v, glm::dvec3 place) {
   return space;
 }
 
-void Integrator::record_first_hit(const Vertex& v, const Arrival& arrival) {
+void Integrator::record_first_hit(const Vertex& v, const RayHit& ray_hit) {
   ++stats_.primary_hits;
   PathSample& result = v.path->result;
   result.hit = true;
   result.albedo = albedo_of(*v.material);
   result.normal = v.point->normal;
-  result.depth = arrival.t;
+  result.depth = ray_hit.t;
   result.position = v.hit->position;
   result.surface = world_.numbered ? v.point->surface : kNoId;
   result.material = world_.numbered ? v.point->material : kNoId;
@@ -313,28 +313,28 @@ void Integrator::look_along(std::uint32_t id, const ShadowRay& shadow) {
 }
 
 // Where a shadow ray met a surface; of the vertex only what concerns the surface is made.
-void Integrator::pass_shadow(const Arrival& arrival, const Hit& hit, const SurfacePoint& point) {
-  const ShadowRay& shadow = shadows_[arrival.id];
-  Path& path = paths_[arrival.id];
+void Integrator::pass_shadow(const RayHit& ray_hit, const Hit& hit, const SurfacePoint& point) {
+  const ShadowRay& shadow = shadows_[ray_hit.id];
+  Path& path = paths_[ray_hit.id];
   Vertex& vertex = passed_;
   vertex.hit = &hit;
   vertex.point = &point;
   vertex.space = shadow.space;
-  vertex.space.side = arrival.side;
+  vertex.space.side = ray_hit.side;
   find_material(vertex);
   const bool passes = vertex.material->passes_straight() && shadow.crossings < kMostCrossings;
-  if (!passes) return end_shadow_test(arrival.id, false);
+  if (!passes) return end_shadow_test(ray_hit.id, false);
   vertex.inside = is_inside(vertex);
   vertex.beyond = beyond(vertex);
   const Bsdf bsdf(*vertex.material, point.normal, hit.wo, relative_index(vertex), vertex.inside);
-  path.shadow_radiance *= bsdf.straight_through() * transmittance(shadow.space, arrival.t);
-  if (!(max_component(path.shadow_radiance) > 0)) return end_shadow_test(arrival.id, false);
+  path.shadow_radiance *= bsdf.straight_through() * transmittance(shadow.space, ray_hit.t);
+  if (!(max_component(path.shadow_radiance) > 0)) return end_shadow_test(ray_hit.id, false);
   Ray ray = leave(hit, point, shadow.ray.direction, true);
   ray.side = vertex.beyond.side;
   // It starts behind the surface, and must end before the lamp all the same.
   const double gone = glm::dot(ray.origin - shadow.ray.origin, shadow.ray.direction);
   ray.t_max = shadow.ray.t_max - gone;
-  look_along(arrival.id, {vertex.beyond, ray, shadow.length - gone, shadow.crossings + 1});
+  look_along(ray_hit.id, {vertex.beyond, ray, shadow.length - gone, shadow.crossings + 1});
 }
 
 void Integrator::end_shadow_test(std::uint32_t id, bool free) {
