@@ -85,7 +85,7 @@ void grazing(BarTable& table, std::size_t count) {
   const runtime::MarchResult misses = runtime::march(runtime::make_field(scene, kFar), rays);
   std::size_t false_hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    false_hits += misses.arrivals[i].status == runtime::Arrival::Status::Hit && gap(rays[i]) > kClose;
+    false_hits += misses.ray_hits[i].status == runtime::RayHit::Status::Hit && gap(rays[i]) > kClose;
   }
   table.none("B5", "near misses by 1e-6 to 1e-2 (I3): false hits where the gap is above 4e-7", false_hits,
              rays.size());

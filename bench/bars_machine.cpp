@@ -105,7 +105,7 @@ void evaluation(BarTable& table, std::size_t samples) {
              count, compared);
 }
 
-void arrivals(BarTable& table, std::size_t samples) {
+void ray_hits(BarTable& table, std::size_t samples) {
   const compiler::CompiledScene scene = compile_file("scenes/bench/h-composite.json");
   const runtime::Field field = runtime::make_field(scene, 30);
   Engine random(29);
@@ -117,16 +117,16 @@ void arrivals(BarTable& table, std::size_t samples) {
   std::size_t compared = 0;
   const auto measure = [&] {
     std::vector<std::uint32_t> bits;
-    for (const runtime::Arrival& arrival : runtime::march(field, rays).arrivals) {
-      const auto t = std::bit_cast<std::uint64_t>(arrival.t);
+    for (const runtime::RayHit& ray_hit : runtime::march(field, rays).ray_hits) {
+      const auto t = std::bit_cast<std::uint64_t>(ray_hit.t);
       bits.insert(bits.end(),
-                  {static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(t >> 32), bits_of(arrival.width),
-                   arrival.evaluations, static_cast<std::uint32_t>(arrival.status), arrival.certified});
+                  {static_cast<std::uint32_t>(t), static_cast<std::uint32_t>(t >> 32), bits_of(ray_hit.width),
+                   ray_hit.evaluations, static_cast<std::uint32_t>(ray_hit.status), ray_hit.certified});
     }
     return bits;
   };
   const std::size_t count = differences_from_scalar(measure, compared);
-  table.none("B14", fmt::format("H, {} rays from anywhere: numbers of arrivals that differ", rays.size()), count,
+  table.none("B14", fmt::format("H, {} rays from anywhere: numbers of ray hits that differ", rays.size()), count,
              compared);
 }
 
@@ -134,7 +134,7 @@ void arrivals(BarTable& table, std::size_t samples) {
 
 void machine_bars(BarTable& table, const Counts& counts) {
   evaluation(table, counts.samples);
-  arrivals(table, counts.samples);
+  ray_hits(table, counts.samples);
 }
 
 }  // namespace fathom::bench

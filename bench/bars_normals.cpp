@@ -65,11 +65,11 @@ SurfaceHits hits_about(const runtime::Field& field, Engine& random, dvec3 centre
   const runtime::MarchResult result = runtime::march(field, rays);
   SurfaceHits found;
   for (std::size_t i = 0; i < count; ++i) {
-    const runtime::Arrival& arrival = result.arrivals[i];
-    if (arrival.status != runtime::Arrival::Status::Hit) continue;
+    const runtime::RayHit& ray_hit = result.ray_hits[i];
+    if (ray_hit.status != runtime::RayHit::Status::Hit) continue;
     found.rays.push_back(rays[i]);
     found.hits.push_back(
-        {rays[i].origin + arrival.t * rays[i].direction, glm::vec3(-rays[i].direction), arrival.side, arrival.width});
+        {rays[i].origin + ray_hit.t * rays[i].direction, glm::vec3(-rays[i].direction), ray_hit.side, ray_hit.width});
   }
   return found;
 }

@@ -104,7 +104,7 @@ class Scene {
   static void follow(const runtime::Field& field, std::span<const runtime::Ray> rays) {
     std::size_t hits = 0;
     runtime::follow(field, rays, {},
-                    [&](const runtime::Arrival& a) { hits += a.status == runtime::Arrival::Status::Hit; });
+                    [&](const runtime::RayHit& a) { hits += a.status == runtime::RayHit::Status::Hit; });
     benchmark::DoNotOptimize(hits);
   }
 

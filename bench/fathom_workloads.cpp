@@ -35,7 +35,7 @@ class ShadowRenderer {
       while (!free_.empty() && next_ < picture_.pixels.size()) start_pixel();
       if (marcher_->empty()) break;
       marcher_->advance();
-      if (marcher_->arrivals().size() >= kShadeBatch || marcher_->empty()) settle();
+      if (marcher_->ray_hits().size() >= kShadeBatch || marcher_->empty()) settle();
     }
     picture_.rays = marcher_->counters().rays;
     return std::move(picture_);
@@ -67,21 +67,21 @@ class ShadowRenderer {
   }
 
   void settle() {
-    marcher_->take_arrivals(arrivals_);
+    marcher_->take_ray_hits(ray_hits_);
     std::size_t count = 0;
-    for (const Arrival& arrival : arrivals_) {
-      const Slot& slot = slots_[arrival.id];
-      if (arrival.status == Arrival::Status::Hit && !slot.shadow) {
-        hits_[count] = {slot.ray.origin + arrival.t * slot.ray.direction, glm::vec3(-slot.ray.direction),
-                        arrival.side, arrival.width};
-        hit_slots_[count++] = arrival.id;
+    for (const RayHit& ray_hit : ray_hits_) {
+      const Slot& slot = slots_[ray_hit.id];
+      if (ray_hit.status == RayHit::Status::Hit && !slot.shadow) {
+        hits_[count] = {slot.ray.origin + ray_hit.t * slot.ray.direction, glm::vec3(-slot.ray.direction),
+                        ray_hit.side, ray_hit.width};
+        hit_slots_[count++] = ray_hit.id;
         if (count == kSurfaceBatch) shade(std::exchange(count, 0));
         continue;
       }
       float& pixel = picture_.pixels[slot.pixel];
       if (!slot.shadow) pixel = static_cast<float>(0.5 + 0.5 * slot.ray.direction.y);
-      if (slot.shadow && arrival.status == Arrival::Status::Hit) pixel = static_cast<float>(kAlbedo * kAmbient);
-      free_.push_back(arrival.id);
+      if (slot.shadow && ray_hit.status == RayHit::Status::Hit) pixel = static_cast<float>(kAlbedo * kAmbient);
+      free_.push_back(ray_hit.id);
     }
     shade(count);
   }
@@ -118,7 +118,7 @@ class ShadowRenderer {
   int x_ = 0, y_ = 0;     // coordinates of that pixel
   std::array<Slot, Marcher::kMostRays> slots_;
   std::vector<std::uint32_t> free_;
-  std::vector<Arrival> arrivals_;
+  std::vector<RayHit> ray_hits_;
   std::array<Hit, kSurfaceBatch> hits_;
   std::array<SurfacePoint, kSurfaceBatch> points_;
   std::array<std::uint32_t, kSurfaceBatch> hit_slots_;

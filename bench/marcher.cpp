@@ -60,14 +60,14 @@ class Scene {
   // Makes diffuse rays as the integrator does: cosine-distributed, with the known side, slope and clear distance.
   void bounce() {
     vm::Workspace workspace;
-    for (const runtime::Arrival& arrival : runtime::march(field_, camera_).arrivals) {
-      if (arrival.status != runtime::Arrival::Status::Hit) continue;
-      const runtime::Ray& seen = camera_[arrival.id];
-      const runtime::Hit hit{seen.origin + arrival.t * seen.direction, glm::vec3(-seen.direction), arrival.side,
-                             arrival.width};
+    for (const runtime::RayHit& ray_hit : runtime::march(field_, camera_).ray_hits) {
+      if (ray_hit.status != runtime::RayHit::Status::Hit) continue;
+      const runtime::Ray& seen = camera_[ray_hit.id];
+      const runtime::Hit hit{seen.origin + ray_hit.t * seen.direction, glm::vec3(-seen.direction), ray_hit.side,
+                             ray_hit.width};
       runtime::SurfacePoint point{};
       runtime::find_surfaces(scene_, field_, {&hit, 1}, {&point, 1}, workspace);
-      runtime::Sampler sampler(1, arrival.id, 0, 0);
+      runtime::Sampler sampler(1, ray_hit.id, 0, 0);
       diffuse_.push_back(runtime::leave(
           hit, point, runtime::to_frame(point.normal, runtime::square_to_cosine_hemisphere(sampler.next2())), false));
     }

@@ -29,15 +29,15 @@ inline constexpr double kGross = 0.02;  // scene units
 template <class TruthOf>
 Judgement judge(const runtime::MarchResult& result, const TruthOf& truth) {
   Judgement judged;
-  judged.rays = result.arrivals.size();
+  judged.rays = result.ray_hits.size();
   judged.counters = result.counters;
   for (std::size_t i = 0; i < judged.rays; ++i) {
     const auto expected = truth(i);
-    const bool hit = result.arrivals[i].status == runtime::Arrival::Status::Hit;
+    const bool hit = result.ray_hits[i].status == runtime::RayHit::Status::Hit;
     judged.false_hits += hit && expected < 0;
     judged.false_misses += !hit && expected >= 0;
     if (!hit || expected < 0) continue;
-    const auto error = result.arrivals[i].t - expected;
+    const auto error = result.ray_hits[i].t - expected;
     judged.errors.push_back(static_cast<double>(error < 0 ? -error : error));
     judged.gross += judged.errors.back() > kGross;
   }

@@ -38,11 +38,11 @@ bool UnitWorker::next_pixel() {
 bool UnitWorker::next_unit() {
   const auto block = work_.units.take();
   if (!block) return false;
-  const bool first = work_.stage == 0 && block->samples.first == work_.world.settings.samples.first;
+  const bool first = work_.stage == 0 && block->samples.first == work_.context.settings.samples.first;
   if (work_.picture.stopped(first)) return false;
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(open_.size()));
-    open_.push_back({{}, Film({}, work_.world.settings.layers)});
+    open_.push_back({{}, Film({}, work_.context.settings.layers)});
   }
   unit_ = free_.back();
   free_.pop_back();

@@ -31,7 +31,7 @@ class SampleLimits {
 
 // Data that the threads of one pass share.
 struct PassWork {
-  const World& world;
+  const RenderContext& context;
   Pass pass;
   std::size_t stage;  // stage of the film
   const SampleLimits& limits;
@@ -39,9 +39,9 @@ struct PassWork {
   SharedPicture& picture;
 };
 
-class UnitWorker : private PathExchange {
+class UnitWorker : private PathSource, private SampleSink {
  public:
-  explicit UnitWorker(const PassWork& work) : work_(work), integrator_(work.world, work.pass, *this) {}
+  explicit UnitWorker(const PassWork& work) : work_(work), integrator_(work.context, work.pass, *this, *this) {}
 
   void run() { integrator_.run(); }
   Stats stats() const;

@@ -1,18 +1,17 @@
 #include "compiler/analysis/probe.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <optional>
-#include <thread>
 #include <variant>
 
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/node_table.h"
 #include "compiler/source/limits.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/program/parallel_for.h"
 #include "vm/program/verify.h"
 
 namespace fathom::compiler {
@@ -162,17 +161,9 @@ class Probing {
     ProbeRow blank = row;
     blank.place = {};
     std::vector<ProbeRow> parts(chunks, blank);
-    std::atomic<std::uint64_t> next = 0;
-    const auto work = [&] {
-      Prober prober(program, box, row.node, known.magnitude);
-      for (std::uint64_t c = next++; c < chunks; c = next++) {
-        prober.run(c * kChunk, std::min(points, (c + 1) * kChunk), parts[c]);
-      }
-    };
-    std::vector<std::thread> others;
-    for (int i = 1; i < options_.threads && static_cast<std::uint64_t>(i) < chunks; ++i) others.emplace_back(work);
-    work();
-    for (std::thread& thread : others) thread.join();
+    parallel_for(
+        options_.threads, chunks, [&] { return Prober(program, box, row.node, known.magnitude); },
+        [&](Prober& prober, std::size_t c) { prober.run(c * kChunk, std::min(points, (c + 1) * kChunk), parts[c]); });
     for (const ProbeRow& part : parts) merge(row, part);
   }
 

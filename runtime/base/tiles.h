@@ -1,11 +1,9 @@
-// A rectangle of pixels cut into square tiles, which threads take one after another.
+// A rectangle of pixels cut into square tiles.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <optional>
 
 #include "runtime/base/pixel_rect.h"
 
@@ -24,7 +22,7 @@ inline int tile_side(int width, int height, int most, int threads) {
   return side;
 }
 
-// Tiles in rows from the top. The last tile of a row or column may be cut short. Any thread may call take().
+// Tiles in rows from the top. The last tile of a row or column may be cut short.
 class Tiles {
  public:
   Tiles(PixelRect area, int side) : area_(area), side_(side) {}
@@ -37,15 +35,9 @@ class Tiles {
     return PixelRect{x, y, std::min(area_.x1, x + side_), std::min(area_.y1, y + side_)};
   }
 
-  std::optional<PixelRect> take() {
-    const std::int64_t index = next_.fetch_add(1, std::memory_order_relaxed);
-    return index < count() ? std::optional(at(index)) : std::nullopt;
-  }
-
  private:
   PixelRect area_;
   int side_;
-  std::atomic<std::int64_t> next_{0};
 };
 
 }  // namespace fathom::runtime

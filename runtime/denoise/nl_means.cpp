@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include "runtime/base/tiles.h"
 #include "runtime/denoise/nl_means_tile.h"
+#include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
 namespace {
@@ -103,15 +103,12 @@ NlMeansFiltered filter(const NlMeansFrame& framing, int threads) {
   const std::size_t pixels = static_cast<std::size_t>(framing.width) * static_cast<std::size_t>(framing.height);
   for (auto& colors : filtered.colors) colors.fill(Plane(pixels));
   filtered.errors.fill(Plane(pixels));
-  Tiles tiles({0, 0, framing.width, framing.height}, kTile);
-  const auto work = [&] {
-    const auto buffers = std::make_unique<TileBuffers>();
-    while (const auto tile = tiles.take()) filter_tile(framing, *tile, *buffers, filtered);
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  const Tiles tiles({0, 0, framing.width, framing.height}, kTile);
+  parallel_for(
+      threads, static_cast<std::size_t>(tiles.count()), [] { return std::make_unique<TileBuffers>(); },
+      [&](const std::unique_ptr<TileBuffers>& buffers, std::size_t i) {
+        filter_tile(framing, tiles.at(static_cast<std::int64_t>(i)), *buffers, filtered);
+      });
   return filtered;
 }
 

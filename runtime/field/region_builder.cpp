@@ -1,11 +1,11 @@
 #include "runtime/field/region_builder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
+
+#include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
 namespace {
@@ -89,14 +89,14 @@ bool RegionBuilder::split_root() {
   return false;
 }
 
-// Returns the number of threads: as many as the memory suffices for, when each cuts the largest of the cells' parts.
-std::size_t RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
+// Returns the max number of threads that the memory suffices for, when each cuts the largest of the cells' parts.
+int RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
   std::size_t largest = 0;
   for (const RegionCell& cell : cells) {
     largest = std::max(largest, cutting_bytes(cell.part.choices, cell.part.sources.size(), cell.part.bytes()));
   }
   const std::size_t affordable = std::max<std::size_t>(1, budget_.build_memory() / std::max<std::size_t>(1, largest));
-  return std::min({static_cast<std::size_t>(std::max(1, options_.threads)), cells.size(), affordable});
+  return static_cast<int>(std::min(static_cast<std::size_t>(std::max(1, options_.threads)), affordable));
 }
 
 void RegionBuilder::split_all(std::vector<RegionCell> cells) {
@@ -104,18 +104,12 @@ void RegionBuilder::split_all(std::vector<RegionCell> cells) {
   while (!cells.empty() && !budget_.is_spent()) {
     std::vector<RegionPiece> pieces(cells.size());
     budget_.pending_bytes = 0;
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      RegionSplitter splitter(rules, budget_);
-      for (std::size_t i = next++; i < cells.size(); i = next++) {
-        splitter.run(cells[i], pieces[i]);
-        cells[i].part = {};
-      }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t i = threads_for(cells); i > 1; --i) threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads) thread.join();
+    parallel_for(
+        threads_for(cells), cells.size(), [&] { return RegionSplitter(rules, budget_); },
+        [&](RegionSplitter& splitter, std::size_t i) {
+          splitter.run(cells[i], pieces[i]);
+          cells[i].part = {};
+        });
     regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, budget_.pending_bytes);
     if (budget_.is_spent()) return;
     append_all(cells, pieces);

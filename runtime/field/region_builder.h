@@ -25,7 +25,7 @@ class RegionBuilder {
   void split_all(std::vector<RegionCell> cells);
   void append_all(std::vector<RegionCell>& cells, std::vector<RegionPiece>& pieces);
   std::uint32_t append(RegionPiece& piece);
-  std::size_t threads_for(const std::vector<RegionCell>& cells) const;
+  int threads_for(const std::vector<RegionCell>& cells) const;
   void close_outside();
   void choose_grid();
   void make_grid();

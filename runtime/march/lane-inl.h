@@ -68,9 +68,19 @@ class LaneView {
 
   HWY_INLINE LaneView(L& lanes, std::size_t first) : lanes_(lanes), first_(first) {}
 
-  HWY_INLINE N get(LaneRow row) const { return load(&lanes_.row[row][first_], static_cast<N*>(nullptr)); }
-  HWY_INLINE void put(LaneRow row, N value) { store(value, &lanes_.row[row][first_]); }
-  HWY_INLINE void put(LaneRow row, Mask where, N value) { put(row, select(where, value, get(row))); }
+  // Row: an enum of lane_rows.h.
+  template <class Row>
+  HWY_INLINE N get(Row row) const {
+    return load(&lanes_.row[row][first_], static_cast<N*>(nullptr));
+  }
+  template <class Row>
+  HWY_INLINE void put(Row row, N value) {
+    store(value, &lanes_.row[row][first_]);
+  }
+  template <class Row>
+  HWY_INLINE void put(Row row, Mask where, N value) {
+    put(row, select(where, value, get(row)));
+  }
 
   // Sets the next t and the verdict, and requests the field at that t. Returns the lanes that have ended.
   HWY_INLINE Mask finish(N t, N verdict) {
@@ -85,6 +95,42 @@ class LaneView {
  private:
   L& lanes_;
   std::size_t first_;
+};
+
+// New values of the rows with several meanings, in registers until store().
+template <class N>
+class SharedRows {
+ public:
+  template <class Row>
+  HWY_INLINE N get(Row row) const {
+    return value_[index(row)];
+  }
+  template <class Row>
+  HWY_INLINE void put(Row row, N value) {
+    value_[index(row)] = value;
+  }
+  template <class Row>
+  HWY_INLINE void put(Row row, MaskOf<N> where, N value) {
+    put(row, select(where, value, get(row)));
+  }
+  // One by one: g++ 12 keeps the values in memory when a loop over the rows stores them.
+  template <class View>
+  HWY_INLINE void store(View& lanes) const {
+    static_assert(kSharedRows == 6);
+    lanes.put(kT, get(kT));
+    lanes.put(kG, get(kG));
+    lanes.put(kR, get(kR));
+    lanes.put(kM, get(kM));
+    lanes.put(kBackoffCount, get(kBackoffCount));
+    lanes.put(kBackoff, get(kBackoff));
+  }
+
+ private:
+  template <class Row>
+  static constexpr std::size_t index(Row row) {
+    return static_cast<std::size_t>(row) - kT;
+  }
+  N value_[kSharedRows];
 };
 
 // Returns d_f (field.h), the error bound of f at the lanes' points.

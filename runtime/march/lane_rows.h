@@ -21,7 +21,9 @@ namespace fathom::runtime {
 enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
 enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Cross, Retreat, Refine };
 
-// The rows of a lane's state. Every row costs time, because a step reads and writes most rows.
+// The rows of a lane's state. Every row costs time, because a step reads and writes most rows. So the last rows, from
+// kT on, have several meanings, each with its own enum: LaneRow while the lane walks, BracketRow in the phase Refine,
+// HitRow after a hit.
 enum LaneRow : std::uint8_t {
   // Point at which the field is evaluated next.
   kX,
@@ -46,23 +48,28 @@ enum LaneRow : std::uint8_t {
   kT,
   kG,
   kR,
-  kM,         // relaxation: expected slope of the safe radius along the ray
-  kPatience,  // samples to accept before the next attempt to cross
-  // Patience after the next attempt that meets no surface. FixedStep: above 1 once a step was too long.
-  kPenalty,
-  kLaneRows,
-  // Meanings while refining, for the bracket: its ends, the values that the secant uses for both ends, the length of
-  // the first bracket, and the fall of g over the first bracket.
-  kTLo = kT,
-  kGLo = kG,
-  kSpan = kR,
-  kFall = kM,
-  kTHi = kPatience,
-  kGHi = kPenalty,
-  // Meanings after a hit: the root, and the width of its bracket.
-  kRoot = kT,
-  kWidth = kR
+  kM,             // relaxation: expected slope of the safe radius along the ray
+  kBackoffCount,  // samples to accept before the next attempt to cross
+  kBackoff,       // kBackoffCount after the next attempt that meets no surface
+  kLaneRows
 };
+// The bracket of a lane that refines.
+enum BracketRow : std::uint8_t {
+  kTLo = kT,  // t of its ends
+  kTHi = kBackoffCount,
+  kGLo = kG,  // values that the secant uses for the ends
+  kGHi = kBackoff,
+  kSpan = kR,  // length of the first bracket
+  kFall = kM   // fall of g over the first bracket
+};
+// The bracket of a hit: the root in it, and its width.
+enum HitRow : std::uint8_t { kRoot = kT, kWidth = kR };
+// The baseline method FixedStep: above 1 once a step was too long.
+enum FixedStepRow : std::uint8_t { kOverstepped = kBackoff };
+
+inline constexpr std::size_t kSharedRows = kLaneRows - kT;  // rows with several meanings
+static_assert(int{kTLo} == int{kT} && int{kGLo} == int{kG}, "a bracket begins at the last accepted sample");
+static_assert(int{kRoot} == int{kT}, "the root of a baseline method is the last accepted sample");
 
 // S is float or double. Counts and flags have that type, too, so that a register holds the same number of each.
 template <class S>

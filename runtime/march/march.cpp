@@ -15,9 +15,9 @@ class Certifier final : public Marcher {
     while (rays.count > 0) {
       const std::size_t i = --rays.count;
       if (!enters(rays, i)) continue;
-      Course course;
-      set_course(course, rays, i);
-      certify_from(course, rays.side[i], {0, rays.length[i], 0}, 0, 0);
+      ClippedRay ray;
+      set_clipped_ray(ray, rays, i);
+      certify_from(ray, rays.side[i], {0, rays.length[i], 0}, 0, 0);
     }
   }
   void step() override {}
@@ -32,26 +32,26 @@ std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marchi
 }
 
 MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
-                     const std::function<void(const Arrival&)>& settle) {
+                     const std::function<void(const RayHit&)>& use) {
   const std::unique_ptr<Marcher> marcher = make_marcher(field, marching);
-  std::vector<Arrival> arrivals;
+  std::vector<RayHit> ray_hits;
   for (std::size_t next = 0; next < rays.size() || !marcher->empty();) {
     while (next < rays.size() && marcher->room() > 0) {
       marcher->add(static_cast<std::uint32_t>(next), rays[next]);
       ++next;
     }
     marcher->advance();
-    marcher->take_arrivals(arrivals);
-    for (const Arrival& arrival : arrivals) settle(arrival);
+    marcher->take_ray_hits(ray_hits);
+    for (const RayHit& ray_hit : ray_hits) use(ray_hit);
   }
   return marcher->counters();
 }
 
 MarchResult march(const Field& field, std::span<const Ray> rays, const Marching& marching) {
   MarchResult result;
-  result.arrivals.resize(rays.size());
+  result.ray_hits.resize(rays.size());
   result.counters =
-      follow(field, rays, marching, [&](const Arrival& arrival) { result.arrivals[arrival.id] = arrival; });
+      follow(field, rays, marching, [&](const RayHit& ray_hit) { result.ray_hits[ray_hit.id] = ray_hit; });
   return result;
 }
 

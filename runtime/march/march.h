@@ -14,7 +14,7 @@
 //     const auto marcher = make_marcher(field);
 //     marcher->add(id, ray);            // as long as there is room()
 //     marcher->advance();               // one evaluation of the field for every ray within the bound
-//     marcher->take_arrivals(arrivals);  // the rays that ended since the last call
+//     marcher->take_ray_hits(ray_hits);  // the rays that ended since the last call
 //
 // The result of a ray depends on nothing but the ray, the field and the method.
 // Tested by: tests/runtime/march/march_test.cpp
@@ -35,13 +35,13 @@ namespace fathom::runtime {
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching = {});
 
-// Follows all `rays`, whose ids are their indices, and calls `settle` with each arrival.
+// Follows all `rays`, whose ids are their indices, and calls `use` with each result.
 MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
-                     const std::function<void(const Arrival&)>& settle);
+                     const std::function<void(const RayHit&)>& use);
 
-// The results of all rays, in order: arrivals[i].id == i.
+// The results of all rays, in order: ray_hits[i].id == i.
 struct MarchResult {
-  std::vector<Arrival> arrivals;
+  std::vector<RayHit> ray_hits;
   MarchCounters counters;
 };
 MarchResult march(const Field& field, std::span<const Ray> rays, const Marching& marching = {});

@@ -33,10 +33,10 @@ void Marcher::begin_waiting() {
   clipped_ = waiting_.count;
 }
 
-void Marcher::certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+void Marcher::certify_from(const ClippedRay& ray, int side, const Stretch& stretch, std::uint32_t evaluations,
                            std::uint64_t instructions) {
-  searched_.push_back({Search(field_, course.origin, course.direction, side, stretch), course.entry, course.id,
-                       evaluations, instructions});
+  searched_.push_back(
+      {Search(field_, ray.origin, ray.direction, side, stretch), ray.entry, ray.id, evaluations, instructions});
 }
 
 // Searches as long as enough rays are left to fill the machine's registers, or no other rays are under way.
@@ -67,15 +67,15 @@ void Marcher::search_once() {
   }
 }
 
-// Records the arrival of searched ray i. The last searched ray takes its place.
+// Reports searched ray i. The last searched ray takes its place.
 void Marcher::end_search(std::size_t i) {
   const Searched& ray = searched_[i];
   const Certified& found = ray.search.result();
-  if (found.status == Arrival::Status::Invalid) counters_.note_invalid(ray.search.point());
+  if (found.status == RayHit::Status::Invalid) counters_.note_invalid(ray.search.point());
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
-  arrive(ray.id, found.status, static_cast<std::int8_t>(found.side), ray.evaluations + found.evaluations,
+  report(ray.id, found.status, static_cast<std::int8_t>(found.side), ray.evaluations + found.evaluations,
          found.evaluations, static_cast<float>(found.width), ray.entry + found.t,
          ray.instructions + found.instructions);
   if (i + 1 < searched_.size()) searched_[i] = std::move(searched_.back());

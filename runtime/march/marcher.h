@@ -1,5 +1,5 @@
 // The base of every marcher. A marcher takes rays, clips them to the scene's bound (clip.h), advances them, searches
-// some in double (search.h), and returns their arrivals. A derived class advances the rays: stream.h.
+// some in double (search.h), and returns their RayHits. A derived class advances the rays: stream.h.
 //
 // march.h makes the marcher of a method and shows its use. Not a public header: march.h is.
 // Tested by: tests/runtime/march/march_test.cpp
@@ -43,11 +43,11 @@ class Marcher {
   }
   void advance();
 
-  const std::vector<Arrival>& arrivals() const { return arrivals_; }
-  // Moves the arrivals into `out` and drops the previous content of `out`.
-  void take_arrivals(std::vector<Arrival>& out) {
-    out.swap(arrivals_);
-    arrivals_.clear();
+  const std::vector<RayHit>& ray_hits() const { return ray_hits_; }
+  // Moves the results into `out` and drops the previous content of `out`.
+  void take_ray_hits(std::vector<RayHit>& out) {
+    out.swap(ray_hits_);
+    ray_hits_.clear();
   }
   const MarchCounters& counters() const { return counters_; }
   vm::Workspace& workspace() { return workspace_; }
@@ -55,7 +55,7 @@ class Marcher {
 
  protected:
   // A ray clipped to the scene's bound.
-  struct Course {
+  struct ClippedRay {
     glm::dvec3 origin;     // where the ray enters the bound
     glm::dvec3 direction;  // unit length
     double entry;          // distance from the ray's origin to `origin`
@@ -70,32 +70,32 @@ class Marcher {
   virtual void step() = 0;
 
   // Copies each number on its own: a copy of the whole struct would wait for the stores that have just filled it.
-  static void set_course(Course& course, const RayBlock& rays, std::size_t i) {
+  static void set_clipped_ray(ClippedRay& ray, const RayBlock& rays, std::size_t i) {
     for (int axis = 0; axis < 3; ++axis) {
-      course.origin[axis] = rays.origin[axis][i];
-      course.direction[axis] = rays.direction[axis][i];
+      ray.origin[axis] = rays.origin[axis][i];
+      ray.direction[axis] = rays.direction[axis][i];
     }
-    course.entry = rays.entry[i];
-    course.length = rays.length[i];
-    course.id = rays.id[i];
+    ray.entry = rays.entry[i];
+    ray.length = rays.length[i];
+    ray.id = rays.id[i];
   }
-  // True if the i-th of `rays` comes within the bound. Otherwise records the ray's arrival.
+  // True if the i-th of `rays` comes within the bound. Otherwise reports that it does not.
   bool enters(const RayBlock& rays, std::size_t i) {
     const Clip fate = rays.what_became_of(i);
     if (fate == Clip::Within) return true;
     if (fate == Clip::Past) ++counters_.clipped;
-    arrive(rays.id[i], fate == Clip::Past ? Arrival::Status::Miss : Arrival::Status::Invalid);
+    report(rays.id[i], fate == Clip::Past ? RayHit::Status::Miss : RayHit::Status::Invalid);
     return false;
   }
-  // Records an arrival, constructed in place from the fields of Arrival, in order.
+  // Adds a RayHit, constructed in place from its fields, in order.
   template <class... Fields>
-  void arrive(std::uint32_t id, Arrival::Status status, Fields... fields) {
+  void report(std::uint32_t id, RayHit::Status status, Fields... fields) {
     count(status);
-    arrivals_.emplace_back(id, status, fields...);
-    counters_.instructions += arrivals_.back().instructions;
+    ray_hits_.emplace_back(id, status, fields...);
+    counters_.instructions += ray_hits_.back().instructions;
   }
   // Hands a ray that is no longer live to the search in double, after `evaluations` in float.
-  void certify_from(const Course& course, int side, const Stretch& stretch, std::uint32_t evaluations,
+  void certify_from(const ClippedRay& ray, int side, const Stretch& stretch, std::uint32_t evaluations,
                     std::uint64_t instructions);
 
   const Field& field_;
@@ -107,18 +107,18 @@ class Marcher {
   StageClock clock_;
 
  private:
-  void count(Arrival::Status status) {
+  void count(RayHit::Status status) {
     switch (status) {
-      case Arrival::Status::Hit:
+      case RayHit::Status::Hit:
         ++counters_.hits;
         break;
-      case Arrival::Status::Miss:
+      case RayHit::Status::Miss:
         ++counters_.misses;
         break;
-      case Arrival::Status::Contact:
+      case RayHit::Status::Contact:
         ++counters_.contacts;
         break;
-      case Arrival::Status::Invalid:
+      case RayHit::Status::Invalid:
         ++counters_.invalid;
         break;
     }
@@ -132,7 +132,7 @@ class Marcher {
   // A ray that is being searched in double.
   struct Searched {
     Search search;
-    double entry;  // Course::entry
+    double entry;  // ClippedRay::entry
     std::uint32_t id;
     std::uint32_t evaluations;  // in float
     std::uint64_t instructions;
@@ -145,7 +145,7 @@ class Marcher {
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].
   std::vector<double> question_[3], answer_;
   std::vector<std::uint64_t> price_;  // [ray] instructions of the evaluation
-  std::vector<Arrival> arrivals_;
+  std::vector<RayHit> ray_hits_;
 };
 
 }  // namespace fathom::runtime

@@ -17,7 +17,8 @@ struct Ray {
   float clear = 0;   // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
 };
 
-struct Arrival {
+// The result of following a ray: where it hit, or the reason why it did not.
+struct RayHit {
   // Contact: a miss that came nearer to a surface than double resolves.
   enum class Status : std::uint8_t { Hit, Miss, Contact, Invalid };
   std::uint32_t id;

@@ -72,7 +72,7 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
   result_.instructions += instructions;
   rounding_ = field_->rounding(point());
   if (side_ == 0) side_ = f < -rounding_ ? -1 : 1;
-  if (!std::isfinite(f)) return end(Arrival::Status::Invalid);
+  if (!std::isfinite(f)) return end(RayHit::Status::Invalid);
   // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0.
   const double g = (side_ < 0 ? -f : f) + rounding_;
   switch (purpose_) {
@@ -124,7 +124,7 @@ bool Search::cut(double g) {
 // Settles the nearest segment, again and again, until a value is needed.
 void Search::go_on(RealScratch& scratch) {
   while (settle(scratch)) {
-    if (pending_.empty()) return end(contact_ ? Arrival::Status::Contact : Arrival::Status::Miss);
+    if (pending_.empty()) return end(contact_ ? RayHit::Status::Contact : RayHit::Status::Miss);
     now_ = pending_.back();
     pending_.pop_back();
     if (std::isnan(now_.gb)) return ask(now_.b, Purpose::End);
@@ -319,10 +319,10 @@ double Search::coarsened(double resolution, double t) const {
 void Search::hit(double lo, double hi) {
   result_.t = (lo + hi) / 2;
   result_.width = std::max({hi - lo, width_, 0.0});
-  end(Arrival::Status::Hit);
+  end(RayHit::Status::Hit);
 }
 
-void Search::end(Arrival::Status status) {
+void Search::end(RayHit::Status status) {
   result_.status = status;
   result_.side = side_ < 0 ? -1 : 1;
   done_ = true;

@@ -21,7 +21,7 @@
 namespace fathom::runtime {
 
 struct Certified {
-  Arrival::Status status;
+  RayHit::Status status;
   int side;      // +1: searched outside, -1: inside a solid
   double t = 0;  // of the hit, in units of |direction|
   // Width of the interval that holds the first root. t is a root in this interval, bracketed far more narrowly.
@@ -92,7 +92,7 @@ class Search {
   double scale(double t) const;
   double coarsened(double resolution, double t) const;
   void hit(double lo, double hi);
-  void end(Arrival::Status status);
+  void end(RayHit::Status status);
 
   const Field* field_ = nullptr;
   glm::dvec3 origin_{}, direction_{};

@@ -31,7 +31,7 @@ S round_down(double value) {
 }
 
 // Samples to accept after the first attempt to cross that met no surface.
-constexpr double kFirstPenalty = 2;
+constexpr double kFirstBackoff = 2;
 // Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
 // in tiered-inl.h).
 constexpr double kVagueness = 0x1p-14;
@@ -78,12 +78,12 @@ void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
     put(kOx + axis, origin);
     put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
   }
-  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kPatience}) put(zero, 0);
+  for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
   put(kTMax, round_down<S>(rays.length[i]));
   put(kSide, rays.side[i]);
   put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
-  put(kPenalty, seeded_ ? S(kFirstPenalty) : S(1));
-  set_course(courses_[lane], rays, i);
+  put(seeded_ ? int{kBackoff} : int{kOverstepped}, seeded_ ? S(kFirstBackoff) : S(1));
+  set_clipped_ray(clipped_rays_[lane], rays, i);
   instructions_[lane] = 0;
 }
 
@@ -115,7 +115,7 @@ void Stream<S>::close_holes() {
     const std::size_t last = --lanes_used_;
     if (hole == last) continue;
     for (auto& row : lanes_->row) row[hole] = row[last];
-    courses_[hole] = courses_[last];
+    clipped_rays_[hole] = clipped_rays_[last];
     instructions_[hole] = instructions_[last];
   }
   holes_.clear();
@@ -136,32 +136,32 @@ void Stream<S>::step() {
 
 template <class S>
 void Stream<S>::finish(std::size_t i) {
-  const auto number = [&](LaneRow row) { return lanes_->row[row][i]; };
-  const Course& course = courses_[i];
+  const auto number = [&](auto row) { return lanes_->row[row][i]; };
+  const ClippedRay& ray = clipped_rays_[i];
   const int side = number(kSide) < 0 ? -1 : 1;
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
   const std::uint64_t instructions =
       field_.regions ? instructions_[i] : std::uint64_t{evaluations} * field_.distance->instructions();
-  const auto arrive_as = [&](Arrival::Status status, float width, double t) {
-    arrive(course.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
+  const auto report_as = [&](RayHit::Status status, float width, double t) {
+    report(ray.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
   };
   --live_;
   holes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Certify:
-      return certify_from(course, side, what_is_left(i), evaluations, instructions);
+      return certify_from(ray, side, what_is_left(i), evaluations, instructions);
     case LaneVerdict::Hit:
-      return arrive_as(Arrival::Status::Hit,
+      return report_as(RayHit::Status::Hit,
                        static_cast<float>(info(rules_.method).uses_epsilon ? rules_.epsilon : number(kWidth)),
-                       course.entry + static_cast<double>(number(kRoot)));
+                       ray.entry + static_cast<double>(number(kRoot)));
     case LaneVerdict::OutOfSteps:
       ++counters_.exhausted;
-      return arrive_as(Arrival::Status::Miss, 0, 0);
+      return report_as(RayHit::Status::Miss, 0, 0);
     case LaneVerdict::Miss:
-      return arrive_as(Arrival::Status::Miss, 0, 0);
+      return report_as(RayHit::Status::Miss, 0, 0);
     default:
       counters_.note_invalid({number(kX), number(kY), number(kZ)});
-      return arrive_as(Arrival::Status::Invalid, 0, 0);
+      return report_as(RayHit::Status::Invalid, 0, 0);
   }
 }
 
@@ -169,11 +169,11 @@ void Stream<S>::finish(std::size_t i) {
 // with the bracket, widened by the uncertainty.
 template <class S>
 Stretch Stream<S>::what_is_left(std::size_t i) const {
-  const auto number = [&](LaneRow row) { return static_cast<double>(lanes_->row[row][i]); };
-  const double t = number(kT), length = courses_[i].length;
-  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {t, length, 0};
+  const auto number = [&](auto row) { return static_cast<double>(lanes_->row[row][i]); };
+  const double length = clipped_rays_[i].length;
+  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {number(kT), length, 0};
   const double slack = std::max(kVagueness * number(kTHi), static_cast<double>(field_.band));
-  return {std::max(0.0, t - slack), length, number(kTHi) + slack};
+  return {std::max(0.0, number(kTLo) - slack), length, number(kTHi) + slack};
 }
 
 template class Stream<float>;

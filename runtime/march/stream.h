@@ -34,10 +34,10 @@ class Stream final : public Marcher {
   const bool seeded_;     // rays begin with Ray::slope, unlike those of the baseline methods
   const int most_lanes_;  // maximum number in use
   const bool knows_convex_;
-  const std::size_t register_lanes_;            // points per register; each evaluation fills whole registers
-  std::array<Course, kLanes> courses_;          // [lane]
-  alignas(64) std::array<S, kLanes> distance_;  // [lane]
-  alignas(64) std::array<S, kLanes> convex_;    // [lane]; only if knows_convex_
+  const std::size_t register_lanes_;             // points per register; each evaluation fills whole registers
+  std::array<ClippedRay, kLanes> clipped_rays_;  // [lane]
+  alignas(64) std::array<S, kLanes> distance_;   // [lane]
+  alignas(64) std::array<S, kLanes> convex_;     // [lane]; only if knows_convex_
   // Lanes whose ray has ended, in descending order. A new ray or the last lane fills them.
   std::vector<std::size_t> holes_;
   std::size_t lanes_used_ = 0;  // including the holes

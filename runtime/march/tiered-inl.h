@@ -43,12 +43,12 @@ inline constexpr double kOvershoot = 1.1, kFarOvershoot = 1.01, kOvershootErrors
 inline constexpr double kLongestCrossing = 16;
 // Maximum of d_f, in bands, so that kOvershootErrors d_f are no longer than the longest crossing.
 inline constexpr double kCoarse = 2 * kLongestCrossing / kOvershootErrors;
-// kMostPenalty: after an attempt to cross that met no surface, a lane accepts a number of samples before the next
+// kMaxBackoff: after an attempt to cross that met no surface, a lane accepts a number of samples before the next
 // attempt, and twice as many after each further one. A lane that would have to wait for more samples than this grazes
 // the surface, and is finished by certify(). kBudget: certify() also finishes a lane that takes more evaluations.
-inline constexpr double kMostPenalty = 16, kBudget = 704;
+inline constexpr double kMaxBackoff = 16, kBudget = 704;
 // Samples to accept after a failed attempt from afar, which shows where the line bends and nothing of what is near.
-inline constexpr double kFarPenalty = 1;
+inline constexpr double kFarBackoff = 1;
 // A finite number in place of an infinite convexity radius, for use in arithmetic.
 inline constexpr double kEndless = 0x1p100;
 // Share of d_f below which a value holds no more digits of the root: a fiftieth of a unit in the last place at 1.
@@ -88,15 +88,15 @@ class Tiered {
     const Mask crossed = deep & walking & (crossing | retreating | (gap <= unseen_));
     const Mask failed = walking & (!(accepted | crossed)), bracketed = refining | crossed;
     phase_ = select(failed, code(LanePhase::Retreat), select(crossed, code(LanePhase::Refine), phase));
-    new_t_ = select(accepted, t_, last_t_);
-    new_g_ = select(accepted, g_, last_g_);
+    rows_.put(kT, select(accepted, t_, last_t_));
+    rows_.put(kG, select(accepted, g_, last_g_));
     const Mask stepped = accepted & walking;
     ahead_ = r_;
     if constexpr (kConvex) look_ahead(convex, stepped, rules);
     learn(stepped, failed);
     const N onwards = go_on(accepted, stepped), back = retreat(failed, failed & crossing, failed & retreating);
     next_ = select(accepted, onwards, back);
-    new_r_ = select(accepted, ahead_, last_r_);
+    rows_.put(kR, select(accepted, ahead_, last_r_));
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
     if (any(inside & beginning)) begin_inside(inside & beginning, phase);
     return finish(f);
@@ -147,18 +147,19 @@ class Tiered {
   // Updates m by the step that led here. A step that was too long says nothing else, and resets m.
   HWY_INLINE void learn(Mask stepped, Mask failed) {
     const N m = a_.get(kM), seen = (g_ - last_g_) * inv_lipschitz_ * rough_reciprocal(t_ - last_t_);
-    m_ = select(stepped, min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM)), select(failed, k(-1), m));
+    const N mean = min(k(1 - kBeta) * m + k(kBeta) * seen, k(kLargestM));
+    rows_.put(kM, select(stepped, mean, select(failed, k(-1), m)));
   }
 
   // Returns the next t after an accepted sample.
   HWY_INLINE N go_on(Mask accepted, Mask stepped) {
-    const N t_max = a_.get(kTMax), patience = a_.get(kPatience);
+    const N t_max = a_.get(kTMax), backoff_count = a_.get(kBackoffCount);
     misses_ = accepted & (max(t_, t_ + ahead_) >= t_max);
     const Mask falls = stepped & (g_ < last_g_), near = falls & (g_ < band_);
     const Mask nearing = kConvex ? near | (falls & on_line_) : near;
-    const Mask waits = nearing & (patience > k(0)) & (r_ > error_), tries = nearing & (!waits);
-    patience_ = select(waits, patience - k(1), patience);
-    const N relaxed = max(ahead_, k(kReach) * r_ * rough_reciprocal(k(1) - m_));
+    const Mask waits = nearing & (backoff_count > k(0)) & (r_ > error_), tries = nearing & (!waits);
+    rows_.put(kBackoffCount, select(waits, backoff_count - k(1), backoff_count));
+    const N relaxed = max(ahead_, k(kReach) * r_ * rough_reciprocal(k(1) - rows_.get(kM)));
     // The step to where the line through the last two samples is well beyond the surface.
     const N overshoot = kConvex ? select(near, k(kOvershoot), k(kFarOvershoot)) : k(kOvershoot);
     const N beyond =
@@ -177,10 +178,10 @@ class Tiered {
 
   // Returns the t of the plain step from the last accepted sample.
   HWY_INLINE N retreat(Mask failed, Mask from_crossing, Mask again) {
-    const N penalty = a_.get(kPenalty);
-    const Mask near = from_crossing & (last_g_ < band_), grazes = near & (penalty > k(kMostPenalty));
-    patience_ = select(near, penalty, select(from_crossing, k(kFarPenalty), patience_));
-    penalty_ = select(near, penalty + penalty, penalty);
+    const N backoff = a_.get(kBackoff);
+    const Mask near = from_crossing & (last_g_ < band_), grazes = near & (backoff > k(kMaxBackoff));
+    rows_.put(kBackoffCount, select(near, backoff, select(from_crossing, k(kFarBackoff), rows_.get(kBackoffCount))));
+    rows_.put(kBackoff, select(near, backoff + backoff, backoff));
     undecided_ = undecided_ | grazes | again | (failed & is_stuck(last_t_, last_r_));
     return last_t_ + last_r_;
   }
@@ -194,16 +195,17 @@ class Tiered {
     undecided_ = undecided_ | (shallow & (emerging | (starting & coarse)));
     phase_ = select(starting, code(LanePhase::Emerge), phase_);
     hits_ = hits_ | (emerging & (!shallow));
-    new_t_ = select(emerging, k(0), new_t_);  // row kRoot
-    new_r_ = select(emerging, t_, new_r_);    // row kWidth
+    rows_.put(kRoot, emerging, k(0));
+    rows_.put(kWidth, emerging, t_);
     next_ = select(inside, k(4) * (k(16) * error_ - g_) * inv_lipschitz_, next_);
   }
 
-  // Shrinks the bracket [t, t_hi] to the sample, and chooses the next sample by the secant.
+  // Shrinks the bracket [t_lo, t_hi] to the sample, and chooses the next sample by the secant. The bracket of a lane
+  // that has just crossed begins at the last accepted sample.
   HWY_INLINE void refine(Mask bracketed, Mask lower, Mask crossed) {
-    const N half = k(0.5);
-    const N lo = select(lower, t_, last_t_), hi = select(lower, a_.get(kTHi), t_);
-    const N g_lo = select(lower, g_, select(crossed, last_g_, half * last_g_));
+    const N half = k(0.5), last_g_lo = a_.get(kGLo);
+    const N lo = select(lower, t_, a_.get(kTLo)), hi = select(lower, a_.get(kTHi), t_);
+    const N g_lo = select(lower, g_, select(crossed, last_g_lo, half * last_g_lo));
     const N g_hi = select(lower, half * a_.get(kGHi), g_);
     const N width = hi - lo, done = resolution_ * hi, aside = half * done;
     // The secant stays next to an end that is 0, where the root may be. If the sample next to that end is 0, too,
@@ -218,32 +220,29 @@ class Tiered {
     const Mask root = lower & (g_ <= k(kRootError) * error_);
     const Mask found = bracketed & (root | (width <= done) | (next <= lo) | (next >= hi));
     // The root of a function that is nearly level has an uncertainty of d_f divided by the slope.
-    const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), span = select(crossed, width, last_r_);
+    const N fall = select(crossed, last_g_ - g_, a_.get(kFall)), span = select(crossed, width, a_.get(kSpan));
     const N slack = k(kTypicalError) * error_ * span;
     const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
     const Mask known = found & (!vague);
     undecided_ = undecided_ | vague;
     hits_ = hits_ | known;
 
-    patience_ = select(bracketed, hi, patience_);  // row kTHi
-    penalty_ = select(bracketed, g_hi, penalty_);  // row kGHi
-    m_ = select(bracketed, fall, m_);              // row kFall
-    new_g_ = select(bracketed, g_lo, new_g_);      // row kGLo
+    rows_.put(kTLo, bracketed, lo);
+    rows_.put(kTHi, bracketed, hi);
+    rows_.put(kGLo, bracketed, g_lo);
+    rows_.put(kGHi, bracketed, g_hi);
+    rows_.put(kSpan, bracketed, span);
+    rows_.put(kFall, bracketed, fall);
     const N best = select(root, t_, select(g_lo < -g_hi, lo, hi));
-    new_t_ = select(known, best, select(bracketed, lo, new_t_));                         // row kRoot or kTLo
-    new_r_ = select(known, select(root, done, width), select(bracketed, span, new_r_));  // row kWidth or kSpan
+    rows_.put(kRoot, known, best);
+    rows_.put(kWidth, known, select(root, done, width));
     next_ = select(bracketed, next, next_);
   }
 
   HWY_INLINE Mask finish(N f) {
     a_.put(kEvaluations, evaluations_);
     a_.put(kPhase, phase_);
-    a_.put(kT, new_t_);
-    a_.put(kG, new_g_);
-    a_.put(kR, new_r_);
-    a_.put(kM, m_);
-    a_.put(kPatience, patience_);
-    a_.put(kPenalty, penalty_);
+    rows_.store(a_);
     const Mask finite = abs(f) < k(std::numeric_limits<double>::infinity());
     N verdict = select(undecided_, code(LaneVerdict::Certify), code(LaneVerdict::Going));
     verdict = select(misses_, code(LaneVerdict::Miss), select(hits_, code(LaneVerdict::Hit), verdict));
@@ -254,11 +253,12 @@ class Tiered {
   LaneView<N, Lanes<S>> a_;
   const N inv_lipschitz_, field_band_, resolution_;
   N error_, g_, r_, t_;         // the sample's d_f, g, safe radius and t
-  N last_t_, last_g_, last_r_;  // the last accepted sample's; while refining the bracket's, as in lane_rows.h
+  N last_t_, last_g_, last_r_;  // the last accepted sample's, of lanes that walk
   N band_, unseen_, evaluations_;
   Mask on_line_;     // kConvex only: the line through both samples holds
   N reach_, ahead_;  // length over which the line holds; length that is free
-  N phase_, new_t_, new_g_, new_r_, m_, patience_, penalty_, next_;  // values that finish() stores
+  N phase_, next_;   // values that finish() stores
+  SharedRows<N> rows_;
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
 

@@ -29,11 +29,11 @@ struct FixedStep {
   static constexpr bool kRelaxed = true;
   template <class View, class N, class Mask>
   static HWY_INLINE N next(View& a, Mask, N r, N, N relaxation) {
-    return select(a.get(kPenalty) > number<N>(1), r, relaxation * r);
+    return select(a.get(kOverstepped) > number<N>(1), r, relaxation * r);
   }
   template <class View, class Mask>
   static HWY_INLINE void retreat(View& a, Mask failed) {
-    a.put(kPenalty, failed, a.get(kPenalty) + a.get(kPenalty));
+    a.put(kOverstepped, failed, a.get(kOverstepped) + a.get(kOverstepped));
   }
 };
 

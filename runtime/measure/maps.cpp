@@ -18,9 +18,9 @@ float units_apart(double depth, double truth) {
   return static_cast<float>(std::abs(depth - truth) / static_cast<double>(unit));
 }
 
-float depth_error(const Arrival& arrival, const Arrival& truth) {
-  const bool hit = arrival.status == Arrival::Status::Hit, expected = truth.status == Arrival::Status::Hit;
-  if (hit && expected) return units_apart(arrival.t, truth.t);
+float depth_error(const RayHit& ray_hit, const RayHit& truth) {
+  const bool hit = ray_hit.status == RayHit::Status::Hit, expected = truth.status == RayHit::Status::Hit;
+  if (hit && expected) return units_apart(ray_hit.t, truth.t);
   return hit || expected ? std::numeric_limits<float>::infinity() : kNothing;
 }
 
@@ -38,10 +38,10 @@ PixelMaps measure_maps(const compiler::CompiledScene& scene, const Field& field,
   const MarchResult seen = march(field, rays), truth = march(field, rays, {.method = Method::Certified});
   PixelMaps maps{width, height, {}, {}, {}};
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Arrival& arrival = seen.arrivals[i];
-    maps.evaluations.push_back(static_cast<float>(arrival.evaluations));
-    maps.in_double.push_back(static_cast<float>(arrival.certified));
-    maps.depth_error.push_back(depth_error(arrival, truth.arrivals[i]));
+    const RayHit& ray_hit = seen.ray_hits[i];
+    maps.evaluations.push_back(static_cast<float>(ray_hit.evaluations));
+    maps.in_double.push_back(static_cast<float>(ray_hit.certified));
+    maps.depth_error.push_back(depth_error(ray_hit, truth.ray_hits[i]));
   }
   return maps;
 }

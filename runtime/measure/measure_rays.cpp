@@ -12,7 +12,7 @@
 namespace fathom::runtime {
 namespace {
 
-using Status = Arrival::Status;
+using Status = RayHit::Status;
 
 // Share of the extent: an error larger than this is another surface's hit.
 constexpr double kGross = 0.004;
@@ -30,18 +30,18 @@ double share(const std::vector<double>& sorted, double quantile) {
 
 // Returns normals at hits, as the renderer finds them (`exact`: in double). [ray]; zero for rays without a hit.
 std::vector<glm::dvec3> normals_at(const compiler::CompiledScene& scene, const Field& field,
-                                   std::span<const Ray> rays, std::span<const Arrival> arrivals, bool exact) {
+                                   std::span<const Ray> rays, std::span<const RayHit> ray_hits, bool exact) {
   std::vector<glm::dvec3> normals(rays.size(), glm::dvec3(0));
   vm::Workspace workspace;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (arrivals[i].status != Status::Hit) continue;
-    const glm::dvec3 direction = glm::normalize(rays[i].direction), at = rays[i].origin + arrivals[i].t * direction;
+    if (ray_hits[i].status != Status::Hit) continue;
+    const glm::dvec3 direction = glm::normalize(rays[i].direction), at = rays[i].origin + ray_hits[i].t * direction;
     if (exact) {
       const glm::dvec3 gradient = vm::evaluate_surface(scene.surface, at, workspace).gradient;
       const double length = glm::length(gradient);
-      if (length > 0) normals[i] = static_cast<double>(arrivals[i].side) / length * gradient;
+      if (length > 0) normals[i] = static_cast<double>(ray_hits[i].side) / length * gradient;
     } else {
-      const Hit hit{at, glm::vec3(-direction), arrivals[i].side, arrivals[i].width};
+      const Hit hit{at, glm::vec3(-direction), ray_hits[i].side, ray_hits[i].width};
       SurfacePoint point{};
       find_surfaces(scene, field, std::span(&hit, 1), std::span(&point, 1), workspace);
       normals[i] = glm::dvec3(point.normal);
@@ -56,15 +56,15 @@ class Comparison {
  public:
   Comparison(const compiler::CompiledScene& scene, const Field& field, const RaySet& set)
       : scene_(scene), field_(field), set_(set) {
-    reference_ = march(field, set.rays, {.method = Method::Certified}).arrivals;
+    reference_ = march(field, set.rays, {.method = Method::Certified}).ray_hits;
     normals_ = normals_at(scene, field, set.rays, reference_, true);
   }
 
   RayMeasurement row(const Marching& marching) const {
-    const std::vector<Arrival> arrivals = march(field_, set_.rays, marching).arrivals;
+    const std::vector<RayHit> ray_hits = march(field_, set_.rays, marching).ray_hits;
     RayMeasurement row = describe(marching);
-    count_failures(arrivals, marching, row);
-    measure_errors(arrivals, row);
+    count_failures(ray_hits, marching, row);
+    measure_errors(ray_hits, row);
     return row;
   }
 
@@ -87,20 +87,20 @@ class Comparison {
   bool is_known(std::size_t i) const {
     return reference_[i].status == Status::Hit || reference_[i].status == Status::Miss;
   }
-  double error(std::span<const Arrival> arrivals, std::size_t i) const {
-    return std::abs(arrivals[i].t - reference_[i].t);
+  double error(std::span<const RayHit> ray_hits, std::size_t i) const {
+    return std::abs(ray_hits[i].t - reference_[i].t);
   }
-  bool both_hit(std::span<const Arrival> arrivals, std::size_t i) const {
-    return arrivals[i].status == Status::Hit && reference_[i].status == Status::Hit;
+  bool both_hit(std::span<const RayHit> ray_hits, std::size_t i) const {
+    return ray_hits[i].status == Status::Hit && reference_[i].status == Status::Hit;
   }
 
-  void count_failures(std::span<const Arrival> arrivals, const Marching& marching, RayMeasurement& row) const {
-    const double ppm = 1e6 / static_cast<double>(std::max<std::size_t>(1, arrivals.size()));
+  void count_failures(std::span<const RayHit> ray_hits, const Marching& marching, RayMeasurement& row) const {
+    const double ppm = 1e6 / static_cast<double>(std::max<std::size_t>(1, ray_hits.size()));
     const bool limited = info(marching.method).uses_epsilon;
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-      const bool hit = arrivals[i].status == Status::Hit, expected = reference_[i].status == Status::Hit;
-      const bool given_up = limited && !hit && arrivals[i].evaluations >= static_cast<std::uint32_t>(marching.steps);
-      if (arrivals[i].status == Status::Contact) row.contact_ppm += ppm;
+    for (std::size_t i = 0; i < ray_hits.size(); ++i) {
+      const bool hit = ray_hits[i].status == Status::Hit, expected = reference_[i].status == Status::Hit;
+      const bool given_up = limited && !hit && ray_hits[i].evaluations >= static_cast<std::uint32_t>(marching.steps);
+      if (ray_hits[i].status == Status::Contact) row.contact_ppm += ppm;
       if (!is_known(i)) continue;
       if (given_up) {
         row.exhausted_ppm += ppm;
@@ -108,18 +108,18 @@ class Comparison {
       }
       if (hit && !expected) row.false_hit_ppm += ppm;
       if (!hit && expected) row.false_miss_ppm += ppm;
-      if (hit && expected && error(arrivals, i) > kGross * extent_of(field_)) row.gross_ppm += ppm;
+      if (hit && expected && error(ray_hits, i) > kGross * extent_of(field_)) row.gross_ppm += ppm;
     }
   }
 
-  void measure_errors(std::span<const Arrival> arrivals, RayMeasurement& row) const {
-    const std::vector<glm::dvec3> normals = normals_at(scene_, field_, set_.rays, arrivals, row.reference);
+  void measure_errors(std::span<const RayHit> ray_hits, RayMeasurement& row) const {
+    const std::vector<glm::dvec3> normals = normals_at(scene_, field_, set_.rays, ray_hits, row.reference);
     std::vector<double> distances, angles, evaluations;
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-      evaluations.push_back(arrivals[i].evaluations);
-      row.evals_mean += arrivals[i].evaluations / static_cast<double>(arrivals.size());
-      if (!both_hit(arrivals, i)) continue;
-      distances.push_back(error(arrivals, i));
+    for (std::size_t i = 0; i < ray_hits.size(); ++i) {
+      evaluations.push_back(ray_hits[i].evaluations);
+      row.evals_mean += ray_hits[i].evaluations / static_cast<double>(ray_hits.size());
+      if (!both_hit(ray_hits, i)) continue;
+      distances.push_back(error(ray_hits, i));
       if (normals_[i] != glm::dvec3(0)) angles.push_back(angle(normals[i], normals_[i]));
     }
     for (std::vector<double>* values : {&distances, &angles, &evaluations}) std::sort(values->begin(), values->end());
@@ -131,7 +131,7 @@ class Comparison {
   const compiler::CompiledScene& scene_;
   const Field& field_;
   const RaySet& set_;
-  std::vector<Arrival> reference_;
+  std::vector<RayHit> reference_;
   std::vector<glm::dvec3> normals_;  // at the reference's hits
 };
 
@@ -143,7 +143,7 @@ void time_rows(const Field& field, const RaySet& set, std::span<const Marching> 
     std::span<const Ray> rays = set.rays;
     if (in_double(marching)) rays = rays.first(std::min(rays.size(), kTimedInDouble));
     counts.push_back(static_cast<double>(std::max<std::size_t>(1, rays.size())));
-    variants.push_back([&field, &marching, rays] { follow(field, rays, marching, [](const Arrival&) {}); });
+    variants.push_back([&field, &marching, rays] { follow(field, rays, marching, [](const RayHit&) {}); });
   }
   const std::vector<std::vector<double>> seconds = time_interleaved(variants, rounds);
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -43,12 +43,12 @@ std::vector<Place> places_of(const compiler::CompiledScene& scene, const Field& 
   vm::Workspace workspace;
   std::vector<Place> places;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Arrival& arrival = seen.arrivals[i];
-    if (arrival.status != Arrival::Status::Hit) continue;
-    const dvec3 at = rays[i].origin + arrival.t * glm::normalize(rays[i].direction);
+    const RayHit& ray_hit = seen.ray_hits[i];
+    if (ray_hit.status != RayHit::Status::Hit) continue;
+    const dvec3 at = rays[i].origin + ray_hit.t * glm::normalize(rays[i].direction);
     const dvec3 gradient = vm::evaluate_surface(scene.surface, at, workspace).gradient;
     const double length = glm::length(gradient);
-    if (length > 0) places.push_back({at, static_cast<double>(arrival.side) / length * gradient});
+    if (length > 0) places.push_back({at, static_cast<double>(ray_hit.side) / length * gradient});
   }
   return places;
 }

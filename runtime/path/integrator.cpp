@@ -1,252 +1,184 @@
 #include "runtime/path/integrator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "runtime/base/color.h"
+#include "runtime/path/camera_rays.h"
+#include "runtime/path/direct_light.h"
+#include "runtime/path/emission.h"
+#include "runtime/path/medium_interface.h"
+#include "runtime/path/scatter.h"
 
 namespace fathom::runtime {
 namespace {
 
-// Arrivals are shaded when so many wait: enough for the machine's blocks, few enough to keep the stream full.
-constexpr std::size_t kShadeBatch = 64;
-// Vertices are shaded so many at once: they fit the processor's first cache.
-constexpr std::size_t kVertexBatch = 16;
-// Paths are started so many at once.
-constexpr std::size_t kStartBatch = 32;
+bool is_finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-std::size_t under_way(const Marcher& marcher) {
-  return static_cast<std::size_t>(marcher.capacity() - marcher.room());
+// Calls use(first, count) for the parts of a range, each with up to `size` elements.
+template <class Use>
+void for_each_part(std::size_t count, std::size_t size, const Use& use) {
+  for (std::size_t first = 0; first < count; first += size) use(first, std::min(size, count - first));
 }
 
 }  // namespace
 
-Integrator::Integrator(const World& world, const Pass& pass, PathExchange& exchange)
-    : world_(world), pass_(pass), exchange_(exchange) {
-  marchers_.resize(1 + world.media.size());
-  int paths = marcher(0).capacity();
-  for (std::size_t i = 0; i < world.media.size(); ++i) {
-    paths = std::min(paths, Marcher::capacity_for(world.media.field(i)));
-  }
-  paths_.resize(static_cast<std::size_t>(paths));
-  vertices_.resize(kVertexBatch);
-  if (world.materials.pass_straight()) shadows_.resize(paths_.size());
+Integrator::Integrator(const RenderContext& context, const Pass& pass, PathSource& source, SampleSink& sink)
+    : context_(context),
+      pass_(pass),
+      source_(source),
+      sink_(sink),
+      queues_(context),
+      paths_(queues_.capacity()),
+      vertices_(kVertexBatch) {
+  if (context.materials.pass_straight()) shadow_rays_.resize(paths_.size());
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
-// Made when the first ray is in the medium: it takes 300 KB, and a scene may have thousands of media.
-Marcher& Integrator::marcher(std::size_t field) {
-  std::unique_ptr<Marcher>& marcher = marchers_[field];
-  if (!marcher) marcher = make_marcher(this->field(field), world_.settings.marching);
-  return *marcher;
-}
-
 void Integrator::run() {
-  StageClock& clock = marchers_[0]->clock();
-  if (world_.settings.profile) clock.start(Stage::Shading);
+  StageClock& clock = queues_.clock();
+  if (context_.settings.profile) clock.start(Stage::Shading);
   bool more = true;
   while (true) {
     while (more && !free_ids_.empty()) more = start_paths();
-    if (idle()) break;
-    for (std::size_t field = 0; field < marchers_.size(); ++field) {
-      if (due(field)) advance(field);
+    if (queues_.is_idle()) break;
+    for (std::size_t field = 0; field < queues_.fields(); ++field) {
+      if (queues_.is_due(field) && queues_.advance(field)) process_ray_hits(field);
     }
   }
   clock.stop();
 }
 
-bool Integrator::idle() const {
-  return std::all_of(marchers_.begin(), marchers_.end(), [](const auto& marcher) {
-    return !marcher || (marcher->empty() && marcher->arrivals().empty());
-  });
-}
-
-// Rays within a medium wait until they fill registers, or until there are no others.
-bool Integrator::due(std::size_t field) const {
-  if (field == 0) return true;
-  if (!marchers_[field]) return false;
-  const std::size_t rays = under_way(*marchers_[field]);
-  return rays > 0 && rays >= std::min(kShadeBatch, under_way(*marchers_[0]));
-}
-
-void Integrator::advance(std::size_t field) {
-  Marcher& marcher = *marchers_[field];
-  marchers_[0]->clock().enter(Stage::March);
-  marcher.advance();
-  if (marcher.arrivals().size() >= kShadeBatch || marcher.empty()) settle_arrivals(field);
-}
-
-// False when there are no more.
 bool Integrator::start_paths() {
-  marchers_[0]->clock().enter(Stage::Shading);
-  std::array<PathKey, kStartBatch> keys;
-  const std::size_t wanted = std::min(kStartBatch, free_ids_.size());
-  const std::size_t given = exchange_.next(std::span(keys).first(wanted));
-  start(std::span(keys).first(given));
+  queues_.clock().enter(Stage::Shading);
+  std::array<PathKey, kCameraBatch> keys;
+  std::array<std::uint32_t, kCameraBatch> ids;
+  const std::size_t wanted = std::min(kCameraBatch, free_ids_.size());
+  const std::size_t given = source_.next(std::span(keys).first(wanted));
+  const std::span<const std::uint32_t> begun = std::span(ids).first(given);
+  std::copy_n(free_ids_.rbegin(), given, ids.begin());
+  free_ids_.resize(free_ids_.size() - given);
+  begin_paths(context_, pass_, std::span(keys).first(given), begun, paths_, scratch_);
+  for (const std::uint32_t id : begun) trace_path(id);
+  stats_.primary_rays += given;
   return given == wanted;
 }
 
-// In steps of one kind each, so that the processor has several paths' in hand.
-void Integrator::start(std::span<const PathKey> keys) {
-  const Settings& settings = world_.settings;
-  std::array<Sampler, kStartBatch> samplers;
-  std::array<CameraRay, kStartBatch> rays;
-  std::array<float, kStartBatch> weights;
-  PixelKey pixel;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const PathKey& key = keys[i];
-    const bool same = i > 0 && key.x == keys[i - 1].x && key.y == keys[i - 1].y;
-    if (!same) pixel = PixelKey(pass_.plan, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y));
-    samplers[i] = Sampler(pixel, key.sample);
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    // A single sample shows what lies at the pixel's centre.
-    const FilterSample place = settings.spp == 1 ? FilterSample{} : world_.filter.sample(samplers[i].next2());
-    const double x = keys[i].x + 0.5 + static_cast<double>(place.offset.x);
-    const double y = keys[i].y + 0.5 + static_cast<double>(place.offset.y);
-    rays[i] = world_.camera.has_lens() ? world_.camera.ray(x, y, samplers[i].next2()) : world_.camera.ray(x, y);
-    weights[i] = place.weight;
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::uint32_t id = free_ids_.back();
-    free_ids_.pop_back();
-    Path& path = paths_[id];
-    path.key = keys[i];
-    path.sampler = samplers[i];
-    path.space = world_.camera_space ? *world_.camera_space
-                                     : space_at(rays[i].origin, world_.media, world_.materials, scratch_);
-    path.throughput = glm::vec3(1);
-    path.weight = weights[i];
-    path.eta_scale = 1;
-    path.bounces = 0;
-    path.crossings = 0;
-    path.pdf = 0;
-    path.in_shadow_test = false;
-    path.ends = false;
-    path.result = {};
-    path.result.number = pass_.first_number + keys[i].sample;
-    Ray ray{rays[i].origin, rays[i].direction};
-    ray.side = path.space.side;
-    follow(id, ray);
-  }
-  stats_.primary_rays += keys.size();
-}
-
-void Integrator::follow(std::uint32_t id, const Ray& ray) {
-  Path& path = paths_[id];
-  path.origin = ray.origin;
-  path.direction = ray.direction;
-  marcher(path.space.field).add(id, ray);
-}
-
-void Integrator::settle_arrivals(std::size_t field) {
-  StageClock& clock = marchers_[0]->clock();
-  marchers_[field]->take_arrivals(settled_);
-  if (world_.settings.layers.cost) {
-    for (const Arrival& arrival : settled_) {
-      paths_[arrival.id].result.evaluations += arrival.evaluations;
-      paths_[arrival.id].result.instructions += arrival.instructions;
-    }
-  }
+void Integrator::process_ray_hits(std::size_t field) {
+  StageClock& clock = queues_.clock();
+  queues_.take_ray_hits(field, ray_hits_);
+  if (context_.settings.layers.cost) add_costs(ray_hits_, paths_);
   clock.enter(Stage::Shading);
-  const auto is_hit = [](const Arrival& arrival) { return arrival.status == Arrival::Status::Hit; };
-  const auto tests_shadow = [&](const Arrival& arrival) { return paths_[arrival.id].in_shadow_test; };
-  // What stands in the way of light may let some of it straight through.
-  const auto ends_test = [&](const Arrival& arrival) {
-    return tests_shadow(arrival) && (shadows_.empty() || !is_hit(arrival));
-  };
-  const auto tests_end = std::partition(settled_.begin(), settled_.end(), ends_test);
-  const auto shadows_end = std::partition(tests_end, settled_.end(), tests_shadow);
-  const auto hits_end = std::partition(shadows_end, settled_.end(), is_hit);
-  for (const Arrival& arrival : std::span(settled_.begin(), tests_end)) {
-    const bool free = arrival.status == Arrival::Status::Miss || arrival.status == Arrival::Status::Contact;
-    end_shadow_test(arrival.id, free && !is_endless(field, arrival.id));
-  }
-  const auto in_batches = [](std::span<const Arrival> arrivals, const auto& use) {
-    for (std::size_t first = 0; first < arrivals.size(); first += kSurfaceBatch) {
-      use(arrivals.subspan(first, std::min(kSurfaceBatch, arrivals.size() - first)));
-    }
-  };
-  in_batches({tests_end, shadows_end}, [&](std::span<const Arrival> some) { pass_shadows(field, some); });
-  in_batches({shadows_end, hits_end}, [&](std::span<const Arrival> some) { shade(field, some); });
-  for (const Arrival& arrival : std::span(hits_end, settled_.end())) leave_scene(arrival);
+  const RayHitGroups groups = group_ray_hits(ray_hits_, paths_, !shadow_rays_.empty());
+  end_shadow_rays(context_, field, groups.ended_shadow_rays, paths_, shadow_rays_);
+  for (const RayHit& ray_hit : groups.ended_shadow_rays) continue_path(ray_hit.id);
+  for_each_part(groups.shadow_hits.size(), kSurfaceBatch, [&](std::size_t first, std::size_t count) {
+    pass_shadow_hits(field, groups.shadow_hits.subspan(first, count));
+  });
+  for_each_part(groups.surface_hits.size(), kSurfaceBatch, [&](std::size_t first, std::size_t count) {
+    shade_hits(field, groups.surface_hits.subspan(first, count));
+  });
+  add_background(context_, groups.escaped_rays, paths_);
+  for (const RayHit& ray_hit : groups.escaped_rays) ended_ids_.push_back(ray_hit.id);
   clock.enter(Stage::Film);
-  for (const std::uint32_t id : ended_) hand_in(id);
-  ended_.clear();
+  for (const std::uint32_t id : ended_ids_) retire_path(id);
+  ended_ids_.clear();
 }
 
-// Whether a shadow ray looked for the background from within a medium and met no end of that: as leave_scene() has
-// it, there is none to see.
-bool Integrator::is_endless(std::size_t field, std::uint32_t id) const {
-  return field != 0 && !shadows_.empty() && std::isinf(shadows_[id].length);
+void Integrator::shade_hits(std::size_t field, std::span<const RayHit> ray_hits) {
+  HitBatch batch;
+  queues_.clock().enter(Stage::Normals);
+  place_path_hits(ray_hits, paths_, batch);
+  find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
+  queues_.clock().enter(Stage::Shading);
+  for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
+    const std::span<PathVertex> vertices = std::span(vertices_).first(count);
+    begin_vertices(batch, first, paths_, vertices);
+    run_stages(vertices);
+  });
 }
 
-// A path that met nothing more sees the background.
-void Integrator::leave_scene(const Arrival& arrival) {
-  Path& path = paths_[arrival.id];
-  if (arrival.status != Arrival::Status::Invalid && path.space.field == 0) {
-    const glm::vec3 direction(path.direction);
-    const bool sought = path.pdf > 0 && !world_.lights.empty();
-    const float share = hit_share(path, sought ? world_.lights.pdf_of_background(path.from, direction) : 0);
-    if (share > 0) add_light(path, path.throughput * world_.lights.background(direction) * share, path.bounces);
+void Integrator::run_stages(std::span<PathVertex> vertices) {
+  attenuate_paths(vertices);
+  find_materials(context_, vertices, scratch_);
+  find_media(context_, vertices, scratch_);
+  stats_.primary_hits += record_first_hits(context_, vertices);
+  add_emission(context_, vertices);
+  make_bsdfs(vertices);
+  sample_bsdfs(context_.settings, vertices);
+  sample_lights(context_, vertices);
+  sample_direct_light(context_, vertices, scratch_);
+  apply_bsdf_samples(context_.settings, vertices);
+  trace_next_rays(vertices);
+}
+
+void Integrator::pass_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits) {
+  HitBatch batch;
+  queues_.clock().enter(Stage::Normals);
+  place_shadow_hits(ray_hits, shadow_rays_, batch);
+  find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
+  queues_.clock().enter(Stage::Shading);
+  for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
+    const std::span<PathVertex> vertices = std::span(vertices_).first(count);
+    begin_shadow_vertices(batch, first, paths_, shadow_rays_, vertices);
+    run_shadow_stages(vertices);
+  });
+}
+
+void Integrator::run_shadow_stages(std::span<PathVertex> vertices) {
+  find_materials(context_, vertices, scratch_);
+  end_occluded_rays(shadow_rays_, vertices);
+  find_media(context_, vertices, scratch_);
+  make_bsdfs(vertices);
+  pass_shadow_rays(shadow_rays_, vertices);
+  trace_next_rays(vertices);
+}
+
+void Integrator::trace_next_rays(std::span<const PathVertex> vertices) {
+  for (const PathVertex& vertex : vertices) {
+    if (!vertex.shadow_ray) {
+      continue_path(vertex.id);
+      continue;
+    }
+    ++stats_.shadow_rays;
+    if (!shadow_rays_.empty()) shadow_rays_[vertex.id] = *vertex.shadow_ray;
+    queues_.add(vertex.shadow_ray->medium.field, vertex.id, vertex.shadow_ray->ray);
   }
-  ended_.push_back(arrival.id);
 }
 
-// The places that rays of path or shadow met; `ray_of` gives an arrival's origin and direction.
-template <class RayOf>
-void Integrator::find_places(std::size_t number, std::span<const Arrival> arrivals, Places& places,
-                             const RayOf& ray_of) {
-  StageClock& clock = marchers_[0]->clock();
-  clock.enter(Stage::Normals);
-  for (std::size_t i = 0; i < arrivals.size(); ++i) {
-    const auto& ray = ray_of(arrivals[i].id);
-    places.hits[i] = {ray.origin + arrivals[i].t * ray.direction, glm::vec3(-ray.direction), arrivals[i].side,
-                      arrivals[i].width};
-  }
-  const std::span<const Hit> hits = std::span(places.hits).first(arrivals.size());
-  find_surfaces(world_.scene, field(number), hits, places.points, marchers_[number]->workspace());
-  fathom::runtime::find_places(world_.scene, field(number), hits, places.points, scratch_);
-  clock.enter(Stage::Shading);
+void Integrator::trace_path(std::uint32_t id) {
+  PathState& path = paths_[id];
+  path.medium = path.next_medium;
+  path.origin = path.next.origin;
+  path.direction = path.next.direction;
+  queues_.add(path.medium.field, id, path.next);
 }
 
-void Integrator::shade(std::size_t number, std::span<const Arrival> arrivals) {
-  Places places;
-  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Path& { return paths_[id]; });
-  for (std::size_t first = 0; first < arrivals.size(); first += vertices_.size()) {
-    const std::size_t count = std::min(vertices_.size(), arrivals.size() - first);
-    shade_vertices(arrivals.subspan(first, count), std::span(places.hits).subspan(first, count),
-                   std::span(places.points).subspan(first, count));
-  }
+void Integrator::continue_path(std::uint32_t id) {
+  if (paths_[id].ends) return ended_ids_.push_back(id);
+  ++stats_.bounce_rays;
+  trace_path(id);
 }
 
-void Integrator::pass_shadows(std::size_t number, std::span<const Arrival> arrivals) {
-  Places places;
-  find_places(number, arrivals, places, [&](std::uint32_t id) -> const Ray& { return shadows_[id].ray; });
-  for (std::size_t i = 0; i < arrivals.size(); ++i) pass_shadow(arrivals[i], places.hits[i], places.points[i]);
-}
-
-void Integrator::hand_in(std::uint32_t id) {
-  Path& path = paths_[id];
-  if (!finite(path.result.radiance)) {
+void Integrator::retire_path(std::uint32_t id) {
+  PathState& path = paths_[id];
+  if (!is_finite(path.result.radiance)) {
     ++stats_.dropped_samples;
     path.result.radiance = glm::vec3(0);
   }
   path.result.radiance *= path.weight;
-  const glm::vec3 radiance = path.result.radiance;
-  const float brightest = std::max({radiance.x, radiance.y, radiance.z});
+  const float brightest = max_component(path.result.radiance);
   if (brightest > 0) ++stats_.lit_samples;
   if (brightest > 0 && brightest < static_cast<float>(kFaintLight)) ++stats_.faint_samples;
-  if (!exchange_.add(path.key, path.result)) ++stats_.saturated;
+  if (!sink_.add(path.key, path.result)) ++stats_.saturated;
   free_ids_.push_back(id);
 }
 
 Stats Integrator::stats() const {
   Stats stats = stats_;
-  for (const auto& marcher : marchers_) {
-    if (marcher) stats.march.merge(marcher->counters());
-  }
-  if (world_.settings.profile) stats.stages = marchers_[0]->clock().seconds();
+  queues_.count(stats.march);
+  if (context_.settings.profile) stats.stages = queues_.stages();
   return stats;
 }
 

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
+#include "vm/program/parallel_for.h"
 #include "vm/prune/specialise.h"
 
 namespace fathom::runtime {
@@ -141,22 +140,17 @@ bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceVal
   const vm::Part part = vm::whole(distance);
   const int step = kEdges[0] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
-  std::atomic<int> next{0};
-  // Threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing one.
-  constexpr int kTiles = kTilesAcross * kTilesAcross;
-  const auto work = [&] {
-    QuadtreeWorker worker(slice, wanted, field);
-    for (int i = next++; i < columns * rows * kTiles; i = next++) {
-      const int block = i / kTiles;
-      worker.run(part, {block % columns * step, block / columns * step}, 0,
-                 threads > 1 ? static_cast<std::size_t>(i % kTiles) : vm::kEnclosedBoxes);
-      if (threads <= 1) next += kTiles - 1;
-    }
-  };
-  std::vector<std::thread> others;
-  for (int i = 1; i < std::min(threads, columns * rows * kTiles); ++i) others.emplace_back(work);
-  work();
-  for (std::thread& thread : others) thread.join();
+  // Several threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing
+  // one. A single thread takes all sixteen at once.
+  const bool one_by_one = threads > 1;
+  const std::size_t turns = one_by_one ? vm::kEnclosedBoxes : 1;
+  parallel_for(
+      threads, static_cast<std::size_t>(columns * rows) * turns, [&] { return QuadtreeWorker(slice, wanted, field); },
+      [&](QuadtreeWorker& worker, std::size_t i) {
+        const int block = static_cast<int>(i / turns);
+        worker.run(part, {block % columns * step, block / columns * step}, 0,
+                   one_by_one ? i % turns : vm::kEnclosedBoxes);
+      });
   return true;
 }
 

@@ -2,44 +2,39 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "runtime/slice/quadtree.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
 namespace {
 
-// Rows of pixels, which threads take one by one. Each thread has its own scratch memory.
-class PixelRows {
+// Evaluates rows of pixels. Each thread has its own.
+class RowEvaluator {
  public:
-  PixelRows(const vm::VerifiedProgram& distance, const Slice& slice, std::vector<float>& field)
-      : distance_(distance), slice_(slice), field_(field) {}
+  RowEvaluator(const vm::VerifiedProgram& distance, const Slice& slice) : distance_(distance), slice_(slice) {
+    for (auto& coordinates : points_) coordinates.resize(static_cast<std::size_t>(slice.width));
+  }
 
-  void work() {
-    const auto width = static_cast<std::size_t>(slice_.width);
-    std::array<std::vector<float>, 3> points;
-    for (auto& coordinates : points) coordinates.resize(width);
-    vm::Workspace workspace;
-    for (int row; (row = next_.fetch_add(1, std::memory_order_relaxed)) < slice_.height;) {
-      for (int column = 0; column < slice_.width; ++column) {
-        const glm::dvec3 point = slice_.point(column, row);
-        for (std::size_t i = 0; i < 3; ++i) {
-          points[i][static_cast<std::size_t>(column)] = static_cast<float>(point[static_cast<int>(i)]);
-        }
+  // `values`: one per pixel of the row.
+  void run(int row, float* values) {
+    for (int column = 0; column < slice_.width; ++column) {
+      const glm::dvec3 point = slice_.point(column, row);
+      for (std::size_t i = 0; i < 3; ++i) {
+        points_[i][static_cast<std::size_t>(column)] = static_cast<float>(point[static_cast<int>(i)]);
       }
-      vm::evaluate_distance(distance_, {points[0].data(), points[1].data(), points[2].data()}, width,
-                            field_.data() + static_cast<std::size_t>(row) * width, workspace);
     }
+    vm::evaluate_distance(distance_, {points_[0].data(), points_[1].data(), points_[2].data()},
+                          static_cast<std::size_t>(slice_.width), values, workspace_);
   }
 
  private:
   const vm::VerifiedProgram& distance_;
   const Slice& slice_;
-  std::vector<float>& field_;
-  std::atomic<int> next_{0};
+  std::array<std::vector<float>, 3> points_;
+  vm::Workspace workspace_;
 };
 
 // Colours of one side of the surface, sRGB encoded. Blue and orange differ to the colour-blind as much as to anyone.
@@ -111,13 +106,12 @@ class DistanceShader {
 
 std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
                                   SliceValues wanted) {
-  std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
+  const auto width = static_cast<std::size_t>(slice.width), height = static_cast<std::size_t>(slice.height);
+  std::vector<float> field(width * height);
   if (evaluate_by_quadtree(distance, slice, wanted, threads, field)) return field;
-  PixelRows rows(distance, slice, field);
-  std::vector<std::thread> others;
-  for (int i = 1; i < std::min(threads, slice.height); ++i) others.emplace_back([&] { rows.work(); });
-  rows.work();
-  for (std::thread& thread : others) thread.join();
+  parallel_for(
+      threads, height, [&] { return RowEvaluator(distance, slice); },
+      [&](RowEvaluator& rows, std::size_t row) { rows.run(static_cast<int>(row), field.data() + row * width); });
   return field;
 }
 

@@ -113,7 +113,7 @@ TEST_CASE("I9: a ray inside a body finds the way out", "[catalogue]") {
     CHECK(found.hits == found.rays);
     CHECK(found.p99() <= 5e-6);
     CHECK(found.worst() <= 1e-4);
-    CHECK(exits.arrivals[0].side == -1);
+    CHECK(exits.ray_hits[0].side == -1);
     CHECK(exits.counters.evaluations <= 2 * entries.counters.evaluations);
   }
 }
@@ -140,7 +140,7 @@ TEST_CASE("I11: what straddles the end of the ray", "[catalogue]") {
     const auto scene = scene_of(scene_text);
     Ray limited = ray;
     limited.t_max = t_max;
-    return march(make_field(scene), std::span(&limited, 1)).arrivals[0].status == Arrival::Status::Hit;
+    return march(make_field(scene), std::span(&limited, 1)).ray_hits[0].status == RayHit::Status::Hit;
   };
   // Distances and positions that float holds exactly: the neighbouring float decides.
   const Ray straight{{0, 0, 5}, {0, 0, -1}}, down{{0.25, 4, 0}, {0, -1, 0}};
@@ -184,20 +184,20 @@ TEST_CASE("I12: rays without a direction or a place are invalid, and harm no nei
   rays[7].t_max = nan;
   rays[9].direction = {0, 0, -7};
   const MarchResult result = march(field, rays);
-  const double alone = march(field, std::span(rays).first(1)).arrivals[0].t;
+  const double alone = march(field, std::span(rays).first(1)).ray_hits[0].t;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     INFO(i);
     if (i >= 1 && i <= 7) {
-      CHECK(result.arrivals[i].status == Arrival::Status::Invalid);
+      CHECK(result.ray_hits[i].status == RayHit::Status::Invalid);
     } else {
-      REQUIRE(result.arrivals[i].status == Arrival::Status::Hit);
-      CHECK(result.arrivals[i].t == alone);
+      REQUIRE(result.ray_hits[i].status == RayHit::Status::Hit);
+      CHECK(result.ray_hits[i].t == alone);
     }
   }
   CHECK(result.counters.invalid == 7);
   // A NaN fails every comparison: naive tracing reports neither a hit nor a miss and runs out of steps.
   vm::Workspace workspace;
-  CHECK(trace_naively(scene.distance, rays[5], {}, workspace).status != NaiveArrival::Status::Hit);
+  CHECK(trace_naively(scene.distance, rays[5], {}, workspace).status != NaiveHit::Status::Hit);
 }
 
 TEST_CASE("I13: coplanar cuts leave no skin", "[catalogue]") {
@@ -308,11 +308,11 @@ TEST_CASE("I15: a wire of a ten thousandth, left by a difference", "[catalogue][
     vm::Workspace workspace;
     INFO(wire);
     const double width = measured_width(2e-4, [&](const Ray& ray) {
-      return march(field, std::span(&ray, 1)).arrivals[0].status == Arrival::Status::Hit;
+      return march(field, std::span(&ray, 1)).ray_hits[0].status == RayHit::Status::Hit;
     });
     CHECK(std::abs(width - 1e-4) <= 2e-6);
     const double fat = measured_width(2e-3, [&](const Ray& ray) {
-      return trace_naively(scene.distance, ray, {.eps = 1e-3}, workspace).status == NaiveArrival::Status::Hit;
+      return trace_naively(scene.distance, ray, {.eps = 1e-3}, workspace).status == NaiveHit::Status::Hit;
     });
     CHECK(fat > 1e-3);
   }

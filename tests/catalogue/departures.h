@@ -25,11 +25,11 @@ struct Places {
 inline Places places(const compiler::CompiledScene& scene, const std::vector<Ray>& rays) {
   const Field field = make_field(scene);
   Places places;
-  for (const Arrival& arrival : march(field, rays).arrivals) {
-    if (arrival.status != Arrival::Status::Hit) continue;
-    const Ray& ray = rays[arrival.id];
+  for (const RayHit& ray_hit : march(field, rays).ray_hits) {
+    if (ray_hit.status != RayHit::Status::Hit) continue;
+    const Ray& ray = rays[ray_hit.id];
     const glm::dvec3 unit = glm::normalize(ray.direction);
-    places.hits.push_back({ray.origin + arrival.t * unit, glm::vec3(-unit), arrival.side, arrival.width});
+    places.hits.push_back({ray.origin + ray_hit.t * unit, glm::vec3(-unit), ray_hit.side, ray_hit.width});
   }
   places.points.resize(places.hits.size());
   vm::Workspace workspace;

@@ -251,11 +251,11 @@ TEST_CASE("F14: rays through what has no value are invalid, their neighbours are
   for (const double x : {0.5, 2.0, 0.25, 3.0}) rays.push_back({{x, 0, 6}, {0, 0, -1}});
   const MarchResult result = march(make_field(scene), rays);
   for (const std::size_t i : {0u, 2u}) {
-    REQUIRE(result.arrivals[i].status == Arrival::Status::Hit);
-    CHECK(result.arrivals[i].t ==
+    REQUIRE(result.ray_hits[i].status == RayHit::Status::Hit);
+    CHECK(result.ray_hits[i].t ==
           Approx(static_cast<double>(6 - std::sqrt(1 - rays[i].origin.x * rays[i].origin.x))));
   }
-  for (const std::size_t i : {1u, 3u}) CHECK(result.arrivals[i].status == Arrival::Status::Invalid);
+  for (const std::size_t i : {1u, 3u}) CHECK(result.ray_hits[i].status == RayHit::Status::Invalid);
   CHECK(result.counters.invalid == 2);
 }
 

@@ -76,11 +76,11 @@ TEST_CASE("I3: near misses of a sphere miss it", "[catalogue]") {
   const MarchResult result = march(field, rays);
   RealScratch scratch;
   int false_hits = 0, false_certified = 0;
-  for (const Arrival& arrival : result.arrivals) {
-    const Ray& ray = rays[arrival.id];
-    false_hits += arrival.status == Arrival::Status::Hit && gap_of(ray) > 4e-7L;
+  for (const RayHit& ray_hit : result.ray_hits) {
+    const Ray& ray = rays[ray_hit.id];
+    false_hits += ray_hit.status == RayHit::Status::Hit && gap_of(ray) > 4e-7L;
     const Certified certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
-    false_certified += certified.status == Arrival::Status::Hit;
+    false_certified += certified.status == RayHit::Status::Hit;
   }
   CHECK(false_hits == 0);
   CHECK(false_certified == 0);
@@ -105,8 +105,8 @@ TEST_CASE("I4: planes at grazing angles", "[catalogue]") {
     const MarchResult result = march(make_field(scene), rays);
     double worst = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      REQUIRE(result.arrivals[i].status == Arrival::Status::Hit);
-      worst = std::max(worst, static_cast<double>(std::abs(result.arrivals[i].t / plane_distance(rays[i]) - 1)));
+      REQUIRE(result.ray_hits[i].status == RayHit::Status::Hit);
+      worst = std::max(worst, static_cast<double>(std::abs(result.ray_hits[i].t / plane_distance(rays[i]) - 1)));
     }
     INFO(degrees << " degrees");
     CHECK(worst <= 1e-5);
@@ -148,7 +148,7 @@ TEST_CASE("I5: a ray all but parallel to a plane that is not across an axis is d
     const Ray ray{1e-5 * normal, glm::normalize(along + slope * normal), INFINITY, 1, static_cast<float>(slope)};
     const MarchResult result = march(make_field(scene), std::span(&ray, 1));
     INFO("slope " << slope);
-    CHECK(result.arrivals[0].status != Arrival::Status::Hit);
+    CHECK(result.ray_hits[0].status != RayHit::Status::Hit);
     CHECK(result.counters.exhausted == 0);
     CHECK(result.counters.evaluations <= 1000);
   }
@@ -176,8 +176,8 @@ TEST_CASE("I6: a world offset of up to a million units", "[catalogue]") {
     Judgement found;
     const MarchResult result = march(make_field(scene), local);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      found.invalid += result.arrivals[i].status == Arrival::Status::Invalid;
-      found.note(result.arrivals[i].status == Arrival::Status::Hit, result.arrivals[i].t, truth(rays[i]));
+      found.invalid += result.ray_hits[i].status == RayHit::Status::Invalid;
+      found.note(result.ray_hits[i].status == RayHit::Status::Hit, result.ray_hits[i].t, truth(rays[i]));
     }
     std::sort(found.errors.begin(), found.errors.end());
     // Spacing of floats at the coordinates that remain after the compiler moved the solid: the compiler's origin

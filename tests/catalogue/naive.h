@@ -24,7 +24,7 @@ struct Naive {
   double t_max = 100;  // scene units
 };
 
-struct NaiveArrival {
+struct NaiveHit {
   enum class Status { Hit, Miss, Exhausted };
   Status status;
   double t;
@@ -32,8 +32,8 @@ struct NaiveArrival {
 
 // Traces a ray entirely in the precision of Number, float or double.
 template <class Number = float>
-NaiveArrival trace_naively(const vm::VerifiedProgram& program, const Ray& ray, const Naive& rule,
-                           vm::Workspace& workspace) {
+NaiveHit trace_naively(const vm::VerifiedProgram& program, const Ray& ray, const Naive& rule,
+                       vm::Workspace& workspace) {
   using Vector = glm::vec<3, Number>;
   const Vector origin(ray.origin), direction(ray.direction);
   Number t = 0;
@@ -45,11 +45,11 @@ NaiveArrival trace_naively(const vm::VerifiedProgram& program, const Ray& ray, c
     } else {
       d = vm::evaluate_distance(program, p, workspace);
     }
-    if (d <= static_cast<Number>(rule.eps)) return {NaiveArrival::Status::Hit, static_cast<double>(t)};
+    if (d <= static_cast<Number>(rule.eps)) return {NaiveHit::Status::Hit, static_cast<double>(t)};
     t += d;
-    if (!(static_cast<double>(t) < rule.t_max)) return {NaiveArrival::Status::Miss, 0};
+    if (!(static_cast<double>(t) < rule.t_max)) return {NaiveHit::Status::Miss, 0};
   }
-  return {NaiveArrival::Status::Exhausted, 0};
+  return {NaiveHit::Status::Exhausted, 0};
 }
 
 // Judges naive tracing. A ray that ran out of steps counts only as exhausted, because no program knows whether it
@@ -60,12 +60,12 @@ Judgement judge_naive(const compiler::CompiledScene& scene, const std::vector<Ra
   Judgement judgement;
   vm::Workspace workspace;
   for (const Ray& ray : rays) {
-    const NaiveArrival arrival = trace_naively<Number>(scene.distance, ray, rule, workspace);
-    if (arrival.status == NaiveArrival::Status::Exhausted) {
+    const NaiveHit ray_hit = trace_naively<Number>(scene.distance, ray, rule, workspace);
+    if (ray_hit.status == NaiveHit::Status::Exhausted) {
       ++judgement.rays;
       ++judgement.exhausted;
     } else {
-      judgement.note(arrival.status == NaiveArrival::Status::Hit, arrival.t, truth(ray));
+      judgement.note(ray_hit.status == NaiveHit::Status::Hit, ray_hit.t, truth(ray));
     }
   }
   std::sort(judgement.errors.begin(), judgement.errors.end());

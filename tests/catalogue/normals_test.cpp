@@ -305,8 +305,8 @@ TEST_CASE("N5: the normal where the hit is said to be, against that where it is"
   for (const Ray& ray : rays) {
     const Vec3 truth = glm::normalize(Vec3(ray.origin) + sphere_distance(ray) * Vec3(ray.direction));
     ours.push_back(angle(glm::dvec3(met.points[place++].normal), truth));
-    const NaiveArrival there = trace_naively(scene.distance, ray, {.eps = 1e-4}, workspace);
-    if (there.status != NaiveArrival::Status::Hit) continue;
+    const NaiveHit there = trace_naively(scene.distance, ray, {.eps = 1e-4}, workspace);
+    if (there.status != NaiveHit::Status::Hit) continue;
     naive.push_back(angle(glm::normalize(ray.origin + there.t * ray.direction), truth));
   }
   std::sort(ours.begin(), ours.end());

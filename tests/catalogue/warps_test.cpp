@@ -208,12 +208,12 @@ Tally tally(const Case& c, int count) {
     const auto wrong = [&](bool hit, double t) {
       return hit != (truth.outcome == Outcome::Hit) || (hit && std::abs(t - truth.t) > kGross);
     };
-    const bool hit = marched.arrivals[i].status == runtime::Arrival::Status::Hit;
+    const bool hit = marched.ray_hits[i].status == runtime::RayHit::Status::Hit;
     const Truth guess = naive(c, lines[i]);
-    result.wrong += wrong(hit, marched.arrivals[i].t);
+    result.wrong += wrong(hit, marched.ray_hits[i].t);
     result.naive_wrong += wrong(guess.outcome == Outcome::Hit, guess.t);
-    if (hit && truth.outcome == Outcome::Hit && !wrong(hit, marched.arrivals[i].t)) {
-      result.worst = std::max(result.worst, std::abs(marched.arrivals[i].t - truth.t));
+    if (hit && truth.outcome == Outcome::Hit && !wrong(hit, marched.ray_hits[i].t)) {
+      result.worst = std::max(result.worst, std::abs(marched.ray_hits[i].t - truth.t));
     }
   }
   return result;

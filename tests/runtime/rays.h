@@ -130,9 +130,9 @@ struct Judgement {
 inline Judgement judge(const MarchResult& result, const std::vector<Ray>& rays, const Truth& truth) {
   Judgement judgement;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Arrival& arrival = result.arrivals[i];
-    judgement.invalid += arrival.status == Arrival::Status::Invalid;
-    judgement.note(arrival.status == Arrival::Status::Hit, arrival.t, truth(rays[i]));
+    const RayHit& ray_hit = result.ray_hits[i];
+    judgement.invalid += ray_hit.status == RayHit::Status::Invalid;
+    judgement.note(ray_hit.status == RayHit::Status::Hit, ray_hit.t, truth(rays[i]));
   }
   judgement.exhausted = static_cast<int>(result.counters.exhausted);
   std::sort(judgement.errors.begin(), judgement.errors.end());

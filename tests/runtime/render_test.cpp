@@ -218,16 +218,16 @@ TEST_CASE("render: tiles take every pixel once, and a small picture has enough o
   for (const auto& [width, height, threads] : {std::array{70, 45, 2}, {5, 300, 3}, {1, 1, 8}, {33, 17, 16}}) {
     const int side = tile_side(width, height, 16, threads);
     INFO(width << " x " << height << ", " << threads << " threads: tiles of " << side);
-    Tiles tiles({0, 0, width, height}, side);
+    const Tiles tiles({0, 0, width, height}, side);
     std::vector<int> taken(static_cast<std::size_t>(width * height));
-    int count = 0;
-    for (auto tile = tiles.take(); tile; tile = tiles.take(), ++count) {
-      for (int y = tile->y0; y < tile->y1; ++y) {
-        for (int x = tile->x0; x < tile->x1; ++x) ++taken[static_cast<std::size_t>(y * width + x)];
+    for (std::int64_t i = 0; i < tiles.count(); ++i) {
+      const PixelRect tile = tiles.at(i);
+      for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) ++taken[static_cast<std::size_t>(y * width + x)];
       }
     }
     CHECK(taken == std::vector<int>(taken.size(), 1));
-    CHECK(count >= std::min(width * height, kTilesPerThread * threads));
+    CHECK(tiles.count() >= std::min(width * height, kTilesPerThread * threads));
   }
 }
 

@@ -298,7 +298,7 @@ TEST_CASE("regions: rays meet what they meet without them, to the bit", "[region
     const MarchResult a = march(whole, rays, {.method = method}), b = march(cut, rays, {.method = method});
     std::size_t different = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Arrival &x = a.arrivals[i], &y = b.arrivals[i];
+      const RayHit &x = a.ray_hits[i], &y = b.ray_hits[i];
       different += x.status != y.status || x.side != y.side || x.t != y.t || x.width != y.width ||
                    x.evaluations != y.evaluations || x.certified != y.certified;
     }

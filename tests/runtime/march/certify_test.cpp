@@ -12,7 +12,7 @@
 namespace fathom::runtime::certify_test {
 namespace {
 
-using Status = Arrival::Status;
+using Status = RayHit::Status;
 
 TEST_CASE("certify: first roots of a sphere, from outside and from within", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
@@ -81,7 +81,7 @@ compiler::CompiledScene difficult_scene() {
         {"type": "sphere", "radius": 0.5}, {"type": "box", "half_size": [0.4, 0.1, 0.4], "translate": [0, 0.5, 0]}]}])");
 }
 
-bool same(const Arrival& a, const Arrival& b) {
+bool same(const RayHit& a, const RayHit& b) {
   return a.status == b.status && a.side == b.side && a.t == b.t && a.width == b.width &&
          a.evaluations == b.evaluations && a.certified == b.certified && a.instructions == b.instructions;
 }
@@ -109,13 +109,13 @@ TEST_CASE("certify: rays that are searched side by side end as each does alone",
     REQUIRE(vm::force_isa(isa));
     const MarchResult together = march(field, rays, {.method = Method::Certified});
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Arrival& arrival = together.arrivals[i];
+      const RayHit& ray_hit = together.ray_hits[i];
       INFO(isa << ", ray " << i);
-      CHECK(arrival.status == alone[i].status);
-      CHECK(arrival.t == alone[i].t);
-      CHECK(arrival.width == static_cast<float>(alone[i].width));
-      CHECK(arrival.certified == alone[i].evaluations);
-      CHECK(arrival.instructions == alone[i].instructions);
+      CHECK(ray_hit.status == alone[i].status);
+      CHECK(ray_hit.t == alone[i].t);
+      CHECK(ray_hit.width == static_cast<float>(alone[i].width));
+      CHECK(ray_hit.certified == alone[i].evaluations);
+      CHECK(ray_hit.instructions == alone[i].instructions);
     }
   }
 }
@@ -127,10 +127,10 @@ TEST_CASE("certify: in a stream, too, what becomes of a ray depends on that ray 
   const MarchResult together = march(field, rays);
   REQUIRE(together.counters.certified > 5);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (together.arrivals[i].certified == 0 && i % 50 != 0) continue;
+    if (together.ray_hits[i].certified == 0 && i % 50 != 0) continue;
     INFO("ray " << i);
-    Arrival alone = march(field, std::span(rays).subspan(i, 1)).arrivals[0];
-    CHECK(same(alone, together.arrivals[i]));
+    RayHit alone = march(field, std::span(rays).subspan(i, 1)).ray_hits[0];
+    CHECK(same(alone, together.ray_hits[i]));
   }
 }
 

@@ -58,11 +58,11 @@ struct Tally {
   std::uint64_t evaluations = 0;
 };
 
-void compare(const std::vector<Arrival>& found, const std::vector<Arrival>& exact, Tally& tally) {
+void compare(const std::vector<RayHit>& found, const std::vector<RayHit>& exact, Tally& tally) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     ++tally.rays;
     tally.evaluations += found[i].evaluations;
-    const bool hit = found[i].status == Arrival::Status::Hit, met = exact[i].status == Arrival::Status::Hit;
+    const bool hit = found[i].status == RayHit::Status::Hit, met = exact[i].status == RayHit::Status::Hit;
     tally.wrong += hit != met;
     tally.off += hit && met && std::abs(found[i].t - exact[i].t) > 1e-4;
   }
@@ -76,11 +76,11 @@ TEST_CASE("convex fields: rays end where the search in double ends them, sooner"
     const compiler::CompiledScene compiled = tests::compiled(scene(seed));
     Field field = make_field(compiled);
     for (const RaySet& set : make_ray_sets(compiled, field, test::few(240), seed)) {
-      const std::vector<Arrival> exact = march(field, set.rays, {.method = Method::Certified}).arrivals;
+      const std::vector<RayHit> exact = march(field, set.rays, {.method = Method::Certified}).ray_hits;
       field.convex = true;
-      compare(march(field, set.rays).arrivals, exact, led);
+      compare(march(field, set.rays).ray_hits, exact, led);
       field.convex = false;
-      compare(march(field, set.rays).arrivals, exact, plain);
+      compare(march(field, set.rays).ray_hits, exact, plain);
     }
   }
   CAPTURE(led.rays, led.wrong, plain.wrong, led.off, plain.off, led.evaluations, plain.evaluations);
@@ -112,9 +112,9 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
       without.push_back(rays.back());
       without.back().clear = 0;
     }
-    const std::vector<Arrival> exact = march(field, without, {.method = Method::Certified}).arrivals;
-    compare(march(field, rays).arrivals, exact, skipping);
-    compare(march(field, without).arrivals, exact, plain);
+    const std::vector<RayHit> exact = march(field, without, {.method = Method::Certified}).ray_hits;
+    compare(march(field, rays).ray_hits, exact, skipping);
+    compare(march(field, without).ray_hits, exact, plain);
   }
   CAPTURE(skipping.rays, clear, skipping.wrong, plain.wrong, skipping.off, plain.off, skipping.evaluations,
           plain.evaluations);

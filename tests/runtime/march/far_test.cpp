@@ -112,8 +112,8 @@ TEST_CASE("march: a grain beside a ball is hit where it is", "[march]") {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Real dx = rays[i].origin.x - x, dy = rays[i].origin.y,
                  t = rays[i].origin.z - std::sqrt(r * r - dx * dx - dy * dy);
-      if (result.arrivals[i].status == Arrival::Status::Hit)
-        errors.push_back(static_cast<double>(std::abs(result.arrivals[i].t - t) / t));
+      if (result.ray_hits[i].status == RayHit::Status::Hit)
+        errors.push_back(static_cast<double>(std::abs(result.ray_hits[i].t - t) / t));
     }
     std::sort(errors.begin(), errors.end());
     INFO("from " << away << ": p99 " << errors[errors.size() * 99 / 100] << ", worst " << errors.back() << ", "

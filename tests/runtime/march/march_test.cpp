@@ -52,8 +52,8 @@ TEST_CASE("march: an empty scene is missed, and a wide floor hides nothing that 
   }
   CHECK(march(make_field(nothing), rays).counters.hits == 0);
   const MarchResult result = march(make_field(wide), rays);
-  for (const Arrival& arrival : result.arrivals) {
-    if (!(arrival.t < 3)) FAIL_CHECK("the ray of slope number " << arrival.id << " went through the ball");
+  for (const RayHit& ray_hit : result.ray_hits) {
+    if (!(ray_hit.t < 3)) FAIL_CHECK("the ray of slope number " << ray_hit.id << " went through the ball");
   }
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("march: a floor of any size is met", "[march]") {
     const std::vector<Ray> rays{{to_float({0, 0, 0}), to_float(glm::normalize(glm::dvec3(0, -3, -4)))}};
     const MarchResult result = march(make_field(scene), rays);
     REQUIRE(result.counters.hits == 1);
-    CHECK(result.arrivals[0].t == Approx(std::atof(size) / 0.6).epsilon(1e-6));
+    CHECK(result.ray_hits[0].t == Approx(std::atof(size) / 0.6).epsilon(1e-6));
   }
 }
 
@@ -87,12 +87,12 @@ TEST_CASE("march: a surface at a tiny t is found as soon as any other", "[march]
   }
   const MarchResult result = march(make_field(scene), rays);
   std::uint32_t most = 0;
-  for (const Arrival& arrival : result.arrivals) most = std::max(most, arrival.evaluations);
+  for (const RayHit& ray_hit : result.ray_hits) most = std::max(most, ray_hit.evaluations);
   CHECK(most < 1000);
   CHECK(result.counters.evaluations < 20 * rays.size());
 }
 
-TEST_CASE("march: an arrival depends on its ray alone", "[march]") {
+TEST_CASE("march: the result of a ray depends on the ray alone", "[march]") {
   const auto scene = scene_of(R"("objects": [{"type": "torus", "major_radius": 1, "minor_radius": 0.25},
       {"type": "box", "half_size": [0.2, 0.4, 0.3], "translate": [0.4, 0.1, 0]},
       {"type": "sphere", "radius": 0.3}])");
@@ -100,9 +100,9 @@ TEST_CASE("march: an arrival depends on its ray alone", "[march]") {
   const std::vector<Ray> rays = rays_at_sphere(2000, 4);
   const MarchResult together = march(field, rays);
   for (std::size_t i = 0; i < rays.size(); i += 7) {
-    const Arrival alone = march(field, std::span(rays).subspan(i, 1)).arrivals[0];
-    CHECK(alone.status == together.arrivals[i].status);
-    CHECK(alone.t == together.arrivals[i].t);
+    const RayHit alone = march(field, std::span(rays).subspan(i, 1)).ray_hits[0];
+    CHECK(alone.status == together.ray_hits[i].status);
+    CHECK(alone.t == together.ray_hits[i].t);
   }
 }
 

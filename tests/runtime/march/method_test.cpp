@@ -19,7 +19,7 @@
 namespace fathom::runtime::method_test {
 namespace {
 
-using Status = Arrival::Status;
+using Status = RayHit::Status;
 
 const char* const kMixed = R"("camera": {"position": [0, 1, -5], "target": [0, 0, 0]},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
@@ -111,8 +111,8 @@ void expect_promised(const char* scene_text, const std::vector<Known>& known) {
       double excess = -1;  // largest excess of an error over eps / cosine
       int missed = 0;
       for (std::size_t i = 0; i < known.size(); ++i) {
-        missed += result.arrivals[i].status != Status::Hit;
-        excess = std::max(excess, std::abs(result.arrivals[i].t - known[i].t) - allowed / known[i].cosine);
+        missed += result.ray_hits[i].status != Status::Hit;
+        excess = std::max(excess, std::abs(result.ray_hits[i].t - known[i].t) - allowed / known[i].cosine);
       }
       CHECK(missed == 0);
       CHECK(excess <= noise_of(marching));
@@ -151,10 +151,10 @@ TEST_CASE("method: a ray straight at a plane does not hit what is behind it", "[
       marching.relaxation = relaxation;
       INFO(name_of(marching) << ", relaxation " << relaxation);
       double worst = 0;
-      for (const Arrival& arrival : march(field, rays, marching).arrivals) {
-        REQUIRE(arrival.status == Status::Hit);
-        const Ray& ray = rays[arrival.id];
-        worst = std::max(worst, std::abs(arrival.t - static_cast<double>(plane_distance(ray))));
+      for (const RayHit& ray_hit : march(field, rays, marching).ray_hits) {
+        REQUIRE(ray_hit.status == Status::Hit);
+        const Ray& ray = rays[ray_hit.id];
+        worst = std::max(worst, std::abs(ray_hit.t - static_cast<double>(plane_distance(ray))));
       }
       CHECK(worst <= 1.1e-4);
     }
@@ -178,9 +178,9 @@ TEST_CASE("method: those with a threshold give rays up after `steps`, as misses"
     }
     CHECK(result.counters.exhausted > rays.size() / 2);
     CHECK(result.counters.exhausted == result.counters.misses);
-    for (const Arrival& arrival : result.arrivals) {
-      CHECK(arrival.evaluations <= 3);
-      if (arrival.status != Status::Hit) CHECK(arrival.evaluations == 3);
+    for (const RayHit& ray_hit : result.ray_hits) {
+      CHECK(ray_hit.evaluations <= 3);
+      if (ray_hit.status != Status::Hit) CHECK(ray_hit.evaluations == 3);
     }
   }
 }
@@ -200,17 +200,17 @@ TEST_CASE("method: relaxed steps take fewer evaluations than plain ones", "[marc
   }
 }
 
-// All members of an arrival, as bits.
-std::tuple<Status, int, std::uint32_t, std::uint32_t, std::uint32_t, std::uint64_t> bits_of(const Arrival& arrival) {
-  return {arrival.status,
-          arrival.side,
-          arrival.evaluations,
-          arrival.certified,
-          std::bit_cast<std::uint32_t>(arrival.width),
-          std::bit_cast<std::uint64_t>(arrival.t)};
+// All members of a RayHit, as bits.
+std::tuple<Status, int, std::uint32_t, std::uint32_t, std::uint32_t, std::uint64_t> bits_of(const RayHit& ray_hit) {
+  return {ray_hit.status,
+          ray_hit.side,
+          ray_hit.evaluations,
+          ray_hit.certified,
+          std::bit_cast<std::uint32_t>(ray_hit.width),
+          std::bit_cast<std::uint64_t>(ray_hit.t)};
 }
 
-int count_differences(const std::vector<Arrival>& a, const std::vector<Arrival>& b) {
+int count_differences(const std::vector<RayHit>& a, const std::vector<RayHit>& b) {
   int differences = 0;
   for (std::size_t i = 0; i < a.size(); ++i) differences += bits_of(a[i]) != bits_of(b[i]);
   return differences;
@@ -223,16 +223,16 @@ TEST_CASE("method: the same bits on every instruction set", "[march]") {
   const test::IsaGuard guard;
   for (const MethodInfo& method : kMethods) {
     REQUIRE(vm::force_isa("scalar"));
-    const std::vector<Arrival> expected = march(field, rays, {.method = method.method}).arrivals;
+    const std::vector<RayHit> expected = march(field, rays, {.method = method.method}).ray_hits;
     for (const std::string_view isa : vm::available_isas()) {
       INFO(method.name << " on " << isa);
       REQUIRE(vm::force_isa(isa));
-      CHECK(count_differences(expected, march(field, rays, {.method = method.method}).arrivals) == 0);
+      CHECK(count_differences(expected, march(field, rays, {.method = method.method}).ray_hits) == 0);
     }
   }
 }
 
-TEST_CASE("method: an arrival does not depend on the other rays or their order", "[march]") {
+TEST_CASE("method: the result of a ray does not depend on the other rays or their order", "[march]") {
   const auto scene = scene_of(kMixed);
   const Field field = make_field(scene);
   const std::vector<Ray> rays = camera_rays(scene, 16);
@@ -240,14 +240,14 @@ TEST_CASE("method: an arrival does not depend on the other rays or their order",
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::shuffle(order.begin(), order.end(), std::mt19937(24));
   for (const Marching& marching : all_methods(1e-4)) {
-    const std::vector<Arrival> expected = march(field, rays, marching).arrivals;
+    const std::vector<RayHit> expected = march(field, rays, marching).ray_hits;
     for (const std::size_t batch : {std::size_t{1}, std::size_t{37}, rays.size()}) {
-      std::vector<Arrival> found(rays.size());
+      std::vector<RayHit> found(rays.size());
       for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
         std::vector<Ray> part;
         for (std::size_t i = begin; i < std::min(begin + batch, rays.size()); ++i) part.push_back(rays[order[i]]);
-        for (const Arrival& arrival : march(field, part, marching).arrivals)
-          found[order[begin + arrival.id]] = arrival;
+        for (const RayHit& ray_hit : march(field, part, marching).ray_hits)
+          found[order[begin + ray_hit.id]] = ray_hit;
       }
       INFO(name_of(marching) << ", " << batch << " rays at a time");
       CHECK(count_differences(expected, found) == 0);
@@ -271,11 +271,11 @@ TEST_CASE("method: the counters add up", "[march]") {
     const MarchCounters& counters = result.counters;
     std::map<Status, std::uint64_t> ends;
     std::uint64_t evaluations = 0, in_double = 0, decided_in_double = 0;
-    for (const Arrival& arrival : result.arrivals) {
-      ++ends[arrival.status];
-      evaluations += arrival.evaluations;
-      in_double += arrival.certified;
-      decided_in_double += arrival.certified > 0;
+    for (const RayHit& ray_hit : result.ray_hits) {
+      ++ends[ray_hit.status];
+      evaluations += ray_hit.evaluations;
+      in_double += ray_hit.certified;
+      decided_in_double += ray_hit.certified > 0;
     }
     CHECK(counters.rays == rays.size());
     CHECK(counters.hits == ends[Status::Hit]);
@@ -295,7 +295,7 @@ TEST_CASE("method: the counters add up", "[march]") {
 }
 
 // Returns the largest difference in t where both hit. FAILs where only one hits.
-double worst_difference(const std::vector<Arrival>& found, const std::vector<Arrival>& truth) {
+double worst_difference(const std::vector<RayHit>& found, const std::vector<RayHit>& truth) {
   double worst = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (found[i].status != truth[i].status) FAIL_CHECK("ray " << i << " ends otherwise than in double");
@@ -319,7 +319,7 @@ TEST_CASE("method: a box that stands on the ground is hit at its face, just abov
   }
   const MarchResult truth = march(field, rays, {.method = Method::Certified});
   CHECK(truth.counters.hits == rays.size());
-  CHECK(worst_difference(march(field, rays).arrivals, truth.arrivals) <= 2e-5);
+  CHECK(worst_difference(march(field, rays).ray_hits, truth.ray_hits) <= 2e-5);
 }
 
 // Along a ray near a ball's outline, the field is nearly level, and float resolves few digits of the root. The
@@ -351,7 +351,7 @@ TEST_CASE("method: among flat copies rays end in reasonable evaluations", "[marc
   for (const Method method : {Method::Tiered, Method::Certified}) {
     const MarchResult result = march(make_field(scene), rays, {.method = method});
     std::uint32_t most = 0;
-    for (const Arrival& arrival : result.arrivals) most = std::max(most, arrival.evaluations);
+    for (const RayHit& ray_hit : result.ray_hits) most = std::max(most, ray_hit.evaluations);
     INFO(info(method).name << ": " << result.counters.evaluations / rays.size() << " evaluations per ray, at most "
                            << most);
     CHECK(most <= 4 * kSearchBudget);

@@ -22,7 +22,7 @@
 namespace fathom::runtime::plateaus_test {
 namespace {
 
-using Status = Arrival::Status;
+using Status = RayHit::Status;
 
 std::string number(double v) { return fmt::format("{:.4f}", v); }
 std::string place(test::Random& random, double half) {
@@ -141,25 +141,25 @@ class Truth {
   }
 
   // True if the ray passed through a solid, or through the end of a solid, that float distinguishes from a touch.
-  bool loses(const Arrival& arrival, RealScratch& scratch) const {
+  bool loses(const RayHit& ray_hit, RealScratch& scratch) const {
     constexpr int kPlaces = 200;
-    const double end = arrival.status == Status::Hit ? arrival.t - 1e-3 : end_;
+    const double end = ray_hit.status == Status::Hit ? ray_hit.t - 1e-3 : end_;
     const double tall = 4 * kDistanceErrorInDouble * (4 + static_cast<double>(field_.magnitude));
     int level = 0;
     for (int i = 1; i < kPlaces; ++i) {
-      const double t = begin_ + (end - begin_) * i / kPlaces, g = arrival.side * at(t, scratch);
+      const double t = begin_ + (end - begin_) * i / kPlaces, g = ray_hit.side * at(t, scratch);
       if (g < -tall) return true;
       level = std::abs(g) <= field_.rounding(origin_ + t * direction_) ? level + 1 : 0;
-      if (arrival.side < 0 && level == 3 && end - begin_ > 0.01) return true;
+      if (ray_hit.side < 0 && level == 3 && end - begin_ > 0.01) return true;
     }
     return false;
   }
 
   // True if a hit has no solid behind it.
-  bool is_false_hit(const Arrival& arrival, RealScratch& scratch) const {
-    if (arrival.status != Status::Hit || arrival.side < 0) return false;
+  bool is_false_hit(const RayHit& ray_hit, RealScratch& scratch) const {
+    if (ray_hit.status != Status::Hit || ray_hit.side < 0) return false;
     for (double beyond = 1e-12; beyond < 0.02; beyond *= 2) {
-      for (const double t : {arrival.t + beyond, arrival.t - std::min(beyond, 1e-5)}) {
+      for (const double t : {ray_hit.t + beyond, ray_hit.t - std::min(beyond, 1e-5)}) {
         if (at(t, scratch) < -0.5 * field_.rounding(origin_ + t * direction_)) return false;
       }
     }
@@ -187,7 +187,7 @@ struct Tally {
   int wrong() const { return lost + lost_in_double + false_hits + false_in_double; }
 };
 
-std::string describe(const char* wrong, const Ray& ray, const Arrival& found, const Arrival& exact) {
+std::string describe(const char* wrong, const Ray& ray, const RayHit& found, const RayHit& exact) {
   return fmt::format(
       "{}: ray {:.17g} {:.17g} {:.17g} to {:.17g} {:.17g} {:.17g}, side {}: {} at {:.9g}, in double {} at {:.9g}",
       wrong, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, found.side,
@@ -195,12 +195,12 @@ std::string describe(const char* wrong, const Ray& ray, const Arrival& found, co
 }
 
 void judge(const Field& field, const std::vector<Ray>& rays, Tally& tally) {
-  const std::vector<Arrival> found = march(field, rays).arrivals,
-                             exact = march(field, rays, {.method = Method::Certified}).arrivals;
+  const std::vector<RayHit> found = march(field, rays).ray_hits,
+                            exact = march(field, rays, {.method = Method::Certified}).ray_hits;
   RealScratch scratch;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Truth truth(field, rays[i]);
-    const Arrival &a = found[i], &b = exact[i];
+    const RayHit &a = found[i], &b = exact[i];
     const bool hit = a.status == Status::Hit, met = b.status == Status::Hit;
     ++tally.rays;
     tally.hits += met;
@@ -276,10 +276,10 @@ TEST_CASE("plateaus: the smallest scenes whose rays were lost", "[march]") {
     const Field field = make_field(scene);
     const std::vector<Ray> rays = {{{0.1, 0.1, from}, {0, 0, -1}}};
     for (const Method method : {Method::Tiered, Method::Certified}) {
-      const Arrival arrival = march(field, rays, {.method = method}).arrivals[0];
-      CHECK(arrival.status == Status::Hit);
-      CHECK(arrival.t == Approx(hit).epsilon(1e-6));
-      CHECK(arrival.evaluations < 2000);
+      const RayHit ray_hit = march(field, rays, {.method = method}).ray_hits[0];
+      CHECK(ray_hit.status == Status::Hit);
+      CHECK(ray_hit.t == Approx(hit).epsilon(1e-6));
+      CHECK(ray_hit.evaluations < 2000);
     }
   }
 }
@@ -293,11 +293,11 @@ TEST_CASE("plateaus: a solid ends where the field stays 0, not where two solids 
       {"type": "box", "half_size": [1, 1, 0.5], "translate": [0, 0, -0.5]}])");
   for (const Method method : {Method::Tiered, Method::Certified}) {
     const std::vector<Ray> rays = {{{0.1, 0.2, 0.1}, {0, 0, 1}}, {{0.1, 0.2, -0.75}, {0, 0, 1}}};
-    const Arrival out = march(make_field(ending), std::span(rays).first(1), {.method = method}).arrivals[0];
+    const RayHit out = march(make_field(ending), std::span(rays).first(1), {.method = method}).ray_hits[0];
     CHECK(out.side == -1);
     CHECK(out.status == Status::Hit);
     CHECK(out.t == Approx(0.4).epsilon(1e-5));
-    const Arrival through = march(make_field(touching), std::span(rays).last(1), {.method = method}).arrivals[0];
+    const RayHit through = march(make_field(touching), std::span(rays).last(1), {.method = method}).ray_hits[0];
     CHECK(through.side == -1);
     CHECK(through.t == Approx(1.75).epsilon(1e-6));
   }

@@ -1,0 +1,66 @@
+#include "runtime/path/medium_interface.h"
+
+#include <optional>
+
+namespace fathom::runtime {
+namespace {
+
+// True if the ray comes out of the solid whose surface it hit, and not from the open or from another medium.
+bool is_inside(const RenderContext& context, const SurfaceInteraction& surface) {
+  if (surface.medium.field == 0) return surface.hit->side < 0;
+  return context.media.material(surface.medium.field - 1) == surface.point->material;
+}
+
+// Returns the state at a place beyond the surface that no medium fills. It is the open, or a solid that blends and
+// cuts of several materials leave without a medium: this solid then counts as a whole.
+MediumState no_medium(const RenderContext& context, const SurfaceInteraction& surface, glm::dvec3 place,
+                      RealScratch& scratch) {
+  MediumState state;
+  state.side = 1;
+  if (surface.inside) return state;
+  std::uint64_t instructions = 0;
+  if (context.field.evaluate(place, scratch, instructions) >= 0) return state;
+  state.side = -1;
+  if (surface.material->fills()) {
+    state.ior = surface.material->ior;
+    state.absorption = surface.material->absorption;
+  }
+  return state;
+}
+
+MediumState medium_beyond(const RenderContext& context, const SurfaceInteraction& surface, RealScratch& scratch) {
+  if (!surface.material->transmits()) return surface.medium;
+  const Media& media = context.media;
+  MediumState state = surface.medium;
+  const glm::dvec3 place = spawn(*surface.hit, *surface.point, true);
+  std::optional<std::uint32_t> medium;
+  if (media.size() > 1 || !surface.inside) medium = media.at(place, scratch);
+  if (!medium) return no_medium(context, surface, place, scratch);
+  state.field = *medium + 1;
+  state.side = -1;
+  const MaterialPoint interior = media.material(*medium) == surface.point->material
+                                     ? *surface.material
+                                     : interior_at(place, *medium, media, context.materials, scratch);
+  if (interior.fills()) {
+    state.ior = interior.ior;
+    state.absorption = interior.absorption;
+  }
+  return state;
+}
+
+}  // namespace
+
+void attenuate_paths(std::span<PathVertex> vertices) {
+  for (PathVertex& vertex : vertices) vertex.path->throughput *= transmittance(vertex.path->medium, vertex.t);
+}
+
+void find_media(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch) {
+  for (PathVertex& vertex : vertices) {
+    if (!vertex.active) continue;
+    SurfaceInteraction& surface = vertex.surface;
+    surface.inside = is_inside(context, surface);
+    surface.medium_beyond = medium_beyond(context, surface, scratch);
+  }
+}
+
+}  // namespace fathom::runtime

@@ -1,0 +1,19 @@
+// The stage of media: attenuates paths on their way through a medium, and finds the media on both sides of surfaces.
+// Tested by: tests/runtime/path/media_test.cpp
+#pragma once
+
+#include <span>
+
+#include "runtime/field/field.h"
+#include "runtime/path/path_vertex.h"
+#include "runtime/path/render_context.h"
+
+namespace fathom::runtime {
+
+// Multiplies the paths' throughput by the transmittance of their current rays.
+void attenuate_paths(std::span<PathVertex> vertices);
+
+// Sets SurfaceInteraction::inside and medium_beyond, from the medium of the ray and the material.
+void find_media(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch);
+
+}  // namespace fathom::runtime

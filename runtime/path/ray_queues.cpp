@@ -1,0 +1,49 @@
+#include "runtime/path/ray_queues.h"
+
+#include <algorithm>
+
+namespace fathom::runtime {
+namespace {
+
+// The next stages take so many results at once: enough for the machine's blocks, few enough to keep the stream full.
+constexpr std::size_t kResultBatch = 64;
+
+std::size_t rays_in(const Marcher& marcher) { return static_cast<std::size_t>(marcher.capacity() - marcher.room()); }
+
+}  // namespace
+
+RayQueues::RayQueues(const RenderContext& context) : context_(context), marchers_(1 + context.media.size()) {
+  int capacity = marcher(0).capacity();
+  for (std::size_t i = 0; i < context.media.size(); ++i) {
+    capacity = std::min(capacity, Marcher::capacity_for(context.media.field(i)));
+  }
+  capacity_ = static_cast<std::size_t>(capacity);
+}
+
+bool RayQueues::is_idle() const {
+  return std::all_of(marchers_.begin(), marchers_.end(), [](const auto& marcher) {
+    return !marcher || (marcher->empty() && marcher->ray_hits().empty());
+  });
+}
+
+bool RayQueues::is_due(std::size_t field) const {
+  if (field == 0) return true;
+  if (!marchers_[field]) return false;
+  const std::size_t rays = rays_in(*marchers_[field]);
+  return rays > 0 && rays >= std::min(kResultBatch, rays_in(*marchers_[0]));
+}
+
+bool RayQueues::advance(std::size_t field) {
+  Marcher& marcher = *marchers_[field];
+  clock().enter(Stage::March);
+  marcher.advance();
+  return marcher.ray_hits().size() >= kResultBatch || marcher.empty();
+}
+
+void RayQueues::count(MarchCounters& counters) const {
+  for (const auto& marcher : marchers_) {
+    if (marcher) counters.merge(marcher->counters());
+  }
+}
+
+}  // namespace fathom::runtime
