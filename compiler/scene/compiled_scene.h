@@ -9,23 +9,17 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/geometry/box.h"
 #include "compiler/scene/material.h"
+#include "compiler/scene/settings.h"
 #include "compiler/source/source.h"
 #include "vm/program/verify.h"
 
 namespace fathom::compiler {
 
-// Ranges of render settings, from the scene file or the command line.
-inline constexpr int kMaxSide = 65535;  // pixels; the maximum of the image formats
-inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
 inline constexpr int kMaxBlades = 32;
-inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
-inline constexpr int kMostFrames = 100'000'000;
-inline constexpr double kUsualFps = 24, kLeastFps = 1e-3, kMostFps = 1e6;  // frames per second
 
 // The part of the scene that a `tag` in the surface program numbers, with a name and a material.
 struct Surface {
@@ -63,39 +57,6 @@ struct Camera {
   std::optional<double> focus_distance;
   int blades = 0;                        // sides of the aperture; below 3: round
   double blade_rotation = 0;             // radians, counter-clockwise in the image; at 0 a corner is up
-};
-
-// Reconstruction filter: the weight of light around a pixel's centre (runtime/sampling/filter.h).
-enum class FilterKind { Box, Tent, Gaussian, BlackmanHarris, Mitchell };
-inline constexpr std::array<std::string_view, 5> kFilterNames = {"box", "tent", "gaussian", "blackman-harris",
-                                                                 "mitchell"};  // [FilterKind]
-// Map from light to a display (runtime/image/tone.h), and its names in scene files and on the command line, in order.
-enum class ToneCurve { None, Filmic, Aces, Agx, Neutral };
-inline constexpr std::array<std::string_view, 5> kToneCurves = {"none", "filmic", "aces", "agx", "neutral"};
-
-struct Film {
-  int width = 640, height = 360;  // pixels
-  double exposure = 0;            // stops: the image is multiplied by 2^exposure
-  FilterKind filter = FilterKind::Box;
-  std::optional<double> filter_width;  // width of its support, pixels; default: the filter's own
-  ToneCurve tone = ToneCurve::None;
-  // Number of frames of the animation. Compiled files store neither `frames` nor `fps`.
-  std::optional<int> frames;
-  double fps = kUsualFps;  // frames per second
-};
-
-// Source of a render's random numbers (runtime/sampling/sampler.h).
-enum class SamplerKind : std::uint8_t { Blue, Sobol, Independent };
-inline constexpr std::array<std::string_view, 3> kSamplerNames = {"blue", "sobol", "independent"};  // [SamplerKind]
-
-struct RenderSettings {
-  int spp = 16;      // samples per pixel
-  int bounces = 10;  // number of bounces before Russian roulette may end a path
-  int tile = 16;     // side of a tile, pixels
-  std::uint64_t seed = 0;
-  SamplerKind sampler = SamplerKind::Blue;
-  std::optional<double> noise_threshold;  // shares the samples out by noise (runtime/film/adaptive.h)
-  std::optional<double> far;  // maximum distance of rays from the camera, scene units; default: see render
 };
 
 // Radiance of rays that leave the scene.

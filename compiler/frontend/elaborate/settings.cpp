@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <type_traits>
 
 #include "compiler/frontend/records/record_family.h"
 #include "compiler/frontend/records/record_reader.h"
@@ -11,7 +12,6 @@
 
 namespace fathom::compiler {
 namespace {
-
 
 // Reports a camera without a direction of view, or without a defined up direction in the image.
 void check_view(const Camera& camera, const RecordReader& reader, Span place, Diagnostics& diagnostics) {
@@ -60,6 +60,23 @@ void read_lens(const RecordReader& reader, Camera& camera, Diagnostics& diagnost
                     {"give a point that the camera sees"});
 }
 
+template <typename Record>
+Record read_settings_of(const RecordSpec& row, const syntax::Value& value, const Scope& scope,
+                        Diagnostics& diagnostics) {
+  const RecordReader reader(row, std::get<syntax::Record>(value.data), opening(value.span), scope, diagnostics);
+  Record record;
+  for_each_setting_of<Record>([&](const auto& setting) {
+    using Value = typename std::remove_cvref_t<decltype(setting)>::Value;
+    if (reader.value(setting.name) == nullptr) return;
+    if constexpr (std::is_enum_v<Value>) {
+      record.*setting.member = static_cast<Value>(reader.choice(setting.name));
+    } else {
+      record.*setting.member = static_cast<Value>(reader.number(setting.name));
+    }
+  });
+  return record;
+}
+
 }  // namespace
 
 Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
@@ -87,32 +104,11 @@ Camera read_camera(const syntax::Value& value, const Scope& scope, Diagnostics& 
 }
 
 Film read_film(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
-  const RecordReader reader(film_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
-                            diagnostics);
-  Film film;
-  film.width = static_cast<int>(reader.number("width"));
-  film.height = static_cast<int>(reader.number("height"));
-  film.exposure = reader.number("exposure");
-  film.tone = static_cast<ToneCurve>(reader.choice("tone"));
-  film.filter = static_cast<FilterKind>(reader.choice("filter"));
-  if (reader.value("filter_width")) film.filter_width = reader.number("filter_width");
-  if (reader.value("frames")) film.frames = static_cast<int>(reader.number("frames"));
-  film.fps = reader.number("fps");
-  return film;
+  return read_settings_of<Film>(film_record(), value, scope, diagnostics);
 }
 
 RenderSettings read_render(const syntax::Value& value, const Scope& scope, Diagnostics& diagnostics) {
-  const RecordReader reader(render_record(), std::get<syntax::Record>(value.data), opening(value.span), scope,
-                            diagnostics);
-  RenderSettings settings;
-  settings.spp = static_cast<int>(reader.number("spp"));
-  settings.bounces = static_cast<int>(reader.number("bounces"));
-  settings.tile = static_cast<int>(reader.number("tile"));
-  settings.seed = static_cast<std::uint64_t>(reader.number("seed"));
-  settings.sampler = static_cast<SamplerKind>(reader.choice("sampler"));
-  if (reader.value("noise_threshold")) settings.noise_threshold = reader.number("noise_threshold");
-  if (reader.value("far")) settings.far = reader.number("far");
-  return settings;
+  return read_settings_of<RenderSettings>(render_record(), value, scope, diagnostics);
 }
 
 }  // namespace fathom::compiler

@@ -1,5 +1,6 @@
 #include "compiler/frontend/records/records.h"
 
+#include <type_traits>
 #include <utility>
 
 #include "compiler/frontend/records/property_rows.h"
@@ -80,6 +81,36 @@ void add_between(RecordSpec& record, const Between& between) {
   }
 }
 
+template <typename Record, typename Member>
+PropertySpec setting_property(const Setting<Record, Member>& setting) {
+  using Value = SettingValue<Member>;
+  PropertySpec property = other(setting.name, ValueType::Number, setting.doc);
+  if constexpr (std::is_enum_v<Value>) {
+    property.type = ValueType::Choice;
+    const auto words = words_of(Value{});
+    property.choices.assign(words.begin(), words.end());
+  } else {
+    if (std::is_integral_v<Value>) property.type = ValueType::Integer;
+    if constexpr (std::is_same_v<Member, Value>) property.fallback = {static_cast<double>(Record().*setting.member)};
+    if (setting.range.above_zero) {
+      property.rule = Rule::Positive;
+    } else {
+      property.range = {setting.range.least, setting.range.most};
+    }
+  }
+  return property;
+}
+
+// Returns the rows of the settings that scene files have in this record.
+template <typename Record>
+std::vector<PropertySpec> setting_properties() {
+  std::vector<PropertySpec> properties;
+  for_each_setting_of<Record>([&](const auto& setting) {
+    if (!setting.doc.empty()) properties.push_back(setting_property(setting));
+  });
+  return properties;
+}
+
 // Returns the rows by kind: [kind].
 std::vector<RecordSpec> make_node_records() {
   std::vector<RecordSpec> records(kKindCount);
@@ -142,40 +173,12 @@ const RecordSpec& parameter_record() {
 }
 
 const RecordSpec& film_record() {
-  static const RecordSpec record{
-      "",
-      "`film`",
-      "film",
-      {integer("width", "pixels", 640, {1, kMaxSide}),
-       integer("height", "pixels", 360, {1, kMaxSide}),
-       number("exposure", "stops: the picture is multiplied by 2^exposure", {0}, {-100, 100}),
-       choice("tone", "how light becomes a display's, after exposure", kToneCurves),
-       choice("filter", "how a pixel weighs the light around its centre", kFilterNames),
-       number("filter_width", "of the filter's support, pixels", {}, {kMinFilterWidth, kMaxFilterWidth}),
-       {"frames",
-        ValueType::Integer,
-        "of the animation, those of --frames all",
-        {},
-        false,
-        Rule::Any,
-        {1, kMostFrames},
-        {}},
-       number("fps", "frames a second", {kUsualFps}, {kLeastFps, kMostFps})}};
+  static const RecordSpec record{"", "`film`", "film", setting_properties<Film>()};
   return record;
 }
 
 const RecordSpec& render_record() {
-  static const RecordSpec record{
-      "",
-      "`render`",
-      "render",
-      {integer("spp", "samples per pixel", 16, {1, kMaxSpp}),
-       integer("bounces", "before Russian roulette may end a path", 10, {0, kMaxBounces}),
-       integer("tile", "pixels a side", 16, {1, kMaxTile}),
-       integer("seed", "of the random numbers", 0, {0, kLargestWhole}),
-       choice("sampler", "where the random numbers come from", kSamplerNames),
-       number("noise_threshold", "shares the samples out by noise, and ends below it; 0: no end", {}, {0, 1e6}),
-       number("far", "how far from the camera rays are followed, scene units", {}, {}, Rule::Positive)}};
+  static const RecordSpec record{"", "`render`", "render", setting_properties<RenderSettings>()};
   return record;
 }
 
