@@ -173,33 +173,12 @@ RegionOptions region_options(const Settings& settings) {
 }
 
 Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& options) {
-  const int processors = static_cast<int>(std::thread::hardware_concurrency());
-  Settings settings{};
-  settings.width = options.width.value_or(scene.film.width);
-  settings.height = options.height.value_or(scene.film.height);
-  settings.crop = options.crop.value_or(PixelRect{0, 0, settings.width, settings.height});
-  settings.spp = options.spp.value_or(scene.settings.spp);
-  settings.samples = options.sample_range.value_or(SampleRange{0, static_cast<std::uint32_t>(settings.spp)});
-  settings.bounces = options.bounces.value_or(scene.settings.bounces);
-  settings.tile = options.tile.value_or(scene.settings.tile);
-  settings.seed = options.seed.value_or(scene.settings.seed);
-  settings.sampler = options.sampler.value_or(scene.settings.sampler);
-  settings.filter = options.filter.value_or(scene.film.filter);
-  settings.filter_width = options.filter || options.filter_width ? options.filter_width : scene.film.filter_width;
-  settings.cut_after = options.cut_after;
-  const bool uniform = options.uniform || settings.spp < kMinAdaptiveSpp;
-  const auto threshold = options.noise_threshold ? options.noise_threshold : scene.settings.noise_threshold;
-  settings.noise_threshold = uniform ? std::nullopt : threshold;
-  settings.light_sampling = options.light_sampling;
-  settings.clamp = options.clamp;
-  settings.marching = options.marching;
-  settings.regions = options.regions;
-  settings.region_memory = options.region_memory;
-  settings.layers = options.layers;
+  Settings settings{with_overrides(scene.film, options), with_overrides(scene.settings, options), options, {}, {}};
+  if (options.uniform || settings.spp < kMinAdaptiveSpp) settings.noise_threshold.reset();
   settings.layers.variance |= settings.noise_threshold.has_value();
-  settings.profile = options.profile;
-  settings.far = options.far ? options.far : scene.settings.far;
-  settings.threads = options.threads > 0 ? options.threads : std::max(1, processors);
+  if (settings.threads <= 0) settings.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  settings.crop = options.crop.value_or(PixelRect{0, 0, settings.width, settings.height});
+  settings.samples = options.sample_range.value_or(SampleRange{0, static_cast<std::uint32_t>(settings.spp)});
   return settings;
 }
 

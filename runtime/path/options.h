@@ -1,16 +1,12 @@
-// Options of a render in addition to the scene, each with its default.
-//
-// An empty option takes the scene file's value. resolve() returns the values that a render uses.
+// Options of a render in addition to the scene, and the settings that resolve() makes of both.
 // Tested by: tests/runtime/render_test.cpp
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "compiler/scene/compiled_scene.h"
@@ -37,39 +33,24 @@ struct Progress {
   double seconds;      // time since the render began
 };
 
-// How paths find light: by next-event estimation (Lights), by hitting lights (Hits), or by both with MIS weights
-// (Both). Lights and Hits are for comparisons. All three find lights without a size by next-event estimation, because
-// no path can hit them.
-enum class LightSampling { Both, Lights, Hits };
-inline constexpr std::array<std::string_view, 3> kLightSamplingNames = {"both", "lights", "hits"};  // [LightSampling]
+using compiler::kLightSamplingNames;
+using compiler::LightSampling;
 
-struct RenderOptions {
-  int threads = 0;                   // 0: one per processor
-  std::optional<int> width, height;  // pixels
-  std::optional<PixelRect> crop;     // part of the image to render, not empty; default: the whole image
-  std::optional<int> spp, bounces, tile;
-  std::optional<std::uint64_t> seed;
-  std::optional<double> far;  // max length of a ray, scene units
-  std::optional<compiler::SamplerKind> sampler;
-  std::optional<compiler::FilterKind> filter;
-  std::optional<double> filter_width;  // pixels; empty while `filter` is set: that filter's own width
-  // Ends paths after this number of bounces instead of by Russian roulette: biased, but many renderers do this.
-  std::optional<int> cut_after;
-  // Enables adaptive sampling (runtime/film/adaptive.h): noisy tiles get more samples, tiles with noise below this
-  // threshold (0 or more) get no more, and `spp` is the average. Only for whole images, because a pixel's samples
-  // depend on all other pixels.
-  std::optional<double> noise_threshold;
-  // Takes the same number of samples for all pixels, ignoring the scene's threshold.
-  bool uniform = false;
-  LightSampling light_sampling = LightSampling::Both;
-  // Max radiance of each contribution from a light found after two bounces or more. Reduces noise, but is biased,
-  // because light is lost.
-  std::optional<double> clamp;
+// How the renderer computes, and which layers and measurements it keeps. Scene files have no such settings.
+struct Execution {
+  int threads = 0;  // in RenderOptions 0: one per processor
   Marching marching;
   bool regions = true;                    // build regions if they make the scene faster (runtime/field/regions.h)
   std::size_t region_memory = 64u << 20;  // max size of the regions, bytes
   FilmLayers layers;
   bool profile = false;  // measure the times of stages (Stats::stages)
+};
+
+// An empty setting takes the scene's value.
+struct RenderOptions : compiler::SettingsOverrides, Execution {
+  std::optional<PixelRect> crop;  // part of the image to render, not empty; default: the whole image
+  // Takes the same number of samples for all pixels, ignoring the noise threshold.
+  bool uniform = false;
 
   // Image that the scene's background names, if its type is Background::Type::Image.
   std::shared_ptr<const EnvironmentImage> environment;
@@ -104,28 +85,11 @@ struct RenderOptions {
 
 inline constexpr double kTickSeconds = 0.05;
 
-// Settings that a render uses: the options' values, else the scene's.
-struct Settings {
-  int width, height;  // of the whole image, pixels
-  PixelRect crop;     // part of the image that is rendered
-  int spp, bounces;
+// Settings that a render uses: the options' values, else the scene's. `noise_threshold` sets layers.variance, and is
+// empty if spp is below kMinAdaptiveSpp.
+struct Settings : compiler::Film, compiler::RenderSettings, Execution {
+  PixelRect crop;       // part of the image that is rendered
   SampleRange samples;  // part of the spp samples that is taken
-  int tile;             // max side of a tile, pixels
-  int threads;
-  std::uint64_t seed;
-  compiler::SamplerKind sampler;
-  compiler::FilterKind filter;
-  std::optional<double> filter_width;
-  std::optional<double> far;
-  std::optional<int> cut_after;
-  std::optional<double> noise_threshold;  // sets layers.variance; empty if spp is below kMinAdaptiveSpp
-  LightSampling light_sampling;
-  std::optional<double> clamp;  // max radiance
-  Marching marching;
-  bool regions;
-  std::size_t region_memory;  // max size of the regions, bytes
-  FilmLayers layers;
-  bool profile;
 };
 
 // Returns the number of stages that the film may get (runtime/film/film.h).
