@@ -57,7 +57,7 @@ void add_options(Arguments& arguments, PlanRequest& request) {
                    whole(request.workers, 1, 1'000'000));
   arguments.flag("--no-pilot", "Render no small picture to learn what a unit costs", request.no_pilot);
   arguments.option("--threads", "N", "Number of threads of the pilot (one per processor)",
-                   whole(request.render.threads, 1, 4096));
+                   whole(request.render.options.threads, 1, 4096));
   arguments.group("Status");
   arguments.flag("--status", "Say which units of a plan are done, and which are to be rendered", request.status);
   arguments.option("--per-task", "N", "List tasks of N units in place of units", whole(request.per_task, 1));

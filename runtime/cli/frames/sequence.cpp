@@ -46,7 +46,7 @@ class FrameRun {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   std::optional<double> time_left() const {
-    const auto& limit = request_.long_render.time_limit;
+    const auto& limit = request_.options.time_limit;
     return limit ? std::optional(*limit - seconds()) : std::nullopt;
   }
 
@@ -60,13 +60,12 @@ class FrameRun {
       output.path = numbered(output.path, frame);
       if (folder) output.path += fmt::format(".{}", ending_of(output));
     }
-    for (std::optional<std::string>* file :
-         {&request.cost_map, &request.stats_json, &request.long_render.checkpoint}) {
+    for (std::optional<std::string>* file : {&request.cost_map, &request.stats_json, &request.checkpoint}) {
       if (*file) *file = numbered(**file, frame);
     }
     request.frame = {frame, index, sequence_.frames.count()};
     request.frames.fps = sequence_.fps;
-    request.long_render.time_limit = time_left();
+    request.options.time_limit = time_left();
     return request;
   }
 
@@ -77,7 +76,7 @@ class FrameRun {
       const RenderRequest request = request_of(index);
       for (std::string& file : output_files(request)) files.push_back(std::move(file));
       const auto checkpoint = checkpoint_of(request);
-      if (request_.long_render.resume || !runtime::stamp_of(checkpoint->path())) continue;
+      if (request_.resume || !runtime::stamp_of(checkpoint->path())) continue;
       return fail(streams_, kUsage,
                   fmt::format("`{}` is there, so that frame {} was begun before and would be begun anew",
                               checkpoint->path(), request.frame->number),
@@ -87,7 +86,7 @@ class FrameRun {
     if (const auto code = check_outputs(request_of(0), streams_)) return code;
     if (const auto problem = runtime::check_file_path(journal_path_)) return fail(streams_, kIo, *problem);
     if (const auto code = journal_.read(streams_)) return code;
-    if (request_.long_render.resume && journal_.empty()) {
+    if (request_.resume && journal_.empty()) {
       note(streams_, fmt::format("there is no journal `{}`: no frame is known to be done", journal_path_));
     }
     return std::nullopt;
@@ -101,7 +100,7 @@ class FrameRun {
     Picture& picture = *std::get<std::unique_ptr<Picture>>(prepared);
     PictureJob job(picture, streams_, nullptr, interruption_);
     last_complete_ = true;
-    if (request.long_render.resume && journal_.has(frame, job.header(), picture.request)) {
+    if (request.resume && journal_.has(frame, job.header(), picture.request)) {
       ++there_;
       return kDone;
     }

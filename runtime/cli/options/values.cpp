@@ -32,6 +32,16 @@ bool cut_suffix(std::string_view& text, std::string_view suffix) {
   return true;
 }
 
+template <typename Target>
+Setter whole_into(Target& target, int lo, int hi) {
+  return [&target, lo, hi](std::string_view text) {
+    std::int64_t value = 0;
+    Verdict verdict = read_whole(text, lo, hi, value);
+    if (!verdict) target = static_cast<int>(value);
+    return verdict;
+  };
+}
+
 }  // namespace
 
 std::optional<double> to_number(std::string_view text) {
@@ -172,10 +182,7 @@ Verdict read_duration(std::string_view text, double& seconds) {
 }
 
 Verdict read_exposure(std::string_view text, double& stops) {
-  const auto value = to_number(text);
-  if (!value || std::abs(*value) > 100) return complain(fmt::format("`{}` is not a number from -100 to 100", text));
-  stops = *value;
-  return std::nullopt;
+  return read_between(text, -compiler::kMaxExposure, compiler::kMaxExposure, "", stops);
 }
 
 Verdict read_finite(std::string_view text, double& number) {
@@ -192,9 +199,11 @@ Verdict read_positive(std::string_view text, double& number) {
   return std::nullopt;
 }
 
-Verdict read_not_negative(std::string_view text, double& number) {
+Verdict read_between(std::string_view text, double least, double most, std::string_view help, double& number) {
   const auto value = to_number(text);
-  if (!value || !(*value >= 0)) return complain(fmt::format("`{}` is not a number from 0", text));
+  if (!value || *value < least || *value > most) {
+    return complain(fmt::format("`{}` is not a number from {} to {}", text, least, most), std::string(help));
+  }
   number = *value;
   return std::nullopt;
 }
@@ -215,21 +224,15 @@ Verdict read_seed(std::string_view text, std::uint64_t& seed) {
   return std::nullopt;
 }
 
-Setter whole(std::optional<int>& target, int lo, int hi) {
-  return [&target, lo, hi](std::string_view text) {
-    std::int64_t value = 0;
-    Verdict verdict = read_whole(text, lo, hi, value);
-    if (!verdict) target = static_cast<int>(value);
-    return verdict;
-  };
-}
+Setter whole(std::optional<int>& target, int lo, int hi) { return whole_into(target, lo, hi); }
+Setter whole(int& target, int lo, int hi) { return whole_into(target, lo, hi); }
 
-Setter one_of(std::vector<std::string_view> words, int& target) {
+Setter one_of(std::vector<std::string_view> words, std::function<void(int)> take) {
   std::vector<std::string> all(words.begin(), words.end());
-  const auto set = [words = std::move(words), &target](std::string_view text) -> Verdict {
+  const auto set = [words = std::move(words), take = std::move(take)](std::string_view text) -> Verdict {
     const auto found = std::find(words.begin(), words.end(), text);
     if (found != words.end()) {
-      target = static_cast<int>(found - words.begin());
+      take(static_cast<int>(found - words.begin()));
       return std::nullopt;
     }
     const std::string_view near = compiler::nearest(text, words);
@@ -237,6 +240,10 @@ Setter one_of(std::vector<std::string_view> words, int& target) {
                     near.empty() ? "" : fmt::format("did you mean `{}`?", near));
   };
   return {set, std::move(all)};
+}
+
+Setter one_of(std::vector<std::string_view> words, int& target) {
+  return one_of(std::move(words), [&target](int index) { target = index; });
 }
 
 Setter any_text(std::optional<std::string>& target) {

@@ -90,20 +90,28 @@ Verdict read_crop(std::string_view text, CropSides& crop);
 // Reads a positive duration in seconds from "90", "90s", "10m" or "1.5h".
 Verdict read_duration(std::string_view text, double& seconds);
 
-// Reads an exposure in stops, from -100 to 100.
+// Reads an exposure in stops, at most kMaxExposure in magnitude.
 Verdict read_exposure(std::string_view text, double& stops);
 
 Verdict read_finite(std::string_view text, double& number);
 Verdict read_positive(std::string_view text, double& number);
-Verdict read_not_negative(std::string_view text, double& number);
+// Reads a number in [least, most]. `help` may be empty.
+Verdict read_between(std::string_view text, double least, double most, std::string_view help, double& number);
 Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
 Verdict read_seed(std::string_view text, std::uint64_t& seed);
 
 // Makes a Setter for a whole number in [lo, hi].
 Setter whole(std::optional<int>& target, int lo, int hi = std::numeric_limits<int>::max());
+Setter whole(int& target, int lo, int hi = std::numeric_limits<int>::max());
 
-// Makes a Setter that stores the index of a word in `words`. Any other text is an error that lists the words.
+// Makes a Setter that takes the index of a word in `words`. Any other text is an error that lists the words.
+Setter one_of(std::vector<std::string_view> words, std::function<void(int)> take);
 Setter one_of(std::vector<std::string_view> words, int& target);
+template <typename Enum>
+requires std::is_enum_v<Enum>
+Setter one_of(std::vector<std::string_view> words, std::optional<Enum>& target) {
+  return one_of(std::move(words), [&target](int index) { target = static_cast<Enum>(index); });
+}
 
 Setter any_text(std::optional<std::string>& target);
 

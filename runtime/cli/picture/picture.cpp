@@ -88,8 +88,7 @@ std::optional<ExitCode> open_shutter(Picture& picture, const SceneInput& input, 
   const double open = picture.scene.camera.shutter / request.frames.fps.value_or(picture.scene.film.fps);
   const int frame = request.frame && !request.frames.fixed_noise ? request.frame->number : 0;
   const int times = request.frames.shutter_times.value_or(runtime::kUsualShutterTimes);
-  const auto runs =
-      runtime::shutter_runs(request.options.spp.value_or(picture.scene.settings.spp), times, seed, frame);
+  const auto runs = runtime::shutter_runs(picture.scene.settings.spp, times, seed, frame);
   picture.moments.reserve(runs.size());  // options.moments points to the elements
   for (const runtime::ShutterRun& run : runs) {
     MaybeScene scene = compile_moment(picture, input, time + open * run.time, streams);
@@ -119,7 +118,7 @@ std::optional<ExitCode> complete(Picture& picture, const SceneInput& input, Kept
   fit_regions(request, scene);
   if (const auto code = read_background(scene.background, request.scene, kept, request.options, streams)) return code;
   request.options.region_store = kept.regions;
-  const std::uint64_t seed = request.options.seed.value_or(scene.settings.seed);
+  const std::uint64_t seed = scene.settings.seed;
   if (request.frame && !request.frames.fixed_noise) {
     request.options.seed = runtime::frame_seed(seed, request.frame->number);
   }

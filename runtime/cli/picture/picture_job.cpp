@@ -58,11 +58,10 @@ PictureFiles pictures_of(const RenderRequest& request) {
 
 std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
   if (request.watch) return std::nullopt;
-  const LongRender& asked = request.long_render;
-  const auto path = asked.checkpoint ? asked.checkpoint : default_checkpoint(request);
+  const auto path = request.checkpoint ? request.checkpoint : default_checkpoint(request);
   if (!path) return std::nullopt;
-  return std::optional<Checkpoint>(std::in_place, *path, asked.checkpoint.has_value(),
-                                   asked.interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
+  return std::optional<Checkpoint>(std::in_place, *path, request.checkpoint.has_value(),
+                                   request.checkpoint_interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
 }
 
 PictureJob::PictureJob(Picture& picture, const Streams& streams, Watching* watching,
@@ -92,7 +91,7 @@ ExitCode PictureJob::run() {
 
 std::optional<ExitCode> PictureJob::begin() {
   if (!checkpoint_) return std::nullopt;
-  if (request_.long_render.resume)
+  if (request_.resume)
     return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_,
                                request_.frame || request_.unit);
   return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);

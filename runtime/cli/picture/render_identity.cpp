@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <span>
+#include <type_traits>
 
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/picture/picture_attributes.h"
@@ -16,8 +17,25 @@ namespace {
 std::string number(double value) { return fmt::format("{}", value); }
 
 template <typename T>
-std::string maybe(const std::optional<T>& value, const char* otherwise) {
-  return value ? fmt::format("{}", *value) : otherwise;
+std::string setting_text(const T& value, std::string_view) {
+  if constexpr (std::is_enum_v<T>) {
+    return std::string(compiler::words_of(value)[static_cast<std::size_t>(value)]);
+  } else {
+    return fmt::format("{}", value);
+  }
+}
+
+template <typename T>
+std::string setting_text(const std::optional<T>& value, std::string_view absent) {
+  return value ? setting_text(*value, absent) : std::string(absent);
+}
+
+// Adds the rows of compiler/scene/settings.def.
+void add_settings(const runtime::Settings& settings, runtime::Identity& identity) {
+  compiler::for_each_setting([&](const auto& setting) {
+    if (setting.identity.row.empty()) return;
+    identity.emplace_back(setting.identity.row, setting_text(settings.*setting.member, setting.identity.absent));
+  });
 }
 
 // Returns the horizontal field of view, or "the scene's" where the command line cannot change the field of view.
@@ -83,7 +101,6 @@ std::string layers_of(const runtime::Settings& settings) {
 
 runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                   const runtime::RenderOptions& options) {
-  const auto name = [](const auto& names, auto value) { return std::string(names[static_cast<std::size_t>(value)]); };
   runtime::Identity identity = {
       {"fathom", std::string(kVersion)},
       {"renderer", std::to_string(kRendererBits)},
@@ -93,20 +110,10 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
       {"camera", place_of(scene)},
       {"field of view", view_of(scene.camera)},
       {"background picture", environment_of(options)},
-      {"spp", std::to_string(settings.spp)},
-      {"bounces", std::to_string(settings.bounces)},
-      {"seed", std::to_string(settings.seed)},
-      {"sampler", name(compiler::kSamplerNames, settings.sampler)},
-      {"filter", name(compiler::kFilterNames, settings.filter)},
-      {"filter width", maybe(settings.filter_width, "the filter's own")},
-      {"noise threshold", maybe(settings.noise_threshold, "none")},
-      {"far", maybe(settings.far, "the scene's size")},
-      {"cut after", maybe(settings.cut_after, "never")},
-      {"light sampling", name(runtime::kLightSamplingNames, settings.light_sampling)},
-      {"clamp", maybe(settings.clamp, "none")},
-      {"marching", marching_of(settings.marching)},
-      {"layers", layers_of(settings)},
   };
+  add_settings(settings, identity);
+  identity.emplace_back("marching", marching_of(settings.marching));
+  identity.emplace_back("layers", layers_of(settings));
   // The rows appear only with moments, so that older films without motion blur keep their identity.
   if (!options.moments.empty()) {
     identity.emplace_back("shutter times", std::to_string(options.moments.size()));

@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "runtime/cli/input/memory.h"
-#include "runtime/cli/options/long_render.h"
+#include "runtime/cli/request/render_request.h"
 
 namespace fathom::cli {
 namespace {

@@ -56,8 +56,8 @@ class UnitRun {
     RenderRequest& request = picture.request;
     request.unit = number;
     request.outputs = {Output{file, nullptr}};
-    request.long_render.resume = true;
-    request.long_render.interval = request.long_render.interval.value_or(kUnitCheckpointInterval);
+    request.resume = true;
+    request.checkpoint_interval = request.checkpoint_interval.value_or(kUnitCheckpointInterval);
     request.options.crop = unit.area;
     request.options.sample_range = unit.samples;
     request.options.resume_from = nullptr;

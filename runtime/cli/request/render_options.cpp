@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/cli/options/setting_options.h"
 #include "runtime/cli/request/request_checks.h"
 
 namespace fathom::cli {
@@ -35,7 +36,7 @@ void add_profile_option(Arguments& arguments, RenderRequest& request) {
 
 void add_threads_option(Arguments& arguments, RenderRequest& request) {
   arguments.option("--threads", "N", "Number of threads (one per processor); never changes the picture",
-                   whole(request.threads, 1, 4096));
+                   whole(request.options.threads, 1, 4096));
 }
 
 void add_file_options(Arguments& arguments, RenderRequest& request) {
@@ -71,52 +72,21 @@ void add_film_options(Arguments& arguments, RenderRequest& request) {
   arguments.option("--aspect", "W:H", "Aspect ratio, width to height, as 16:9 or 4x3; the width stays",
                    into(read_aspect, request.aspect));
   arguments.option("--size", "WxH", "Width and height in pixels, as 1920x1080", into(read_size, request.size));
-  arguments.option("--exposure", "STOPS", "Brightness of the picture in stops: 1 doubles it (the scene's)",
-                   into(read_exposure, request.exposure));
-  arguments.option("--tone", "CURVE", "Tone curve: none, filmic, aces, agx or neutral (the scene's)",
-                   one_of({compiler::kToneCurves.begin(), compiler::kToneCurves.end()}, request.tone));
-}
-
-Verdict read_filter_width(std::string_view text, double& width) {
-  const std::optional<double> number = to_number(text);
-  if (!number || *number < compiler::kMinFilterWidth || *number > compiler::kMaxFilterWidth) {
-    return Complaint{
-        fmt::format("`{}` is not a number from {} to {}", text, compiler::kMinFilterWidth, compiler::kMaxFilterWidth),
-        "pixels, from one side of the filter to the other"};
-  }
-  width = *number;
-  return std::nullopt;
+  add_setting_options(arguments, compiler::OptionGroup::Picture, request.options);
 }
 
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
-  runtime::RenderOptions& options = request.options;
   arguments.group("Renderer (the scene's values come before the defaults shown)");
-  arguments.option("-s,--spp", "N", "Samples per pixel (16)", whole(options.spp, 1, compiler::kMaxSpp));
-  arguments.option("-b,--bounces", "N", "Bounces before Russian roulette may end a path (10)",
-                   whole(options.bounces, 0, compiler::kMaxBounces));
-  arguments.option("-f,--fov", "ANGLE", "Horizontal field of view, as 45deg, 0.785rad or 0.785 (45deg)",
-                   into(read_angle, request.fov));
-  arguments.option("-t,--tile", "SIZE", "Max side of a tile in pixels (16); never changes the picture",
-                   whole(options.tile, 1, compiler::kMaxTile));
-  arguments.option("--seed", "N", "Seed of the random numbers (0)", into(read_seed, options.seed));
-  arguments.option("--sampler", "KIND",
-                   "Sampler: blue (default), whose errors cancel between neighbouring pixels, sobol or independent",
-                   one_of({compiler::kSamplerNames.begin(), compiler::kSamplerNames.end()}, request.sampler));
-  arguments.option("--filter", "NAME", "Pixel filter: box (default), tent, gaussian, blackman-harris or mitchell",
-                   one_of({compiler::kFilterNames.begin(), compiler::kFilterNames.end()}, request.filter));
-  arguments.option("--filter-width", "PIXELS", "Width of the pixel filter (box 1, tent 2, mitchell 4, others 3)",
-                   into(read_filter_width, options.filter_width));
-  arguments.option("--noise-threshold", "LIMIT",
-                   "Give noisy tiles more samples, and tiles with less noise than LIMIT, as 0.02, no more; --spp, 8 or "
-                   "more, is the average; 0: no limit",
-                   into(read_not_negative, options.noise_threshold));
-  arguments.flag("--uniform", "Give all pixels the same number of samples, whatever the scene says", options.uniform);
-  arguments.option("--clamp", "RADIANCE",
-                   "Max radiance of light that comes by two bounces or more: removes bright specks, and with them "
-                   "some light (no max)",
-                   into(read_positive, options.clamp));
-  arguments.option("--far", "DISTANCE", "End rays at this distance from the camera, in scene units",
-                   into(read_positive, options.far));
+  const auto add_after = [&](std::string_view setting) {
+    if (setting == "bounces") {
+      arguments.option("-f,--fov", "ANGLE", "Horizontal field of view, as 45deg, 0.785rad or 0.785 (45deg)",
+                       into(read_angle, request.fov));
+    } else if (setting == "noise_threshold") {
+      arguments.flag("--uniform", "Give all pixels the same number of samples, whatever the scene says",
+                     request.options.uniform);
+    }
+  };
+  add_setting_options(arguments, compiler::OptionGroup::Renderer, request.options, add_after);
 }
 
 // Adds the options of how the work is done, to the current group.
@@ -136,6 +106,50 @@ void add_denoise_options(Arguments& arguments, RenderRequest& request) {
                  request.preview);
 }
 
+Verdict read_sample_range(std::string_view text, runtime::SampleRange& range) {
+  const std::size_t middle = text.find(':');
+  const auto wrong = [&] {
+    return Complaint{fmt::format("`{}` is not a range of samples", text),
+                     "write it as 0:32: the samples from the first number up to the second, which is not in it"};
+  };
+  if (middle == std::string_view::npos) return wrong();
+  std::int64_t first = 0, last = 0;
+  if (read_whole(text.substr(0, middle), 0, compiler::kMaxSpp, first)) return wrong();
+  if (read_whole(text.substr(middle + 1), 1, compiler::kMaxSpp, last) || first >= last) return wrong();
+  range = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+  return std::nullopt;
+}
+
+Verdict read_file_name(std::string_view text, std::string& name) {
+  if (text.empty()) return Complaint{"the file's name is empty", "name it, as now.film"};
+  name = text;
+  return std::nullopt;
+}
+
+void add_interval_option(Arguments& arguments, RenderRequest& request) {
+  arguments.option("--checkpoint-interval", "TIME",
+                   "Time between checkpoints, as 30s, 5m or 1h (60s; of units of a plan 10m)",
+                   into(read_duration, request.checkpoint_interval));
+}
+
+void add_long_render_options(Arguments& arguments, RenderRequest& request) {
+  arguments.group("Long renders (docs/how-to/render.md)");
+  arguments.option("--checkpoint", "FILE",
+                   "File that keeps the samples so far, written at intervals and when a signal or --time-limit ends "
+                   "the render (the first output's name with .checkpoint, which goes when the render is done)",
+                   into(read_file_name, request.checkpoint));
+  add_interval_option(arguments, request);
+  arguments.flag("--resume",
+                 "Continue from the checkpoint; the picture has the same bits as without the interruption",
+                 request.resume);
+  arguments.option("--time-limit", "TIME",
+                   "End the render after this time, as 30s, 10m or 1.5h, and write the picture so far",
+                   into(read_duration, request.options.time_limit));
+  arguments.option("--sample-range", "A:B",
+                   "Take only samples A to B-1 of each pixel's --spp: a part for `fathom merge`",
+                   into(read_sample_range, request.options.sample_range));
+}
+
 std::vector<std::string_view> method_names() {
   std::vector<std::string_view> names;
   for (const runtime::MethodInfo& method : runtime::kMethods) names.push_back(method.name);
@@ -152,10 +166,7 @@ Verdict read_relaxation(std::string_view text, double& factor) {
 
 void add_comparing_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Light (for comparisons; the default is right for pictures)");
-  arguments.option(
-      "--light-sampling", "WAY",
-      "How paths find light: both (default), lights (by shadow rays alone) or hits (by meeting lamps alone)",
-      one_of({runtime::kLightSamplingNames.begin(), runtime::kLightSamplingNames.end()}, request.light_sampling));
+  add_setting_options(arguments, compiler::OptionGroup::Light, request.options);
 }
 
 void add_marching_options(Arguments& arguments, RenderRequest& request) {
@@ -204,7 +215,7 @@ std::variant<RenderRequest, ExitCode> parse_planned(std::span<const std::string>
   add_verbosity_options(of_run, request);
   add_threads_option(of_run, request);
   add_profile_option(of_run, request);
-  add_interval_option(of_run, request.long_render);
+  add_interval_option(of_run, request);
   add_error_format_option(of_run, request.scene);
   add_limit_option(of_run, request.scene.limits);
   if (of_run.parse(running, streams)) return kUsage;
@@ -226,7 +237,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   add_denoise_options(arguments, request);
   add_running_options(arguments, request);
   add_motion_options(arguments, request.frames);
-  add_long_render_options(arguments, request.long_render);
+  add_long_render_options(arguments, request);
   add_unit_options(arguments, request.units);
   add_comparing_options(arguments, request);
   add_marching_options(arguments, request);

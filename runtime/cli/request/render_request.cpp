@@ -71,14 +71,14 @@ std::variant<runtime::PixelRect, ExitCode> crop_of(const CropSides& crop, int wi
 std::optional<ExitCode> check_noise_threshold(const RenderRequest& request, const compiler::CompiledScene& scene,
                                               const Streams& streams) {
   const bool asked = request.options.noise_threshold.has_value();
-  const int spp = request.options.spp.value_or(scene.settings.spp);
+  const int spp = scene.settings.spp;
   if (asked && spp < runtime::kMinAdaptiveSpp) {
     return fail(streams, kUsage,
                 fmt::format("--noise-threshold: {} per pixel are too few to share out",
                             count_of(static_cast<std::size_t>(spp), "sample")),
                 {fmt::format("ask for --spp {} or more", runtime::kMinAdaptiveSpp)});
   }
-  const std::string_view part = request.crop ? "--crop" : request.long_render.sample_range ? "--sample-range" : "";
+  const std::string_view part = request.crop ? "--crop" : request.options.sample_range ? "--sample-range" : "";
   if (part.empty() || !runtime::resolve(scene, request.options).noise_threshold) return std::nullopt;
   return fail(streams, kUsage,
               fmt::format("{} does not go with {}: a pixel's samples depend on the whole picture", part,
@@ -86,13 +86,22 @@ std::optional<ExitCode> check_noise_threshold(const RenderRequest& request, cons
               {asked ? "leave out --noise-threshold, or render the whole" : "add --uniform, or render the whole"});
 }
 
+std::optional<ExitCode> check_sample_range(const RenderRequest& request, const compiler::CompiledScene& scene,
+                                           const Streams& streams) {
+  const std::optional<runtime::SampleRange>& range = request.options.sample_range;
+  if (!range || range->last <= static_cast<std::uint32_t>(scene.settings.spp)) return std::nullopt;
+  return fail(streams, kUsage,
+              fmt::format("--sample-range: {} is beyond the {} of a pixel", range->last,
+                          count_of(static_cast<std::size_t>(scene.settings.spp), "sample")),
+              {"--spp says how many there are in all parts together"});
+}
+
 std::optional<ExitCode> check_watch(const RenderRequest& request, const Streams& streams) {
   if (!request.watch) return std::nullopt;
   if (request.scene.path == "-") {
     return fail(streams, kUsage, "--watch: standard input cannot change", {"name the scene's file"});
   }
-  const LongRender& asked = request.long_render;
-  if (asked.checkpoint || asked.interval || asked.resume) {
+  if (request.checkpoint || request.checkpoint_interval || request.resume) {
     return fail(streams, kUsage, "--watch begins again with every change: it goes with no checkpoint",
                 {"leave out --checkpoint, --checkpoint-interval and --resume"});
   }
@@ -130,12 +139,6 @@ void put_flags(RenderRequest& request) {
     options.layers = runtime::kAllLayers;
   }
   if (request.denoise) options.layers.first_hit = options.layers.halves = true;
-  options.threads = request.threads.value_or(0);
-  if (request.light_sampling >= 0) {
-    options.light_sampling = static_cast<runtime::LightSampling>(request.light_sampling);
-  }
-  if (request.sampler >= 0) options.sampler = static_cast<compiler::SamplerKind>(request.sampler);
-  if (request.filter >= 0) options.filter = static_cast<compiler::FilterKind>(request.filter);
   options.regions = !request.no_regions;
   if (request.region_memory) options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
 }
@@ -200,16 +203,16 @@ std::optional<ExitCode> override_camera(const RenderRequest& request, compiler::
 
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams) {
-  if (request.denoise && request.options.spp.value_or(scene.settings.spp) < 2) {
+  scene.film = with_overrides(scene.film, request.options);
+  scene.settings = with_overrides(scene.settings, request.options);
+  if (request.denoise && scene.settings.spp < 2) {
     return fail(streams, kUsage, "a single sample a pixel cannot be denoised: its noise shows between samples",
                 {request.preview ? "ask for --spp 2 or more, or --no-denoise" : "ask for --spp 2 or more"});
   }
   if (const auto code = override_size(request, scene.film, streams)) return code;
   if (const auto code = override_camera(request, scene, streams)) return code;
-  scene.film.exposure = request.exposure.value_or(scene.film.exposure);
-  if (request.tone >= 0) scene.film.tone = static_cast<compiler::ToneCurve>(request.tone);
   if (const auto code = check_noise_threshold(request, scene, streams)) return code;
-  if (const auto code = apply(request.long_render, scene, request.options, streams)) return code;
+  if (const auto code = check_sample_range(request, scene, streams)) return code;
   if (!request.crop) return std::nullopt;
   const auto crop = crop_of(*request.crop, scene.film.width, scene.film.height, streams);
   if (const auto* code = std::get_if<ExitCode>(&crop)) return *code;

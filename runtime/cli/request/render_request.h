@@ -11,12 +11,14 @@
 #include "runtime/cli/input/scene_arguments.h"
 #include "runtime/cli/options/camera_options.h"
 #include "runtime/cli/options/frame_options.h"
-#include "runtime/cli/options/long_render.h"
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/options/unit_options.h"
 #include "runtime/path/options.h"
 
 namespace fathom::cli {
+
+// Ending of a checkpoint's default name.
+inline constexpr const char* kCheckpointEnding = ".checkpoint";
 
 struct RenderRequest {
   SceneArguments scene;
@@ -29,11 +31,7 @@ struct RenderRequest {
   std::optional<int> resolution;  // width, pixels
   std::optional<PixelSize> size;
   std::optional<CropSides> crop;
-  std::optional<double> exposure;  // stops
-  int tone = -1;                   // a compiler::ToneCurve; -1: not given
   int bits = 0;                    // an index into 8, 16
-  std::optional<int> threads;
-  int sampler = -1, filter = -1;   // a SamplerKind, a FilterKind; -1: not given
   runtime::RenderOptions options;  // without width and height; override_scene() sets crop
   int method = -1;                 // an index into runtime::kMethods; -1: not given
   std::optional<double> epsilon, relaxation;
@@ -44,10 +42,11 @@ struct RenderRequest {
   bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
-  int light_sampling = -1;  // a runtime::LightSampling; -1: not given
-  bool denoise = false;     // after settle(): also for --preview without --no-denoise
+  bool denoise = false;  // after settle(): also for --preview without --no-denoise
   bool no_denoise = false;
-  LongRender long_render;
+  std::optional<std::string> checkpoint;      // --checkpoint FILE
+  std::optional<double> checkpoint_interval;  // seconds
+  bool resume = false;
   FrameOptions frames;
   UnitOptions units;
   // In a request for one of several frames: the frame's number, its index among the frames, and the number of frames.
@@ -68,8 +67,8 @@ std::optional<std::string> default_checkpoint(const RenderRequest& request);
 // Combines the options. Prints a message and returns an exit code if options conflict, whatever the scene.
 std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams);
 
-// Overrides the scene's camera, size, tone and crop with the request's. Prints a message and returns an exit code if
-// they do not fit together.
+// Overrides the scene's settings, camera, size and crop with the request's. Prints a message and returns an exit code
+// if they do not fit together.
 std::optional<ExitCode> override_scene(RenderRequest& request, compiler::CompiledScene& scene,
                                        const Streams& streams);
 

@@ -22,8 +22,7 @@ std::optional<ExitCode> check_standard_output(const RenderRequest& request, cons
     return fail(streams, kUsage, "--albedo, --depth and --normal write files beside a picture's, and `-o -` has none",
                 {"add -o FILE, or use `--format exr`, which holds all layers"});
   }
-  const LongRender& asked = request.long_render;
-  if (!asked.checkpoint && (asked.resume || asked.interval)) {
+  if (!request.checkpoint && (request.resume || request.checkpoint_interval)) {
     return fail(streams, kUsage, "with `-o -` alone the checkpoint has no name", {"name it with --checkpoint FILE"});
   }
   return std::nullopt;
