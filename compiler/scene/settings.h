@@ -101,7 +101,7 @@ struct SettingOption {
   std::string_view names = {}, placeholder = {}, help = {}, hint = {};
 };
 
-// The row in the identity of films. A setting without a value has the text `absent`.
+// The row in the identity of films. A setting without a value has the text `absent`, or no row if the text is empty.
 struct SettingIdentity {
   std::string_view row = {}, absent = {};
 };

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/picture/picture_attributes.h"
@@ -34,7 +35,8 @@ std::string setting_text(const std::optional<T>& value, std::string_view absent)
 void add_settings(const runtime::Settings& settings, runtime::Identity& identity) {
   compiler::for_each_setting([&](const auto& setting) {
     if (setting.identity.row.empty()) return;
-    identity.emplace_back(setting.identity.row, setting_text(settings.*setting.member, setting.identity.absent));
+    std::string text = setting_text(settings.*setting.member, setting.identity.absent);
+    if (!text.empty()) identity.emplace_back(setting.identity.row, std::move(text));
   });
 }
 
