@@ -1,8 +1,21 @@
 #include "runtime/unit_worker.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
+
+#include "runtime/base/color.h"
 
 namespace fathom::runtime {
+namespace {
+
+// Returns the sample with its radiance scaled to at most `max` in magnitude. Filters may have negative weights.
+PathSample clamped(PathSample sample, float max) {
+  const float brightest = max_component(glm::abs(sample.radiance));
+  if (brightest > max) sample.radiance *= max / brightest;
+  return sample;
+}
+
+}  // namespace
 
 std::size_t UnitWorker::next(std::span<PathKey> keys) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -59,7 +72,8 @@ bool UnitWorker::next_unit() {
 
 bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
   OpenUnit& unit = open_[key.unit];
-  const bool room = unit.film.add(key.x, key.y, sample);
+  const std::optional<double>& max = work_.context.settings.sample_clamp;
+  const bool room = unit.film.add(key.x, key.y, max ? clamped(sample, static_cast<float>(*max)) : sample);
   if (++unit.ended == unit.begun && unit.all_begun) hand_in(key.unit);
   return room;
 }

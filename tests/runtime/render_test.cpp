@@ -5,10 +5,12 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <vector>
 
+#include "runtime/base/color.h"
 #include "runtime/base/tiles.h"
 #include "runtime/film/film_channels.h"
 #include "tests/runtime/estimate.h"
@@ -209,6 +211,31 @@ TEST_CASE("render: clamping takes light from long paths only, and never adds any
   }
   CHECK(lost > 0.1);
   CHECK(estimate(clamped).mean > estimate(two).mean);
+}
+
+TEST_CASE("render: a sample clamp limits every sample, and leaves the samples below it", "[render]") {
+  const auto scene = scene_of(kVaried);
+  for (const compiler::FilterKind filter : {compiler::FilterKind::Box, compiler::FilterKind::Mitchell}) {
+    RenderOptions options = options_of(20, 12, 2);
+    options.sample_range = SampleRange{0, 1};
+    options.filter = filter;
+    const Film whole = render(scene, options).film;
+    options.sample_clamp = 1e9;
+    CHECK(render(scene, options).film.hash() == whole.hash());
+    options.sample_clamp = 0.7;
+    const Film clamped = render(scene, options).film;
+    int limited = 0;
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        const glm::vec3 before = whole.means(x, y).radiance, after = clamped.means(x, y).radiance;
+        const float brightest = max_component(glm::abs(before));
+        const bool over = brightest > 0.7f;
+        limited += over;
+        CHECK(glm::distance(after, over ? before * (0.7f / brightest) : before) < 1e-6f);
+      }
+    }
+    CHECK((limited > 0 && limited < 240));
+  }
 }
 
 TEST_CASE("render: tiles take every pixel once, and a small picture has enough of them for all threads", "[render]") {

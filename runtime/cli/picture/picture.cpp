@@ -104,8 +104,9 @@ void say_what_is_always_so(const RenderRequest& request, const Streams& streams)
   if (request.default_output) {
     note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.outputs.front().path));
   }
-  if (request.options.clamp) {
-    note(streams, "--clamp: light is lost, and the picture darker than it should be where light is clamped");
+  if (request.options.clamp || request.options.sample_clamp) {
+    note(streams, fmt::format("{}: light is lost, and the picture darker than it should be where light is clamped",
+                              request.options.clamp ? "--clamp" : "--sample-clamp"));
   }
 }
 
