@@ -83,15 +83,15 @@ void add_between(RecordSpec& record, const Between& between) {
 
 template <typename Record, typename Member>
 PropertySpec setting_property(const Setting<Record, Member>& setting) {
-  using Value = SettingValue<Member>;
+  using Number = SettingValue<Member>;
   PropertySpec property = other(setting.name, ValueType::Number, setting.doc);
-  if constexpr (std::is_enum_v<Value>) {
+  if constexpr (std::is_enum_v<Number>) {
     property.type = ValueType::Choice;
-    const auto words = words_of(Value{});
+    const auto words = words_of(Number{});
     property.choices.assign(words.begin(), words.end());
   } else {
-    if (std::is_integral_v<Value>) property.type = ValueType::Integer;
-    if constexpr (std::is_same_v<Member, Value>) property.fallback = {static_cast<double>(Record().*setting.member)};
+    if (std::is_integral_v<Number>) property.type = ValueType::Integer;
+    if constexpr (std::is_same_v<Member, Number>) property.fallback = {static_cast<double>(Record().*setting.member)};
     if (setting.range.above_zero) {
       property.rule = Rule::Positive;
     } else {
