@@ -215,7 +215,7 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
   CHECK(picture("shared.json --uniform") == plain);
   CHECK(picture("shared.json -s 7") == picture("lit.json -s 7"));
   CHECK_THAT(folder.run("render shared.json --crop 0,0,4,4 -o a.png").err,
-             Contains("--crop: the scene's `noise_threshold`") && Contains("add --uniform"));
+             Contains("--crop does not go with the scene's `noise_threshold`") && Contains("add --uniform"));
   CHECK(folder.run("render shared.json --crop 0,0,4,4 -o a.png").code == 2);
   CHECK(folder.run("render shared.json --crop 0,0,4,4 --uniform -o a.png").code == 0);
   CHECK_THAT(folder.run("render shared.json -vvv -o a.png").err, Contains(", adaptive"));
