@@ -2,28 +2,26 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "runtime/base/tiles.h"
 #include "runtime/film/adaptive.h"
+#include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
 namespace {
 
 Stats run_threads(const PassWork& pass, int threads) {
   std::vector<Stats> stats(static_cast<std::size_t>(threads));
-  // Each thread allocates its own worker, so that the memory it writes to is its own.
-  const auto work = [&](Stats& counted) {
-    const auto worker = std::make_unique<UnitWorker>(pass);
-    worker->run();
-    counted = worker->stats();
-  };
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < stats.size(); ++i) others.emplace_back([&, i] { work(stats[i]); });
-  work(stats[0]);
-  for (std::thread& thread : others) thread.join();
+  // Each thread makes its worker itself, so that the worker writes to memory of its own.
+  parallel_for(
+      threads, stats.size(), [] { return 0; },
+      [&](int, std::size_t i) {
+        const auto worker = std::make_unique<UnitWorker>(pass);
+        worker->run();
+        stats[i] = worker->stats();
+      });
   Stats sum;
   for (const Stats& counted : stats) sum.merge(counted);
   return sum;
