@@ -66,12 +66,12 @@ Record read_settings_of(const RecordSpec& row, const syntax::Value& value, const
   const RecordReader reader(row, std::get<syntax::Record>(value.data), opening(value.span), scope, diagnostics);
   Record record;
   for_each_setting_of<Record>([&](const auto& setting) {
-    using Value = typename std::remove_cvref_t<decltype(setting)>::Value;
+    using Number = typename std::remove_cvref_t<decltype(setting)>::Value;
     if (reader.value(setting.name) == nullptr) return;
-    if constexpr (std::is_enum_v<Value>) {
-      record.*setting.member = static_cast<Value>(reader.choice(setting.name));
+    if constexpr (std::is_enum_v<Number>) {
+      record.*setting.member = static_cast<Number>(reader.choice(setting.name));
     } else {
-      record.*setting.member = static_cast<Value>(reader.number(setting.name));
+      record.*setting.member = static_cast<Number>(reader.number(setting.name));
     }
   });
   return record;
