@@ -43,52 +43,38 @@ void signed_whole(Archive& a, std::string_view name, int& number, int least, int
   number = static_cast<int>(wide);
 }
 
-// A parameter of materials by its name, which is that of its field below.
-struct Numbered {
-  std::string_view name;
-  std::variant<MaterialNumber, MaterialColor> place;
+struct Interval {
   double least, most;
 };
-using MaterialOf = MaterialNumbers;
-const Numbered kNumbers[] = {
-    {"base_weight", &MaterialOf::base_weight, 0, 1},
-    {"color", &MaterialOf::color, 0, 1},
-    {"diffuse_roughness", &MaterialOf::diffuse_roughness, 0, 1},
-    {"metalness", &MaterialOf::metalness, 0, 1},
-    {"specular_weight", &MaterialOf::specular_weight, 0, 1},
-    {"specular_color", &MaterialOf::specular_color, 0, 1},
-    {"roughness", &MaterialOf::roughness, 0, 1},
-    {"ior", &MaterialOf::ior, kTiny, kAny},
-    {"transmission", &MaterialOf::transmission, 0, 1},
-    {"transmission_color", &MaterialOf::transmission_color, 0, 1},
-    {"transmission_depth", &MaterialOf::transmission_depth, 0, kAny},
-    {"coat_weight", &MaterialOf::coat_weight, 0, 1},
-    {"coat_color", &MaterialOf::coat_color, 0, 1},
-    {"coat_roughness", &MaterialOf::coat_roughness, 0, 1},
-    {"coat_ior", &MaterialOf::coat_ior, kTiny, kAny},
-    {"emission", &MaterialOf::emission, 0, kAny},
-    {"emission_luminance", &MaterialOf::emission_luminance, 0, kAny},
-    {"absorption", &MaterialOf::absorption, 0, kAny},
-    {"opacity", &MaterialOf::opacity, 0, 1},
-};
+Interval range_of(const MaterialParameter& parameter) {
+  switch (parameter.domain) {
+    case ParameterDomain::Share:
+      return {0, 1};
+    case ParameterDomain::Positive:
+      return {kTiny, kAny};
+    case ParameterDomain::NotNegative:
+      break;
+  }
+  return {0, kAny};
+}
 
 void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> all;
-    for (const Numbered& row : kNumbers) all.push_back(row.name);
+    for (const MaterialParameter& row : kMaterialParameters) all.push_back(row.name);
     return all;
   }();
-  std::size_t at = 0;
-  while (at + 1 < names.size() && kNumbers[at].place != t.parameter) ++at;
+  std::size_t at = a.reading() ? 0 : static_cast<std::size_t>(&parameter_of(t.parameter) - kMaterialParameters);
   a.begin("parameter");
   a.choice(at, names);
   a.end();
-  t.parameter = kNumbers[at].place;
+  t.parameter = kMaterialParameters[at].member;
   index(a, "texture", t.texture, textures);
   field(a, "least", t.least, -kAny, kAny);
   field(a, "most", t.most, -kAny, kAny);
   if (!a.reading() || a.failed()) return;
-  if (t.least > t.most || t.least < kNumbers[at].least || t.most > kNumbers[at].most) {
+  const Interval range = range_of(kMaterialParameters[at]);
+  if (t.least > t.most || t.least < range.least || t.most > range.most) {
     a.fail(fmt::format("`{}` cannot be from {} to {}", names[at], t.least, t.most));
   }
 }
@@ -96,12 +82,9 @@ void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
 void fields(Archive& a, Material& m, std::size_t textures) {
   field(a, "name", m.name);
   field(a, "type", m.type, ChoiceNames(kMaterials));
-  for (const Numbered& row : kNumbers) {
-    if (const auto* number = std::get_if<MaterialNumber>(&row.place)) {
-      field(a, row.name, m.*(*number), row.least, row.most);
-    } else {
-      field(a, row.name, m.*std::get<MaterialColor>(row.place), row.least, row.most);
-    }
+  for (const MaterialParameter& row : kMaterialParameters) {
+    const Interval range = range_of(row);
+    std::visit([&](auto member) { field(a, row.name, m.*member, range.least, range.most); }, row.member);
   }
   field(a, "thin_walled", m.thin_walled);
   signed_whole(a, "priority", m.priority, -1000, 1000);

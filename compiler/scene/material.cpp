@@ -4,6 +4,10 @@
 
 namespace fathom::compiler {
 
+const MaterialParameter& parameter_of(MaterialMember member) {
+  return *std::ranges::find(kMaterialParameters, member, &MaterialParameter::member);
+}
+
 std::vector<bool> in_object_space(std::span<const Material> materials, std::span<const Texture> textures) {
   std::vector<bool> textured, result;
   for (const Texture& texture : textures) {  // a pattern comes after the textures that it mixes

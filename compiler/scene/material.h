@@ -1,7 +1,7 @@
 // Materials as the compiler's output: plain numbers, and textures for the numbers that vary over space.
 //
-// Names and meanings follow OpenPBR 1.1 (Academy Software Foundation, "OpenPBR Surface", 2024). A material without a
-// texture consists of its numbers alone.
+// The parameters are the rows of compiler/scene/material_parameters.def. A material without a texture consists of its
+// numbers alone.
 // Tested by: tests/compiler/frontend/elaborate/materials_test.cpp
 #pragma once
 
@@ -18,34 +18,40 @@
 
 namespace fathom::compiler {
 
-// Colours are linear sRGB in [0,1] unless stated otherwise. A parameter at its default costs nothing.
+// The values of a material's parameters, one member for each row of the table.
 struct MaterialNumbers {
-  double base_weight = 1;  // factor of `color`
-  glm::dvec3 color{0.8};   // diffuse: albedo; specular: reflectance; transparent: tint per crossing;
-                           // emissive: albedo of the emitting surface; principled: base_color
-  double diffuse_roughness = 0, metalness = 0;
-  double specular_weight = 1;
-  glm::dvec3 specular_color{1};
-  double roughness = 0.3;
-  double ior = 1.5;         // index of refraction, relative to vacuum
-  double transmission = 0;  // transmission_weight
-  glm::dvec3 transmission_color{1};
-  double transmission_depth = 0;  // scene units, after which transmission_color is left; 0: tint per crossing
-  double coat_weight = 0;
-  glm::dvec3 coat_color{1};
-  double coat_roughness = 0, coat_ior = 1.6;
-  glm::dvec3 emission{0.0};       // radiance Le, both sides; emissive and principled only
-  double emission_luminance = 1;  // factor of `emission`
-  glm::dvec3 absorption{0.0};     // transparent: absorption coefficient inside, per scene unit
-  double opacity = 1;             // geometry_opacity
+  using Number = double;
+  using Color = glm::dvec3;
+#define PARAMETER(Type, member, value, ...) Type member{value};
+#include "compiler/scene/material_parameters.def"
 };
 
 using MaterialNumber = double MaterialNumbers::*;
 using MaterialColor = glm::dvec3 MaterialNumbers::*;
+using MaterialMember = std::variant<MaterialNumber, MaterialColor>;
+
+// Valid values of a parameter, or of each component of a colour: in [0,1], above 0, or not below 0.
+enum class ParameterDomain { Share, Positive, NotNegative };
+
+// A row of the table.
+struct MaterialParameter {
+  std::string_view name;  // of the member
+  MaterialMember member;
+  double value;  // the default, of each component
+  ParameterDomain domain;
+  std::string_view property, alias, doc;  // of principled materials
+};
+inline constexpr MaterialParameter kMaterialParameters[] = {
+#define PARAMETER(Type, member, value, domain, property, alias, doc) \
+  {#member, &MaterialNumbers::member, value, ParameterDomain::domain, property, alias, doc},
+#include "compiler/scene/material_parameters.def"
+};
+
+const MaterialParameter& parameter_of(MaterialMember member);
 
 // A parameter whose value a texture gives at each place.
 struct TexturedParameter {
-  std::variant<MaterialNumber, MaterialColor> parameter;
+  MaterialMember parameter;
   std::uint32_t texture;  // index into SceneTables::textures
   double least, most;     // the texture's values are clamped to this range
 };
@@ -66,8 +72,8 @@ struct Material : MaterialNumbers {
 inline bool emits(const Material& material) {
   bool color = material.emission != glm::dvec3(0), luminance = material.emission_luminance != 0;
   for (const TexturedParameter& row : material.textured) {
-    color = color || row.parameter == decltype(row.parameter)(&MaterialNumbers::emission);
-    luminance = luminance || row.parameter == decltype(row.parameter)(&MaterialNumbers::emission_luminance);
+    color = color || row.parameter == MaterialMember(&MaterialNumbers::emission);
+    luminance = luminance || row.parameter == MaterialMember(&MaterialNumbers::emission_luminance);
   }
   const bool can = material.type == Material::Type::Emissive || material.type == Material::Type::Principled;
   return can && color && luminance;
@@ -79,8 +85,8 @@ inline bool transmits(const Material& material) {
   if (material.type != Material::Type::Principled) return false;
   bool may = material.transmission > 0 || material.opacity < 1;
   for (const TexturedParameter& row : material.textured) {
-    may = may || row.parameter == decltype(row.parameter)(&MaterialNumbers::transmission) ||
-          row.parameter == decltype(row.parameter)(&MaterialNumbers::opacity);
+    may = may || row.parameter == MaterialMember(&MaterialNumbers::transmission) ||
+          row.parameter == MaterialMember(&MaterialNumbers::opacity);
   }
   return may;
 }

@@ -22,8 +22,6 @@ glm::vec3 absorption_for(glm::vec3 left, float depth) {
 }
 
 void put_transmission(const MaterialNumbers& n, MaterialType type, MaterialPoint& point) {
-  point.transmission_color = glm::vec3(n.transmission_color);
-  point.absorption = glm::vec3(n.absorption);
   if (type == MaterialType::Transparent) {
     point.transmission = 1;
     point.roughness = 0;
@@ -43,20 +41,11 @@ void close(MaterialPoint& point) {
 MaterialPoint to_point(const MaterialNumbers& n, MaterialType type, bool thin_walled) {
   MaterialPoint point;
   point.type = type;
-  point.base_color = glm::vec3(n.base_weight * n.color);
-  point.diffuse_roughness = static_cast<float>(n.diffuse_roughness);
-  point.metalness = static_cast<float>(n.metalness);
-  point.specular_weight = static_cast<float>(n.specular_weight);
-  point.specular_color = glm::vec3(n.specular_color);
-  point.roughness = static_cast<float>(n.roughness);
-  point.ior = static_cast<float>(n.ior);
-  point.transmission = static_cast<float>(n.transmission);
-  point.coat_weight = static_cast<float>(n.coat_weight);
-  point.coat_color = glm::vec3(n.coat_color);
-  point.coat_roughness = static_cast<float>(n.coat_roughness);
-  point.coat_ior = static_cast<float>(n.coat_ior);
   point.thin_walled = thin_walled;
-  point.opacity = static_cast<float>(n.opacity);
+#define PARAMETER(Type, member, ...) point.member = MaterialPoint::Type(n.member);
+#define COMBINED(...)
+#include "compiler/scene/material_parameters.def"
+  point.base_color = glm::vec3(n.base_weight * n.color);
   point.emission = glm::vec3(n.emission_luminance * n.emission);
   put_transmission(n, type, point);
   close(point);
@@ -166,23 +155,12 @@ MaterialPoint mix(const MaterialPoint& a, const MaterialPoint& b, float t) {
   if (a.type != b.type) return mix(to_principled(a), to_principled(b), t);
   const auto between = [t](auto from, auto to) { return from * (1 - t) + to * t; };
   MaterialPoint m = a;
-  m.base_color = between(a.base_color, b.base_color);
-  m.diffuse_roughness = between(a.diffuse_roughness, b.diffuse_roughness);
-  m.metalness = between(a.metalness, b.metalness);
-  m.specular_weight = between(a.specular_weight, b.specular_weight);
-  m.specular_color = between(a.specular_color, b.specular_color);
-  m.roughness = between(a.roughness, b.roughness);
-  m.ior = between(a.ior, b.ior);
-  m.transmission = between(a.transmission, b.transmission);
-  m.transmission_color = between(a.transmission_color, b.transmission_color);
-  m.coat_weight = between(a.coat_weight, b.coat_weight);
-  m.coat_color = between(a.coat_color, b.coat_color);
-  m.coat_roughness = between(a.coat_roughness, b.coat_roughness);
-  m.coat_ior = between(a.coat_ior, b.coat_ior);
   m.thin_walled = t < 0.5f ? a.thin_walled : b.thin_walled;
-  m.opacity = between(a.opacity, b.opacity);
+  m.base_color = between(a.base_color, b.base_color);
   m.emission = between(a.emission, b.emission);
-  m.absorption = between(a.absorption, b.absorption);
+#define PARAMETER(Type, member, ...) m.member = between(a.member, b.member);
+#define COMBINED(...)
+#include "compiler/scene/material_parameters.def"
   close(m);
   return m;
 }

@@ -17,26 +17,20 @@ namespace fathom::runtime {
 
 using MaterialType = compiler::Material::Type;
 
-// A material at one point of a surface: every parameter is a number. Names and meanings follow OpenPBR 1.1 (Academy
-// Software Foundation, "OpenPBR Surface", 2024). A parameter at its default costs nothing.
+// A material at one point of a surface: every parameter is a number. Names and meanings are those of
+// compiler/scene/material_parameters.def.
 struct MaterialPoint {
+  using Number = float;
+  using Color = glm::vec3;
   MaterialType type = MaterialType::Diffuse;
-  glm::vec3 base_color{0.8f};   // includes base_weight
-  float diffuse_roughness = 0;  // 0: Lambertian
-  float metalness = 0;
-  float specular_weight = 1;
-  glm::vec3 specular_color{1};
-  float roughness = 0.3f;           // specular_roughness r: GGX with alpha = r^2
-  float ior = 1.5f;                 // inside relative to vacuum
-  float transmission = 0;           // transmission_weight
-  glm::vec3 transmission_color{1};  // tint per crossing if transmission_depth is 0
-  float coat_weight = 0;
-  glm::vec3 coat_color{1};
-  float coat_roughness = 0, coat_ior = 1.6f;
   bool thin_walled = false;
-  float opacity = 1;        // geometry_opacity; 1 for a material that fills a body
-  glm::vec3 emission{0};    // radiance of an opaque surface without a coat
-  glm::vec3 absorption{0};  // inside, per scene unit
+  Color base_color{0.8f};  // base_weight * color
+  Color emission{0};       // emission_luminance * emission: radiance of an opaque surface without a coat
+  // transmission_color is the tint per crossing, opacity 1 if the material fills a body, and absorption includes that
+  // which follows from transmission_depth.
+#define PARAMETER(Type, member, value, ...) Type member{value};
+#define COMBINED(...)
+#include "compiler/scene/material_parameters.def"
 
   // Returns the radiance that leaves the surface to both sides: the opaque part emits, through the coat.
   glm::vec3 emitted() const;

@@ -15,51 +15,26 @@
 namespace fathom::compiler {
 namespace {
 
-using M = MaterialNumbers;
-
-// Material parameter that receives the value of a property.
-struct Slot {
-  std::string_view property;
-  std::variant<MaterialNumber, MaterialColor> parameter;
-};
-const Slot kPlaces[] = {
-    {"base_weight", &M::base_weight},
-    {"base_color", &M::color},
-    {"color", &M::color},
-    {"base_diffuse_roughness", &M::diffuse_roughness},
-    {"base_metalness", &M::metalness},
-    {"specular_weight", &M::specular_weight},
-    {"specular_color", &M::specular_color},
-    {"specular_roughness", &M::roughness},
-    {"specular_ior", &M::ior},
-    {"ior", &M::ior},
-    {"transmission_weight", &M::transmission},
-    {"transmission_color", &M::transmission_color},
-    {"transmission_depth", &M::transmission_depth},
-    {"coat_weight", &M::coat_weight},
-    {"coat_color", &M::coat_color},
-    {"coat_roughness", &M::coat_roughness},
-    {"coat_ior", &M::coat_ior},
-    {"emission_color", &M::emission},
-    {"emission", &M::emission},
-    {"emission_luminance", &M::emission_luminance},
-    {"absorption", &M::absorption},
-    {"geometry_opacity", &M::opacity},
-};
-
-void put(MaterialNumbers& numbers, const Slot& place, glm::dvec3 value) {
-  if (const auto* number = std::get_if<MaterialNumber>(&place.parameter)) numbers.*(*number) = value.x;
-  if (const auto* color = std::get_if<MaterialColor>(&place.parameter)) numbers.*(*color) = value;
+void put(MaterialNumbers& numbers, const MaterialParameter& parameter, glm::dvec3 value) {
+  if (const auto* number = std::get_if<MaterialNumber>(&parameter.member)) numbers.*(*number) = value.x;
+  if (const auto* color = std::get_if<MaterialColor>(&parameter.member)) numbers.*(*color) = value;
 }
 
 // Lower bound for textured parameters that must be positive, such as an index of refraction.
 constexpr double kLeastPositive = 1e-3;
 
-TexturedParameter textured(const Slot& place, std::uint32_t texture, const PropertySpec& row) {
+TexturedParameter textured(const MaterialParameter& parameter, std::uint32_t texture, const PropertySpec& row) {
   double least = row.range.least;
   if (row.rule == Rule::Positive) least = std::max(least, kLeastPositive);
   if (row.rule == Rule::NotNegative) least = std::max(least, 0.0);
-  return {place.parameter, texture, least, row.range.most};
+  return {parameter.member, texture, least, row.range.most};
+}
+
+// Returns the property that gives a parameter its value, or nullptr if materials of this type have none. Principled
+// materials have their own names.
+const PropertySpec* material_property(const RecordSpec& row, const MaterialParameter& parameter) {
+  const PropertySpec* property = row.find(parameter.property);
+  return property ? property : row.find(parameter.name);
 }
 
 class MaterialReader {
@@ -99,29 +74,30 @@ class MaterialReader {
   void read_parameters(const RecordReader& reader, const RecordSpec& row, Material& material) {
     const MaterialPreset* preset = find_preset(reader);
     const TextureSpace space = space_of(reader, TextureSpace::World);
-    for (const Slot& place : kPlaces) {
-      const PropertySpec* property = row.find(place.property);
-      if (property == nullptr || !property->alias_of.empty()) continue;
-      const syntax::Value* given = reader.value(place.property);
+    for (const MaterialParameter& parameter : kMaterialParameters) {
+      const PropertySpec* property = material_property(row, parameter);
+      if (property == nullptr) continue;
+      const syntax::Value* given = reader.value(property->name);
       if (given && varies(*given)) {
-        read_texture(*given, *property, space, place, material);
-      } else if (const glm::dvec3* known = given ? nullptr : find(preset, place.property)) {
-        put(material, place, *known);
+        read_texture(*given, *property, space, parameter, material);
+      } else if (const glm::dvec3* known = given ? nullptr : find(preset, property->name)) {
+        put(material, parameter, *known);
       } else {
-        const std::vector<double> numbers = reader.numbers(place.property);
-        put(material, place, {numbers[0], numbers[numbers.size() / 2], numbers.back()});
+        const std::vector<double> numbers = reader.numbers(property->name);
+        put(material, parameter, {numbers[0], numbers[numbers.size() / 2], numbers.back()});
       }
     }
-    // An emission colour given alone emits: its luminance is 1, although OpenPBR's default is 0.
-    if (reader.value("emission_color") && !reader.value("emission_luminance")) material.emission_luminance = 1;
+    // An emission colour without a luminance emits: the luminance is then 1, although OpenPBR's default is 0.
+    const bool colored = material.type == Material::Type::Emissive || reader.value("emission_color");
+    if (colored && !reader.value("emission_luminance")) material.emission_luminance = 1;
   }
 
-  void read_texture(const syntax::Value& value, const PropertySpec& row, TextureSpace space, const Slot& place,
-                    Material& material) {
+  void read_texture(const syntax::Value& value, const PropertySpec& row, TextureSpace space,
+                    const MaterialParameter& parameter, Material& material) {
     const std::optional<ReadTexture> texture = textures_.read(value, row, space);
     if (!texture) return;
-    put(material, place, texture->typical);
-    if (texture->index) material.textured.push_back(textured(place, *texture->index, row));
+    put(material, parameter, texture->typical);
+    if (texture->index) material.textured.push_back(textured(parameter, *texture->index, row));
   }
 
   // Returns nullptr without a valid preset. The reader has already reported an unknown name.

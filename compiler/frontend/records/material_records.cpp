@@ -1,6 +1,7 @@
 // Tables of materials and of the patterns that material parameters may vary by.
 #include <array>
 #include <utility>
+#include <variant>
 
 #include "compiler/frontend/records/material_presets.h"
 #include "compiler/frontend/records/property_rows.h"
@@ -11,6 +12,7 @@ namespace fathom::compiler {
 namespace {
 
 using namespace rows;
+using M = MaterialNumbers;
 
 constexpr std::string_view kPriority = "of solids at the same place, the medium is that of the highest";
 
@@ -33,28 +35,31 @@ RecordSpec material(std::string type, std::vector<PropertySpec> own) {
   return record;
 }
 
-// Rows of OpenPBR parameters: a share between 0 and 1, a colour of shares, and a positive index.
-PropertySpec share(std::string_view name, std::string_view doc, double fallback) {
-  return varying(number(name, doc, {fallback}, kUnit));
-}
-PropertySpec tint(std::string_view name, std::string_view doc, double fallback) {
-  return varying(color(name, doc, fallback));
-}
-PropertySpec index(std::string_view name, std::string_view doc, double fallback) {
-  return varying(number(name, doc, {fallback}, {}, Rule::Positive));
+PropertySpec parameter_row(const MaterialParameter& parameter, std::string_view name, std::string_view doc,
+                           double fallback) {
+  const ParameterDomain domain = parameter.domain;
+  const Range range = domain == ParameterDomain::Share ? kUnit : Range{};
+  const Rule rule = domain == ParameterDomain::Positive      ? Rule::Positive
+                    : domain == ParameterDomain::NotNegative ? Rule::NotNegative
+                                                             : Rule::Any;
+  return varying(std::holds_alternative<MaterialColor>(parameter.member)
+                     ? color(name, doc, fallback, range, rule)
+                     : number(name, doc, {fallback}, range, rule));
 }
 
-// Short name of a property. The alias copies the row of that property.
-struct Alias {
-  std::string_view of, name;
-};
-constexpr Alias kAliases[] = {
-    {"base_color", "color"},         {"base_diffuse_roughness", "diffuse_roughness"},
-    {"base_metalness", "metalness"}, {"specular_roughness", "roughness"},
-    {"specular_ior", "ior"},         {"transmission_weight", "transmission"},
-    {"coat_weight", "coat"},         {"emission_color", "emission"},
-    {"geometry_opacity", "opacity"}, {"geometry_thin_walled", "thin_walled"},
-};
+// Row of a plain material, where a parameter has its own meaning and default.
+PropertySpec plain_row(MaterialMember member, std::string_view doc, double fallback) {
+  const MaterialParameter& parameter = parameter_of(member);
+  return parameter_row(parameter, parameter.name, doc, fallback);
+}
+
+// Adds the short name of a property, with a copy of its row.
+void add_alias(RecordSpec& record, std::string_view property, std::string_view alias) {
+  PropertySpec row = *record.find(property);
+  row.name = alias;
+  row.alias_of = property;
+  record.properties.push_back(std::move(row));
+}
 
 PropertySpec preset_row() {
   PropertySpec row = other("preset", ValueType::Choice, "values of a known substance, for what is not given");
@@ -64,37 +69,17 @@ PropertySpec preset_row() {
 
 // Follows OpenPBR 1.1, including the defaults. The properties `preset` and `priority` are additions.
 RecordSpec principled() {
-  RecordSpec record = material(
-      "principled",
-      {preset_row(),
-       share("base_weight", "factor of base_color", 1),
-       tint("base_color", "albedo; of a metal its reflectance head-on", 0.8),
-       share("base_diffuse_roughness", "of the diffuse base: 0 is Lambert's", 0),
-       share("base_metalness", "share that is metal and not dielectric", 0),
-       share("specular_weight", "strength of the reflection", 1),
-       tint("specular_color", "tint of a dielectric's reflection; of a metal, at 82 degrees", 1),
-       share("specular_roughness", "of the surface: 0 is smooth", 0.3),
-       index("specular_ior", "index of refraction relative to vacuum", 1.5),
-       share("transmission_weight", "share that is clear and not opaque", 0),
-       tint("transmission_color", "what is left of light after transmission_depth", 1),
-       varying(number("transmission_depth", "scene units; 0: transmission_color tints each crossing", {0}, {},
-                      Rule::NotNegative)),
-       share("coat_weight", "share that has a clear coat", 0),
-       tint("coat_color", "what the coat lets through", 1),
-       share("coat_roughness", "of the coat's surface", 0),
-       index("coat_ior", "index of refraction of the coat", 1.6),
-       varying(color("emission_color", "radiance, both sides, times emission_luminance", 1, {}, Rule::NotNegative)),
-       varying(number("emission_luminance", "factor of emission_color; 1 when that is given", {0}, {},
-                      Rule::NotNegative)),
-       share("geometry_opacity", "share of the surface that is there", 1),
-       other("geometry_thin_walled", ValueType::Boolean, "whether it is a sheet without an inside (false)"),
-       integer("priority", kPriority, 0, {-1000, 1000})});
-  for (const Alias& alias : kAliases) {
-    PropertySpec row = *record.find(alias.of);
-    row.name = alias.name;
-    row.alias_of = alias.of;
-    record.properties.push_back(std::move(row));
+  std::vector<PropertySpec> own = {preset_row()};
+  for (const MaterialParameter& row : kMaterialParameters) {
+    if (!row.property.empty()) own.push_back(parameter_row(row, row.property, row.doc, row.value));
   }
+  own.push_back(other("geometry_thin_walled", ValueType::Boolean, "whether it is a sheet without an inside (false)"));
+  own.push_back(integer("priority", kPriority, 0, {-1000, 1000}));
+  RecordSpec record = material("principled", std::move(own));
+  for (const MaterialParameter& row : kMaterialParameters) {
+    if (!row.alias.empty()) add_alias(record, row.property, row.alias);
+  }
+  add_alias(record, "geometry_thin_walled", "thin_walled");
   return record;
 }
 
@@ -118,13 +103,13 @@ RecordSpec pattern(std::string type, std::vector<PropertySpec> own) {
 
 const std::vector<RecordSpec>& material_records() {
   static const std::vector<RecordSpec> records = {
-      material("diffuse", {tint("color", "albedo", 0.8)}),
-      material("emissive", {varying(color("emission", "radiance, both sides", 1, {}, Rule::NotNegative)),
-                            tint("color", "albedo of the lamp itself", 0)}),
-      material("specular", {tint("color", "reflectance of the mirror", 1)}),
-      material("transparent", {index("ior", "index of refraction relative to vacuum", 1.5),
-                               tint("color", "tint at each crossing", 1),
-                               varying(color("absorption", "inside, per scene unit", 0, {}, Rule::NotNegative)),
+      material("diffuse", {plain_row(&M::color, "albedo", 0.8)}),
+      material("emissive", {plain_row(&M::emission, "radiance, both sides", 1),
+                            plain_row(&M::color, "albedo of the lamp itself", 0)}),
+      material("specular", {plain_row(&M::color, "reflectance of the mirror", 1)}),
+      material("transparent", {plain_row(&M::ior, "index of refraction relative to vacuum", 1.5),
+                               plain_row(&M::color, "tint at each crossing", 1),
+                               plain_row(&M::absorption, "inside, per scene unit", 0),
                                integer("priority", kPriority, 0, {-1000, 1000})}),
       principled()};
   return records;

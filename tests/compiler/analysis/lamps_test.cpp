@@ -133,7 +133,7 @@ TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]
     if (pass != "graph") return;
     Material glow;
     glow.type = Material::Type::Emissive;
-    glow.emission = glm::dvec3(1);
+    glow.emission_luminance = 1;
     const Surface surface{"all", 0};
     found = find_lamps(scene, std::span(&surface, 1), std::span(&glow, 1)).size();
   };

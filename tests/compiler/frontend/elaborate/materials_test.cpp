@@ -1,15 +1,21 @@
 // Materials as the front end reads them: OpenPBR's names and defaults, presets, textures.
 #include "compiler/frontend/elaborate/materials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vector_relational.hpp>
+#include <map>
 #include <set>
+#include <sstream>
+#include <type_traits>
 
 #include "compiler/frontend/records/material_presets.h"
 #include "compiler/frontend/records/records.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/golden.h"
 
 namespace fathom::materials_test {
 
@@ -28,25 +34,78 @@ Material material_of(const std::string& material) {
   return scene.materials[0];
 }
 
+glm::dvec3 value_of(const MaterialNumbers& numbers, const MaterialParameter& row) {
+  return std::visit([&](auto member) { return glm::dvec3(numbers.*member); }, row.member);
+}
+
 void check_same_numbers(const MaterialNumbers& a, const MaterialNumbers& b) {
-  CHECK(a.base_weight == b.base_weight);
-  CHECK(a.color == b.color);
-  CHECK(a.diffuse_roughness == b.diffuse_roughness);
-  CHECK(a.metalness == b.metalness);
-  CHECK(a.specular_weight == b.specular_weight);
-  CHECK(a.specular_color == b.specular_color);
-  CHECK(a.roughness == b.roughness);
-  CHECK(a.ior == b.ior);
-  CHECK(a.transmission == b.transmission);
-  CHECK(a.transmission_color == b.transmission_color);
-  CHECK(a.transmission_depth == b.transmission_depth);
-  CHECK(a.coat_weight == b.coat_weight);
-  CHECK(a.coat_color == b.coat_color);
-  CHECK(a.coat_roughness == b.coat_roughness);
-  CHECK(a.coat_ior == b.coat_ior);
-  CHECK(a.emission * a.emission_luminance == b.emission * b.emission_luminance);
-  CHECK(a.absorption == b.absorption);
-  CHECK(a.opacity == b.opacity);
+  for (const MaterialParameter& row : kMaterialParameters) {
+    CAPTURE(row.name);
+    CHECK(value_of(a, row) == value_of(b, row));
+  }
+}
+
+// Returns a valid value of the parameter that is not its default.
+double another_value(const MaterialParameter& row) {
+  return row.domain == ParameterDomain::Share ? 0.5 + row.value / 4 : 2 + row.value;
+}
+
+TEST_CASE("materials: a row of the table has a member, a property and its short name", "[materials]") {
+  for (const MaterialParameter& row : kMaterialParameters) {
+    CAPTURE(row.name);
+    CHECK(value_of(MaterialNumbers(), row) == glm::dvec3(row.value));
+    CHECK(&parameter_of(row.member) == &row);
+    for (const std::string_view property : {row.property, row.alias}) {
+      if (property.empty()) continue;
+      const double value = another_value(row);
+      MaterialNumbers expected;
+      std::visit([&](auto member) { expected.*member = std::decay_t<decltype(expected.*member)>(value); },
+                 row.member);
+      if (row.property == "emission_color") expected.emission_luminance = 1;
+      check_same_numbers(material_of(fmt::format(R"({{"type": "principled", "{}": {}}})", property, value)),
+                         expected);
+    }
+  }
+}
+
+struct DocumentedProperty {
+  std::string alias, fallback;
+};
+
+// Returns the rows of the table of principled materials in docs/SCENES.md.
+std::map<std::string, DocumentedProperty> documented_properties() {
+  std::istringstream page(tests::read_file(FATHOM_SOURCE_DIR "/docs/SCENES.md"));
+  std::string line;
+  while (std::getline(page, line) && line != "| property | short | default | meaning |") continue;
+  std::getline(page, line);
+  std::map<std::string, DocumentedProperty> rows;
+  while (std::getline(page, line) && line.starts_with("| `")) {
+    std::erase_if(line, [](char c) { return c == ' ' || c == '`'; });
+    std::istringstream row(line.substr(1));
+    std::string name, alias, fallback;
+    std::getline(std::getline(std::getline(row, name, '|'), alias, '|'), fallback, '|');
+    CHECK(rows.try_emplace(name, DocumentedProperty{alias, fallback}).second);
+  }
+  return rows;
+}
+
+TEST_CASE("materials: docs/SCENES.md has the properties of principled materials and their defaults", "[materials]") {
+  std::map<std::string, DocumentedProperty> documented = documented_properties();
+  const RecordSpec& principled = material_records().back();
+  std::map<std::string_view, std::string_view> aliases;
+  for (const PropertySpec& row : principled.properties) {
+    if (!row.alias_of.empty()) aliases[row.alias_of] = row.name;
+  }
+  for (const PropertySpec& row : principled.properties) {
+    if (!row.alias_of.empty() || row.name == "type" || row.name == "space") continue;
+    CAPTURE(row.name);
+    const auto found = documented.extract(std::string(row.name));
+    REQUIRE(!found.empty());
+    const auto& [alias, fallback] = found.mapped();
+    CHECK(alias == aliases[row.name]);
+    if (!row.fallback.empty()) CHECK(fallback.substr(0, fallback.find(',')) == fmt::format("{}", row.fallback[0]));
+  }
+  CHECK(documented.empty());
 }
 
 TEST_CASE("materials: without properties a principled one has OpenPBR's defaults", "[materials]") {
