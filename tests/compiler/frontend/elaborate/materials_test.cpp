@@ -72,9 +72,9 @@ struct DocumentedProperty {
   std::string alias, fallback;
 };
 
-// Returns the rows of the table of principled materials in docs/SCENES.md.
+// Returns the rows of the table of principled materials in docs/reference/materials.md.
 std::map<std::string, DocumentedProperty> documented_properties() {
-  std::istringstream page(tests::read_file(FATHOM_SOURCE_DIR "/docs/SCENES.md"));
+  std::istringstream page(tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/materials.md"));
   std::string line;
   while (std::getline(page, line) && line != "| property | short | default | meaning |") continue;
   std::getline(page, line);
@@ -89,7 +89,7 @@ std::map<std::string, DocumentedProperty> documented_properties() {
   return rows;
 }
 
-TEST_CASE("materials: docs/SCENES.md has the properties of principled materials and their defaults", "[materials]") {
+TEST_CASE("materials: docs/reference/materials.md has the properties of principled materials and their defaults", "[materials]") {
   std::map<std::string, DocumentedProperty> documented = documented_properties();
   const RecordSpec& principled = material_records().back();
   std::map<std::string_view, std::string_view> aliases;
