@@ -96,7 +96,7 @@ void reference(BarTable& table, const runtime::Field& field, const std::vector<R
     rays += judged.rays;
     undecided += one.undecided;
   }
-  table.none("B6", fmt::format("H: wrong rays of --reference, or off by 1e-6 ({} undecided left out)", undecided),
+  table.none("B6", fmt::format("H: wrong rays of certified, or off by 1e-6 ({} undecided left out)", undecided),
              wrong, rays);
 }
 

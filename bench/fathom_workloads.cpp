@@ -138,7 +138,7 @@ Picture fathom_paths(const compiler::CompiledScene& scene, const Frame& frame) {
   options.height = frame.height;
   options.spp = frame.spp;
   options.layers = {.first_hit = false};
-  options.cut_after = kMostBounces;
+  options.max_depth = kMostBounces;
   const RenderResult result = render(scene, options);
   Picture picture{result.stats.march.rays, result.stats.primary_hits, {}};
   for (int y = 0; y < frame.height; ++y) {

@@ -83,7 +83,7 @@ void closed_rooms(const Furnaces& furnaces) {
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (int bounces = 0; bounces <= 5; ++bounces) {
       RenderOptions options;
-      options.bounces = bounces;
+      options.rr_depth = bounces;
       furnaces.row("B17",
                    fmt::format("P1: closed ball that glows, albedo {}, roulette from bounce {}", albedo, bounces),
                    tests::closed_room(albedo), options);
@@ -131,9 +131,9 @@ void lamps(const Furnaces& furnaces) {
       {"P5: under a rectangle aside", tests::under_rectangle(0.5, 0.2, 0.3, 0.6)},
   };
   for (const auto& [what, scene] : scenes) {
-    for (const auto& [way, words] : {std::pair{LightSampling::Both, "looking for it and hitting it"},
-                                     {LightSampling::Lights, "looking for it"},
-                                     {LightSampling::Hits, "hitting it"}}) {
+    for (const auto& [way, words] : {std::pair{LightSampling::Mis, "looking for it and hitting it"},
+                                     {LightSampling::Nee, "looking for it"},
+                                     {LightSampling::Bsdf, "hitting it"}}) {
       RenderOptions options;
       options.light_sampling = way;
       furnaces.row(std::string(what, 2), fmt::format("{}, {}", what, words), scene, options);
@@ -152,7 +152,7 @@ void furnace_bars(BarTable& table, const LightCounts& counts) {
     for (const double degrees : {20.0, 40.0}) {
       RenderOptions options;
       // Starts Russian roulette early: few paths get out, so 40 bounces before it would cost far more.
-      options.bounces = 2;
+      options.rr_depth = 2;
       furnaces.row("P6", fmt::format("P6: cavity of albedo {} with a hole of half angle {}", albedo, degrees),
                    tests::cavity(albedo, degrees), options);
     }

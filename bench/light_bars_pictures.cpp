@@ -20,7 +20,7 @@ constexpr int kCells = kWidth * kHeight / (kCell * kCell);
 // A box with white, red and green walls, a rough block and a glossy ball inside, and a square lamp a fifth as wide as
 // the box.
 const char* const kBox = R"("camera": {"position": [0, 1, 3.4], "target": [0, 1, 0], "fov": 50},
-    "render": {"bounces": 3},
+    "render": {"rr_depth": 3},
     "materials": {"white": {"type": "diffuse", "color": [0.75, 0.75, 0.75]},
       "red": {"type": "diffuse", "color": [0.6, 0.06, 0.05]}, "green": {"type": "diffuse", "color": [0.1, 0.5, 0.1]},
       "gloss": {"type": "principled", "color": [0.3, 0.4, 0.8], "roughness": 0.35, "coat": 0.5},
@@ -38,7 +38,7 @@ const char* const kBox = R"("camera": {"position": [0, 1, 3.4], "target": [0, 1,
 const char* const kOutside = R"("camera": {"position": [0, 1.6, 4.5], "target": [0, 0.6, 0], "fov": 45},
     "background": {"type": "sky", "elevation": 25, "azimuth": 60, "turbidity": 3, "sun_disc": false},
     "lights": {"sun": {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": [3, 2.6, 2], "angle": 12}},
-    "render": {"bounces": 3},
+    "render": {"rr_depth": 3},
     "materials": {"clay": {"type": "diffuse", "color": [0.7, 0.35, 0.2]},
       "gold": {"type": "principled", "preset": "gold", "roughness": 0.4},
       "varnish": {"type": "principled", "color": [0.1, 0.3, 0.1], "roughness": 0.6, "coat": 1, "coat_roughness": 0.3}},
@@ -136,7 +136,7 @@ void compare(BarTable& table, const Comparison& comparison, int pictures) {
   by_default.spp = comparison.spp_default;
   by_chance.spp = comparison.spp_hits;
   by_chance.sampler = compiler::SamplerKind::Independent;
-  by_chance.light_sampling = runtime::LightSampling::Hits;
+  by_chance.light_sampling = runtime::LightSampling::Bsdf;
   const std::vector<Cell> a = draw(scene, by_default, 1, pictures), b = draw(scene, by_chance, 1u << 20, pictures);
   std::vector<double> p, random;
   double difference = 0, mean = 0, variance = 0;

@@ -40,7 +40,7 @@ constexpr double kGoal = 1e-3;  // relMSE
 constexpr int kPilotSpp = 8;    // samples per pixel to estimate a scene's speed
 constexpr int kSpp = 32;        // samples per pixel of the default's longest image
 constexpr int kReference = 48;  // times the samples of the longest image
-constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits};
+constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf};
 constexpr ImageWay kDefault{};
 
 // Returns seconds per image and sample per pixel.

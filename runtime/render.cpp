@@ -168,7 +168,7 @@ RegionOptions region_options(const Settings& settings) {
   const double pixels = static_cast<double>(settings.width) * settings.height;
   const double paths = pixels * std::min(settings.spp, kMaxSamples);
   RegionOptions regions{.threads = settings.threads, .memory = settings.region_memory};
-  regions.evaluations = kEvaluationsPerRay * paths * (1 + std::min(settings.bounces, 3));
+  regions.evaluations = kEvaluationsPerRay * paths * (1 + std::min(settings.rr_depth, 3));
   return regions;
 }
 

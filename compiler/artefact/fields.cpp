@@ -272,7 +272,7 @@ void fields(Archive& a, Film& f) {
 
 void fields(Archive& a, RenderSettings& s) {
   field(a, "spp", s.spp, 1, kMaxSpp);
-  field(a, "bounces", s.bounces, 0, kMaxBounces);
+  field(a, "rr_depth", s.rr_depth, 0, kMaxDepth);
   field(a, "tile", s.tile, 1, kMaxTile);
   field(a, "seed", s.seed, 0, ~std::uint64_t{0});
   field(a, "sampler", s.sampler, ChoiceNames(kSamplerNames));

@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 
 inline constexpr int kMaxSide = 65535;  // pixels; the maximum of the image formats
-inline constexpr int kMaxSpp = 1 << 20, kMaxBounces = 4096, kMaxTile = 1024;
+inline constexpr int kMaxSpp = 1 << 20, kMaxDepth = 4096, kMaxTile = 1024;
 inline constexpr double kMaxExposure = 100;                            // stops, of either sign
 inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
 inline constexpr double kMaxNoiseThreshold = 1e6;
@@ -32,11 +32,11 @@ inline constexpr std::array<std::string_view, 5> kToneCurves = {"none", "filmic"
 enum class SamplerKind : std::uint8_t { Blue, Sobol, Independent };
 inline constexpr std::array<std::string_view, 3> kSamplerNames = {"blue", "sobol", "independent"};  // [SamplerKind]
 
-// How paths find light: by next-event estimation (Lights), by hitting lights (Hits), or by both with MIS weights
-// (Both). Lights and Hits are for comparisons. All three find lights without a size by next-event estimation, because
-// no path can hit them.
-enum class LightSampling { Both, Lights, Hits };
-inline constexpr std::array<std::string_view, 3> kLightSamplingNames = {"both", "lights", "hits"};  // [LightSampling]
+// Light sampling: multiple importance sampling (Mis) of the other two, next-event estimation alone (Nee), or BSDF
+// sampling alone (Bsdf). Nee and Bsdf are for comparisons. All three find lights without a size by next-event
+// estimation, because no path can hit them.
+enum class LightSampling { Mis, Nee, Bsdf };
+inline constexpr std::array<std::string_view, 3> kLightSamplingNames = {"mis", "nee", "bsdf"};  // [LightSampling]
 
 // Names of an enum's values, in order.
 constexpr std::span<const std::string_view> words_of(FilterKind) { return kFilterNames; }

@@ -12,7 +12,7 @@ namespace fathom::runtime {
 
 inline constexpr const char* kDefaultMethod = "tiered";
 inline constexpr const char* kDefaultSampler = "blue";
-inline constexpr const char* kDefaultLights = "both";
+inline constexpr const char* kDefaultLights = "mis";
 
 // One method that intersects the rays of one class with one scene.
 struct RayMeasurement {
@@ -44,7 +44,7 @@ struct ImageMeasurement {
   std::string precision;
   double eps = 0;  // scene units; 0: the method has none
   std::string sampler = kDefaultSampler;
-  // Light sampling: "lights" is next-event estimation, "hits" is BSDF sampling, "both" is MIS of the two
+  // Light sampling: "nee", "bsdf" or "mis"
   std::string lights = kDefaultLights;
   int spp = 0;
   int seeds = 0;                                             // number of images

@@ -152,7 +152,7 @@ class Charts {
     images_.insert(images_.end(), rows.begin(), rows.end());
     add_chart(section, "pictures", runtime::chart_b(rows, section.name, provenance_), runtime::kReadChartB);
     const bool has_lights = std::any_of(ways.begin(), ways.end(), [](const runtime::ImageWay& way) {
-      return way.light_sampling != runtime::LightSampling::Both;
+      return way.light_sampling != runtime::LightSampling::Mis;
     });
     if (!has_lights) return;
     add_chart(section, "light", runtime::chart_light(rows, section.name, provenance_), runtime::kReadChartLight);

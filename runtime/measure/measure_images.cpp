@@ -109,9 +109,9 @@ std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene) {
   if (scene.lamps.empty() && scene.lights.empty() && !surrounded) return ways;
   for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
     ways.push_back({.sampler = sampler});
-  ways.push_back({.light_sampling = LightSampling::Lights});
+  ways.push_back({.light_sampling = LightSampling::Nee});
   for (const SamplerKind sampler : {SamplerKind::Blue, SamplerKind::Independent}) {
-    ways.push_back({.sampler = sampler, .light_sampling = LightSampling::Hits});
+    ways.push_back({.sampler = sampler, .light_sampling = LightSampling::Bsdf});
   }
   return ways;
 }

@@ -16,7 +16,7 @@ namespace fathom::runtime {
 struct ImageWay {
   Marching marching = {};
   compiler::SamplerKind sampler = compiler::SamplerKind::Blue;
-  LightSampling light_sampling = LightSampling::Both;
+  LightSampling light_sampling = LightSampling::Mis;
 };
 
 struct ImagePlan {

@@ -28,8 +28,8 @@ double shadow_length(const LightSample& light, const SurfacePoint& point) {
 bool may_sample_light(const RenderContext& context, const PathVertex& vertex) {
   const Settings& settings = context.settings;
   if (vertex.bsdf->is_delta()) return false;
-  if (settings.cut_after && vertex.path->bounces >= *settings.cut_after) return false;
-  return settings.light_sampling != LightSampling::Hits || context.lights.has_deltas();
+  if (settings.max_depth && vertex.path->bounces >= *settings.max_depth) return false;
+  return settings.light_sampling != LightSampling::Bsdf || context.lights.has_deltas();
 }
 
 // Returns the radiance of the sampled light. The radiance of an area light may vary over its surface.
@@ -49,10 +49,10 @@ std::optional<ShadowRay> shadow_ray_of(const RenderContext& context, PathVertex&
   const SurfaceInteraction& surface = vertex.surface;
   const LightSample& light = vertex.light_sample;
   const LightSampling sampling = context.settings.light_sampling;
-  if (!(light.pdf > 0) || (!light.delta && sampling == LightSampling::Hits)) return std::nullopt;
+  if (!(light.pdf > 0) || (!light.delta && sampling == LightSampling::Bsdf)) return std::nullopt;
   const glm::vec3 radiance = light_radiance(context, vertex, scratch);
   const BsdfValue value = vertex.bsdf->evaluate(light.wi);
-  const bool both = !light.delta && sampling == LightSampling::Both;
+  const bool both = !light.delta && sampling == LightSampling::Mis;
   const float weight = both ? power_heuristic(light.pdf, value.pdf) : 1;
   const bool through = glm::dot(light.wi, surface.point->normal) < 0;
   const MediumState& medium = through ? surface.medium_beyond : surface.medium;

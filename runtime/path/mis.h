@@ -19,11 +19,11 @@ inline float power_heuristic(float this_pdf, float other_pdf) {
 inline float bsdf_mis_weight(LightSampling sampling, float bsdf_pdf, float light_pdf) {
   if (bsdf_pdf == 0 || light_pdf == 0) return 1;
   switch (sampling) {
-    case LightSampling::Both:
+    case LightSampling::Mis:
       return power_heuristic(bsdf_pdf, light_pdf);
-    case LightSampling::Hits:
+    case LightSampling::Bsdf:
       return 1;
-    case LightSampling::Lights:
+    case LightSampling::Nee:
       return 0;
   }
   return 1;

@@ -22,16 +22,16 @@ float relative_index(const SurfaceInteraction& surface) {
 }
 
 bool plays_roulette(const Settings& settings, int bounces) {
-  return !settings.cut_after && bounces >= settings.bounces;
+  return !settings.max_depth && bounces >= settings.rr_depth;
 }
 
 // Past the bounces without roulette a path survives with probability q and then counts 1/q times: the mean stays.
 // Refraction changes the throughput by eta^2, which does not end a path: the change is undone when the path leaves
 // the medium.
 bool survives(const Settings& settings, PathState& path, float roulette) {
-  if (settings.cut_after) return path.bounces <= *settings.cut_after;
+  if (settings.max_depth) return path.bounces <= *settings.max_depth;
   if (!plays_roulette(settings, path.bounces)) return true;
-  const float max = path.bounces - settings.bounces < kFreeBounces ? 1 : kMaxSurvival;
+  const float max = path.bounces - settings.rr_depth < kFreeBounces ? 1 : kMaxSurvival;
   const float q = std::min(max, max_component(path.throughput) * path.eta_scale);
   if (roulette >= q) return false;
   path.throughput /= q;

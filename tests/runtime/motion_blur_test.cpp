@@ -20,7 +20,7 @@ const char* const kSpinning = R"({
   "params": {"time": 0},
   "camera": {"position": [0, 1, 4], "target": [0, 0, 0]},
   "film": {"width": 24, "height": 16},
-  "render": {"bounces": 2, "sampler": "independent"},
+  "render": {"rr_depth": 2, "sampler": "independent"},
   "background": {"bottom": [0.3, 0.3, 0.3], "top": [1, 1, 1]},
   "materials": {"checked": {"type": "diffuse", "color": {"pattern": "checker", "a": 0.1, "b": 0.9, "scale": 0.3}},
                 "grey": {"type": "diffuse", "color": 0.5}},

@@ -55,7 +55,7 @@ TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy]
   const auto scene = scene_of(furnace(0.8));
   for (const int bounces : {0, 1, 3, 30}) {
     RenderOptions options = options_of(48, 48, 64);
-    options.bounces = bounces;
+    options.rr_depth = bounces;
     INFO("bounces " << bounces);
     const RenderResult result = render(scene, options);
     const Estimate found = estimate(result.film);
@@ -65,7 +65,7 @@ TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy]
 
 TEST_CASE("render: paths that are cut off bring what they met until then", "[render]") {
   RenderOptions options = options_of(16, 16, 4);
-  options.cut_after = 2;
+  options.max_depth = 2;
   const Estimate found = estimate(render(scene_of(furnace(0.8)), options).film);
   CHECK(found.mean == Approx(1 + 0.8 + 0.64).epsilon(1e-6));
   CHECK(found.sigma < 1e-6);
@@ -95,7 +95,7 @@ TEST_CASE("render: glass and mirrors vanish in an even light", "[render]") {
         "materials": {"m": )") + material +
                                 R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}])");
     RenderOptions options = options_of(32, 32, 64);
-    options.bounces = 60;
+    options.rr_depth = 60;
     const RenderResult result = render(scene, options);
     const Estimate found = estimate(result.film);
     INFO(material << " mean " << found.mean << " +- " << found.sigma);
@@ -181,19 +181,19 @@ TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[
   CHECK(both.primary_rays == 20 * 12 * 4);
   CHECK(both.primary_rays + both.shadow_rays + both.bounce_rays == both.march.rays);
   CHECK(both.shadow_rays > 0);
-  options.light_sampling = LightSampling::Hits;
+  options.light_sampling = LightSampling::Bsdf;
   const Stats hits = render(scene, options).stats;
   CHECK(hits.shadow_rays == 0);
   CHECK(hits.bounce_rays == both.bounce_rays);  // the same paths in both
-  options.cut_after = 0;
+  options.max_depth = 0;
   CHECK(render(scene, options).stats.bounce_rays == 0);
 }
 
 TEST_CASE("render: clamping takes light from long paths only, and never adds any", "[render]") {
   const auto scene = scene_of(kVaried);
-  const auto film_of = [&](std::optional<int> cut_after, std::optional<double> clamp) {
+  const auto film_of = [&](std::optional<int> max_depth, std::optional<double> clamp) {
     RenderOptions options = options_of(20, 12, 16);
-    options.cut_after = cut_after;
+    options.max_depth = max_depth;
     options.clamp = clamp;
     return render(scene, options).film;
   };
@@ -371,7 +371,7 @@ TEST_CASE("render: progress ends at one, and a cancelled render returns", "[rend
 }
 
 TEST_CASE("render: options overrule the scene, which overrules the defaults", "[render]") {
-  const auto scene = scene_of(R"("film": {"width": 30, "height": 20}, "render": {"spp": 7, "bounces": 3},
+  const auto scene = scene_of(R"("film": {"width": 30, "height": 20}, "render": {"spp": 7, "rr_depth": 3},
       "objects": [{"type": "sphere", "radius": 1}])");
   RenderOptions options;
   options.spp = 2;
@@ -379,7 +379,7 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
   const Settings settings = resolve(scene, options);
   CHECK(settings.width == 30);
   CHECK(settings.spp == 2);
-  CHECK(settings.bounces == 3);
+  CHECK(settings.rr_depth == 3);
   CHECK(settings.tile == 16);
   CHECK(settings.threads == 3);
 }

@@ -13,7 +13,7 @@ inline void draw_small(const compiler::CompiledScene& scene) {
   constexpr std::uint32_t kMostCost = 2000;  // multiply-adds per point
   if (scene.background.type == compiler::Background::Type::Image || scene.distance.cost() > kMostCost) return;
   runtime::RenderOptions options;
-  options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.bounces = 1;
+  options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.rr_depth = 1;
   runtime::render(scene, options);
   runtime::Field field = runtime::make_field(scene);
   runtime::RegionOptions regions;

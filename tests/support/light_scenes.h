@@ -36,7 +36,7 @@ inline LightScene closed_room(double albedo, const std::string& body = R"("type"
 inline LightScene in_even_light(const std::string& material,
                                 const std::string& body = R"("type": "sphere", "radius": 1)") {
   return {material,
-          R"("camera": {"position": [0, 0, 3], "fov": 30}, "background": [1, 1, 1], "render": {"bounces": 60},
+          R"("camera": {"position": [0, 0, 3], "fov": 30}, "background": [1, 1, 1], "render": {"rr_depth": 60},
              "materials": {"m": )" +
               material + R"(}, "objects": [{)" + body + R"(, "material": "m"}])",
           1};
@@ -238,7 +238,7 @@ inline LightScene cavity(double albedo, double degrees) {
   const double f = (1 - std::cos(degrees * std::numbers::pi / 180)) / 2;
   return {"cavity",
           R"("camera": {"type": "orthographic", "position": [0, 0, 3], "target": [0, 0, 0], "width": 0.02},
-             "background": [1, 1, 1], "render": {"bounces": 40},
+             "background": [1, 1, 1], "render": {"rr_depth": 40},
              "materials": {"wall": {"type": "diffuse", "color": )" +
               grey(albedo) + R"(}}, "objects": [{"type": "subtraction", "material": "wall", "of": [
                 {"type": "onion", "thickness": 0.0005, "of": {"type": "sphere", "radius": 1}},
@@ -253,7 +253,7 @@ inline LightScene slab() {
   return {
       "slab of glass",
       R"("camera": {"type": "orthographic", "position": [0, 3, 0], "target": [0, 0, 0], "up": [0, 0, 1], "width": 0.5},
-             "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"bounces": 60},
+             "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"rr_depth": 60},
              "materials": {"glass": {"type": "transparent"}},
              "objects": [{"type": "box", "half_size": [1, 0.25, 1], "material": "glass"}])",
       2 * 0.96 / 1.04};
@@ -266,7 +266,7 @@ inline LightScene moon(double degrees) {
   const double irradiance = 3, disc = std::numbers::pi / 4;  // `disc`: fraction of the image that the ball covers
   const double phase = 2 * (std::sin(g) + (std::numbers::pi - g) * std::cos(g)) / (3 * std::numbers::pi);
   return {"moon",
-          R"("camera": {"type": "orthographic", "position": [0, 0, 5], "width": 2}, "render": {"bounces": 1},
+          R"("camera": {"type": "orthographic", "position": [0, 0, 5], "width": 2}, "render": {"rr_depth": 1},
              "lights": {"sun": {"type": "directional", "direction": [)" +
               std::to_string(-std::sin(g)) + ", 0, " + std::to_string(-std::cos(g)) + R"(], "irradiance": [3, 3, 3]}},
              "materials": {"white": {"type": "diffuse", "color": [1, 1, 1]}},
@@ -277,7 +277,7 @@ inline LightScene moon(double degrees) {
 // Room with all kinds of lights, glass, a mirror and a rough surface, in which all light sampling strategies must
 // agree.
 inline constexpr const char* kLampRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
-    "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"bounces": 4},
+    "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"rr_depth": 4},
     "materials": {"white": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},
       "mirror": {"type": "specular"}, "lamp": {"type": "emissive", "emission": [6, 5, 4]},
       "gloss": {"type": "principled", "color": [0.6, 0.2, 0.1], "roughness": 0.3},

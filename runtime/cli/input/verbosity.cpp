@@ -33,8 +33,8 @@ std::string triple(glm::dvec3 v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.
 std::string describe_settings(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
   std::string text = fmt::format("instruction set {}, {}\n", vm::isa_name(),
                                  count_of(static_cast<std::size_t>(settings.threads), "thread"));
-  text += fmt::format("{}x{} pixels, {} samples a pixel, {} bounces, tiles of {}, seed {}\n", settings.width,
-                      settings.height, settings.spp, settings.bounces, settings.tile, settings.seed);
+  text += fmt::format("{}x{} pixels, {} samples per pixel, Russian roulette from bounce {}, tiles of {}, seed {}\n",
+                      settings.width, settings.height, settings.spp, settings.rr_depth, settings.tile, settings.seed);
   text += fmt::format(
       "sampler {}, filter {}{}\n", compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)],
       compiler::kFilterNames[static_cast<std::size_t>(settings.filter)], settings.noise_threshold ? ", adaptive" : "");

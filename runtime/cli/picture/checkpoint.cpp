@@ -99,7 +99,7 @@ std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& head
   const double samples = static_cast<double>(there.film.samples()) / static_cast<double>(there.film.area().pixels());
   return fail(
       streams, kUsage,
-      fmt::format("`{}` holds {:.2f} samples a pixel of this very render, which would be lost", path_, samples),
+      fmt::format("`{}` holds {:.2f} samples per pixel of this very render, which would be lost", path_, samples),
       {"add --resume to go on from it", remedy()});
 }
 

@@ -78,7 +78,7 @@ void add_film_options(Arguments& arguments, RenderRequest& request) {
 void add_renderer_options(Arguments& arguments, RenderRequest& request) {
   arguments.group("Renderer (the scene's values come before the defaults shown)");
   const auto add_after = [&](std::string_view setting) {
-    if (setting == "bounces") {
+    if (setting == "rr_depth") {
       arguments.option("-f,--fov", "ANGLE", "Horizontal field of view, as 45deg, 0.785rad or 0.785 (45deg)",
                        into(read_angle, request.fov));
     } else if (setting == "noise_threshold") {
@@ -175,8 +175,6 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
                    "Method: tiered (default), sphere, relaxed, automatic or certified; see "
                    "docs/explanation/accuracy.md",
                    one_of(method_names(), request.method));
-  arguments.flag("--reference", "Search every ray in double precision; the same as --march certified",
-                 request.reference);
   arguments.option("--epsilon", "DISTANCE",
                    "Distance that counts as a hit, in scene units (1e-4); for sphere, relaxed and automatic",
                    into(read_positive, request.epsilon));

@@ -18,12 +18,6 @@ constexpr int kPreviewSpp = 4;
 std::variant<runtime::Marching, ExitCode> marching_of(const RenderRequest& request, const Streams& streams) {
   runtime::Marching marching;
   if (request.method >= 0) marching.method = runtime::kMethods[request.method].method;
-  if (request.reference) {
-    if (request.method >= 0 && marching.method != runtime::Method::Certified) {
-      return fail(streams, kUsage, "--reference is --march certified; it does not go with another method");
-    }
-    marching.method = runtime::Method::Certified;
-  }
   const runtime::MethodInfo& method = runtime::info(marching.method);
   if ((request.epsilon || request.steps) && !method.uses_epsilon) {
     return fail(streams, kUsage, fmt::format("--epsilon and --max-steps: the method `{}` has neither", method.name),

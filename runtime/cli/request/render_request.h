@@ -39,7 +39,6 @@ struct RenderRequest {
   bool no_regions = false;
   std::optional<int> region_memory;  // MB
   int precision = -1;                // a runtime::Precision; -1: not given
-  bool reference = false;
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
   bool denoise = false;  // after settle(): also for --preview without --no-denoise

@@ -169,8 +169,7 @@ TEST_CASE("chart B: curves over samples with their slopes, floors and both panel
 std::vector<ImageMeasurement> light_samples() {
   std::vector<ImageMeasurement> rows;
   for (const auto& [sampler, lights, slope] :
-       {std::tuple("blue", "both", -1.25), std::tuple("independent", "both", -1.0),
-        std::tuple("blue", "hits", -1.0)}) {
+       {std::tuple("blue", "mis", -1.25), std::tuple("independent", "mis", -1.0), std::tuple("blue", "bsdf", -1.0)}) {
     for (int spp = 4; spp <= 64; spp *= 4) {
       ImageMeasurement row;
       row.scene = "composite", row.method = "tiered", row.precision = "f32", row.sampler = sampler,
@@ -192,9 +191,9 @@ TEST_CASE("chart light: curves by ways to find light and by samplers, with the t
   const std::string svg = chart_light(light_samples(), "composite", kProvenance);
   CHECK(what_is_wrong(svg) == "");
   const auto words = texts(svg);
-  CHECK(find_text(words, "both, blue, slope −1.25, 1e-3 after 20 s") != nullptr);
-  CHECK(find_text(words, "both, independent, slope −1.00, 1e-3 after 20 s") != nullptr);
-  CHECK(find_text(words, "hits, blue, slope −1.00, 1e-3 after 20 s") != nullptr);
+  CHECK(find_text(words, "mis, blue, slope −1.25, 1e-3 after 20 s") != nullptr);
+  CHECK(find_text(words, "mis, independent, slope −1.00, 1e-3 after 20 s") != nullptr);
+  CHECK(find_text(words, "bsdf, blue, slope −1.00, 1e-3 after 20 s") != nullptr);
   CHECK(circles(svg, "marker").size() == 2 * 9 + 3);
   CHECK(count_of(svg, ">64 spp<") == 2);  // the default's, in both panels
   // Each chart shows only the rows that differ from the default in the chart's own parameter.

@@ -56,14 +56,14 @@ TEST_CASE("chart csv: the columns of rays and their values", "[chart]") {
 }
 
 TEST_CASE("chart csv: the columns of pictures and their values", "[chart]") {
-  const ImageMeasurement row{"s", "tiered", "f32", 0, "sobol", "hits", 16, 20, 1, 2, 3, 4, 5, 6, 7, 8e-9};
+  const ImageMeasurement row{"s", "tiered", "f32", 0, "sobol", "bsdf", 16, 20, 1, 2, 3, 4, 5, 6, 7, 8e-9};
   const std::vector<std::string> lines = lines_of(images_csv(std::vector{row}, kProvenance));
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] ==
         "scene,method,precision,eps,sampler,lights,spp,seeds,seconds_med,seconds_min,seconds_max,relmse_med,relmse_"
         "p05,relmse_p95,"
         "relmse_trimmed_med,floor,commit,cpu,compiler");
-  CHECK(lines[1] == "s,tiered,f32,0,sobol,hits,16,20,1,2,3,4,5,6,7,8e-09,0123abc,\"Xeon, 2 cores\",g++ 12.2");
+  CHECK(lines[1] == "s,tiered,f32,0,sobol,bsdf,16,20,1,2,3,4,5,6,7,8e-09,0123abc,\"Xeon, 2 cores\",g++ 12.2");
 }
 
 TEST_CASE("chart csv: a line a row", "[chart]") {

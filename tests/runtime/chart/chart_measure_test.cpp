@@ -29,7 +29,7 @@ const char* const kGroundScene = R"("camera": {"position": [0, 0.5, 4], "target"
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1}, {"type": "sphere", "radius": 1}])";
 // A floor under a small lamp.
 const char* const kLampScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
-    "film": {"width": 32, "height": 16}, "render": {"bounces": 2},
+    "film": {"width": 32, "height": 16}, "render": {"rr_depth": 2},
     "materials": {"lamp": {"type": "emissive", "emission": [50, 50, 50]}},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
                 {"type": "sphere", "radius": 0.2, "translate": [0, 1, 0], "material": "lamp"}])";
@@ -251,11 +251,11 @@ TEST_CASE("chart: samplers and ways to find light are told apart, and looking fo
   const auto scene = scene_of(kLampScene);
   const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 3, .reference_spp = 1024};
   const std::vector<ImageWay> ways = {
-      {}, {.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Hits}};
+      {}, {.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf}};
   const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "lamp");
   REQUIRE(rows.size() == 4);
-  CHECK((rows[0].sampler == "blue" && rows[0].lights == "both"));
-  CHECK((rows[2].sampler == "independent" && rows[2].lights == "hits"));
+  CHECK((rows[0].sampler == "blue" && rows[0].lights == "mis"));
+  CHECK((rows[2].sampler == "independent" && rows[2].lights == "bsdf"));
   CHECK(rows[0].relmse_p95 < 0.1 * rows[2].relmse_p05);
 }
 

@@ -82,7 +82,7 @@ inline std::vector<runtime::ImageMeasurement> sample_images() {
   for (const Curve& c : curves) {
     for (int spp = 4; spp <= 1024; spp *= 4) {
       const double seconds = c.seconds_per_sample * spp, relmse = c.noise / spp + c.floor;
-      rows.push_back({"composite", c.method, c.precision, c.eps, "blue", "both", spp, 16, seconds, 0.96 * seconds,
+      rows.push_back({"composite", c.method, c.precision, c.eps, "blue", "mis", spp, 16, seconds, 0.96 * seconds,
                       1.07 * seconds, relmse, 0.8 * relmse, 1.4 * relmse, 0.5 * relmse, c.floor});
     }
   }

@@ -220,9 +220,9 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
   CHECK(folder.run("render shared.json --crop 0,0,4,4 --uniform -o a.png").code == 0);
   CHECK_THAT(folder.run("render shared.json -vvv -o a.png").err, Contains(", adaptive"));
 
-  CHECK_THAT(numbers("lit.json --light-sampling hits"), Contains("\"shadow_rays\": 0,"));
-  CHECK_THAT(numbers("lit.json --light-sampling lights"), !Contains("\"shadow_rays\": 0,"));
-  CHECK(picture("lit.json --light-sampling both") == plain);
+  CHECK_THAT(numbers("lit.json --light-sampling bsdf"), Contains("\"shadow_rays\": 0,"));
+  CHECK_THAT(numbers("lit.json --light-sampling nee"), !Contains("\"shadow_rays\": 0,"));
+  CHECK(picture("lit.json --light-sampling mis") == plain);
 
   CHECK(picture("lit.json --clamp 1e6") == plain);
   CHECK(picture("lit.json --clamp 0.01") != plain);

@@ -177,14 +177,14 @@ TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance the
   const auto scene = floor_and_sky();
   const auto options_of = [](LightSampling sampling) {
     RenderOptions options = adaptive_options(64, 48, 16);
-    options.cut_after = 1;
+    options.max_depth = 1;
     options.light_sampling = sampling;
     return options;
   };
-  RenderOptions options = uniform(options_of(LightSampling::Lights));
+  RenderOptions options = uniform(options_of(LightSampling::Nee));
   options.spp = test::few(512);
   const Film truth = render(scene, options).film;
-  options = options_of(LightSampling::Hits);
+  options = options_of(LightSampling::Bsdf);
   const Tiles tiles({0, 0, 64, 48}, 8);
   std::vector<Sum> cells(48);
   Sum pixel;
@@ -225,13 +225,13 @@ TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][
   constexpr double kThreshold = 0.25;
   constexpr int kMost = 256;
   RenderOptions options = uniform(adaptive_options(8, 8, test::few(40000)));
-  options.cut_after = 1;
-  options.light_sampling = LightSampling::Lights;
+  options.max_depth = 1;
+  options.light_sampling = LightSampling::Nee;
   const PixelRect area{0, 0, 8, 8};
   const double expected = mean_of(render(scene, options).film, area).y;
   Sum ours, naive, samples;
   for (int seed = 0; seed < test::few(2000); ++seed) {
-    options.light_sampling = LightSampling::Hits;
+    options.light_sampling = LightSampling::Bsdf;
     options.seed = static_cast<std::uint64_t>(seed) + 1;
     options.threads = 1;
     options.layers.variance = true;
@@ -290,7 +290,7 @@ TEST_CASE("adaptive: threads and tiles leave no trace", "[render][threads]") {
     for (const double threshold : {0.0, 0.08}) {
       RenderOptions options = adaptive_options(50, 34, 96, threshold);
       options.sampler = sampler;
-      options.light_sampling = LightSampling::Hits;
+      options.light_sampling = LightSampling::Bsdf;
       options.layers = kAllLayers;
       options.layers.halves = true;
       options.threads = 1;
@@ -336,7 +336,7 @@ TEST_CASE("adaptive: an interrupted render goes on to the same bits", "[render][
   const auto scene = floor_and_sky();
   for (const double threshold : {0.0, 0.08}) {
     RenderOptions options = adaptive_options(50, 34, 96, threshold);
-    options.light_sampling = LightSampling::Hits;
+    options.light_sampling = LightSampling::Bsdf;
     options.layers = kAllLayers;
     options.layers.halves = true;
     const RenderResult whole = render(scene, options);

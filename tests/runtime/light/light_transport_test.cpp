@@ -25,7 +25,7 @@ RenderOptions square(int side, int spp) {
   return options;
 }
 
-constexpr std::array kEveryWay = {LightSampling::Both, LightSampling::Lights, LightSampling::Hits};
+constexpr std::array kEveryWay = {LightSampling::Mis, LightSampling::Nee, LightSampling::Bsdf};
 
 // Checks the mean within 4 standard errors, which are at most `error` of the value. With as many checks as this file
 // has, one in a thousand correct renderers would fail.
@@ -42,7 +42,7 @@ TEST_CASE("light: closed rooms, however paths end", "[render][light][released]")
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (const int bounces : {0, 2, 5}) {
       RenderOptions options = square(24, test::few(64));
-      options.bounces = bounces;
+      options.rr_depth = bounces;
       expect(tests::closed_room(albedo), options, 2e-2);
     }
   }
@@ -70,9 +70,9 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
   for (const LightScene& scene : scenes) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
-      RenderOptions options = square(32, test::few(way == LightSampling::Hits ? 256 : 64));
+      RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
       options.light_sampling = way;
-      expect(scene, options, way == LightSampling::Hits ? 2e-2 : 5e-3);
+      expect(scene, options, way == LightSampling::Bsdf ? 2e-2 : 5e-3);
     }
   }
 }
@@ -83,21 +83,21 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
   for (const tests::Veil& veil : {tests::kGauze, tests::kPane}) {
     INFO(veil.material);
     RenderOptions options = square(16, test::few(64));
-    options.cut_after = 1;  // no second bounce: the pane also reflects the floor's own light back to the floor
+    options.max_depth = 1;  // no second bounce: the pane also reflects the floor's own light back to the floor
     expect(tests::veiled_point(veil), options, 1e-3);
   }
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
-    RenderOptions options = square(32, test::few(way == LightSampling::Hits ? 256 : 64));
+    RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
     options.light_sampling = way;
-    expect(tests::veiled_ball(tests::kGauze), options, way == LightSampling::Hits ? 3e-2 : 5e-3);
+    expect(tests::veiled_ball(tests::kGauze), options, way == LightSampling::Bsdf ? 3e-2 : 5e-3);
   }
 }
 
 // Regression: after each crossing, a shadow ray ended nearer to the area light than it should, and two walls hid the
 // light.
 TEST_CASE("light: many veils", "[render][light]") {
-  for (const LightSampling way : {LightSampling::Both, LightSampling::Lights}) {
+  for (const LightSampling way : {LightSampling::Mis, LightSampling::Nee}) {
     RenderOptions options = square(32, test::few(64));
     options.light_sampling = way;
     expect(tests::many_veils(), options, 2e-2);
@@ -108,7 +108,7 @@ TEST_CASE("light: many veils", "[render][light]") {
 // start.
 TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
   RenderOptions options = square(16, test::few(64));
-  options.cut_after = 1;
+  options.max_depth = 1;
   expect(tests::veiled_drink(), options, 1e-3);
 }
 
@@ -142,9 +142,9 @@ TEST_CASE("light: of a surface with holes only what is there emits", "[render][l
 TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
-    RenderOptions options = square(32, test::few(way == LightSampling::Hits ? 256 : 64));
+    RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
     options.light_sampling = way;
-    expect(tests::under_coated_ball(), options, way == LightSampling::Hits ? 2e-2 : 5e-3);
+    expect(tests::under_coated_ball(), options, way == LightSampling::Bsdf ? 2e-2 : 5e-3);
   }
 }
 
@@ -172,13 +172,13 @@ TEST_CASE("light: random white materials return what they get", "[render][light]
 }
 
 // Straight transmission is not scattering: a path of any bounce limit sees the light behind a hole.
-TEST_CASE("light: holes are no bounces", "[render][light]") {
+TEST_CASE("light: pass-through does not count as a bounce", "[render][light]") {
   LightScene scene =
       tests::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
                            R"("type": "box", "half_size": [3, 3, 0.1])");
   scene.radiance = tests::kGauze.passes;
   RenderOptions options = square(16, test::few(256));
-  options.cut_after = 0;
+  options.max_depth = 0;
   expect(scene, options, 1e-1);
 }
 
@@ -241,9 +241,9 @@ Cells cells_of(const compiler::CompiledScene& scene, LightSampling way, int spp,
 
 TEST_CASE("light: looking for lights, hitting them and both give one picture", "[render][light][heavy]") {
   const auto scene = scene_of(tests::kLampRoom);
-  const Cells both = cells_of(scene, LightSampling::Both, 32, 0);
-  for (const LightSampling way : {LightSampling::Lights, LightSampling::Hits}) {
-    const Cells other = cells_of(scene, way, way == LightSampling::Hits ? 128 : 32, 1000);
+  const Cells both = cells_of(scene, LightSampling::Mis, 32, 0);
+  for (const LightSampling way : {LightSampling::Nee, LightSampling::Bsdf}) {
+    const Cells other = cells_of(scene, way, way == LightSampling::Bsdf ? 128 : 32, 1000);
     double worst = 0, all = 0;
     for (std::size_t i = 0; i < both.mean.size(); ++i) {
       const double t = (other.mean[i] - both.mean[i]) / std::sqrt(both.variance[i] + other.variance[i]);

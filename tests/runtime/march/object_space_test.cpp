@@ -230,7 +230,7 @@ TEST_CASE("object space: hits, blends and lamps show the patterns of the moved b
 TEST_CASE("object space: light that is sampled and light that is hit are the same",
           "[object_space][render][released]") {
   RenderOptions options;
-  options.width = 24, options.height = 16, options.spp = 4096, options.threads = 2, options.bounces = 2;
+  options.width = 24, options.height = 16, options.spp = 4096, options.threads = 2, options.rr_depth = 2;
   const CompiledScene own = room(kOwn);
   const auto mean = [&](LightSampling way) {
     options.light_sampling = way;
@@ -241,7 +241,7 @@ TEST_CASE("object space: light that is sampled and light that is hit are the sam
     }
     return sum;
   };
-  const dvec3 lights = mean(LightSampling::Lights), hits = mean(LightSampling::Hits);
+  const dvec3 lights = mean(LightSampling::Nee), hits = mean(LightSampling::Bsdf);
   for (int i = 0; i < 3; ++i) CHECK(lights[i] == Approx(hits[i]).epsilon(0.02));
 }
 

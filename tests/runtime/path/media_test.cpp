@@ -15,7 +15,7 @@ glm::dvec3 seen_through(const std::string& materials, const std::string& objects
   options.width = options.height = 16;
   options.spp = 256;
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 3, 0], "target": [0, 0, 0],
-      "up": [0, 0, 1], "width": 0.1}, "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"bounces": 40},
+      "up": [0, 0, 1], "width": 0.1}, "background": {"bottom": [2, 2, 2], "top": [0, 0, 0]}, "render": {"rr_depth": 40},
       "materials": {)" + materials +
                               R"(}, "objects": [)" + objects + "]");
   const RenderResult result = render(scene, options);

@@ -62,17 +62,17 @@ TEST_CASE("stages: the MIS weights of both ways to find a light add up to 1", "[
   for (const float bsdf_pdf : {1e-3f, 0.7f, 1.0f, 250.0f}) {
     for (const float light_pdf : {1e-3f, 0.4f, 1.0f, 1e4f}) {
       CAPTURE(bsdf_pdf, light_pdf);
-      const float by_bsdf = bsdf_mis_weight(LightSampling::Both, bsdf_pdf, light_pdf);
+      const float by_bsdf = bsdf_mis_weight(LightSampling::Mis, bsdf_pdf, light_pdf);
       CHECK(by_bsdf + power_heuristic(light_pdf, bsdf_pdf) == Approx(1).epsilon(1e-6));
     }
   }
   // A density of 0: the other way cannot find the light.
-  for (const LightSampling sampling : {LightSampling::Both, LightSampling::Lights, LightSampling::Hits}) {
+  for (const LightSampling sampling : {LightSampling::Mis, LightSampling::Nee, LightSampling::Bsdf}) {
     CHECK(bsdf_mis_weight(sampling, 0, 1) == 1);
     CHECK(bsdf_mis_weight(sampling, 1, 0) == 1);
   }
-  CHECK(bsdf_mis_weight(LightSampling::Lights, 1, 1) == 0);
-  CHECK(bsdf_mis_weight(LightSampling::Hits, 1, 1) == 1);
+  CHECK(bsdf_mis_weight(LightSampling::Nee, 1, 1) == 0);
+  CHECK(bsdf_mis_weight(LightSampling::Bsdf, 1, 1) == 1);
 }
 
 TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium", "[render]") {
@@ -150,7 +150,7 @@ TEST_CASE("stages: a shadow ray that passes a surface is attenuated by its mediu
 
 TEST_CASE("stages: a BSDF sample is a bounce, or a null interaction", "[render]") {
   Settings settings{};
-  settings.bounces = 10;
+  settings.rr_depth = 10;
   const Hit hit{{0, 0, 0}, {0, 1, 0}, 1, 0};
   SurfacePoint point{};
   point.normal = {0, 1, 0};

@@ -47,7 +47,7 @@ TEST_CASE("defaults are those of the documentation", "[elaborate]") {
   CHECK(!e.camera.vertical_fov);
   CHECK((e.film.width == 640 && e.film.height == 360 && e.film.exposure == 0));
   CHECK(e.film.tone == ToneCurve::None);
-  CHECK((e.settings.spp == 16 && e.settings.bounces == 10 && e.settings.tile == 16 && e.settings.seed == 0));
+  CHECK((e.settings.spp == 16 && e.settings.rr_depth == 10 && e.settings.tile == 16 && e.settings.seed == 0));
   CHECK(!e.settings.far);
   CHECK((e.settings.sampler == SamplerKind::Blue && e.film.filter == FilterKind::Box && !e.film.filter_width));
   CHECK((!e.camera.focal_length && !e.camera.lens_radius && !e.camera.f_stop && !e.camera.focus_distance));
@@ -64,7 +64,7 @@ TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
   CHECK(film_record().find("height")->fallback[0] == Film().height);
   CHECK(film_record().find("exposure")->fallback[0] == Film().exposure);
   CHECK(render_record().find("spp")->fallback[0] == RenderSettings().spp);
-  CHECK(render_record().find("bounces")->fallback[0] == RenderSettings().bounces);
+  CHECK(render_record().find("rr_depth")->fallback[0] == RenderSettings().rr_depth);
   CHECK(render_record().find("tile")->fallback[0] == RenderSettings().tile);
   CHECK(camera_records()[0].find("sensor_width")->fallback[0] == Camera().sensor_width);
   CHECK(camera_records()[1].find("width")->fallback[0] == Camera().width);
@@ -103,7 +103,7 @@ TEST_CASE("settings are read", "[elaborate]") {
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
       "film": {"width": 65535, "height": 1, "exposure": -1.5, "tone": "agx"},
-      "render": {"spp": 1048576, "bounces": 0, "tile": 1024, "seed": 9007199254740992, "far": 100,
+      "render": {"spp": 1048576, "rr_depth": 0, "tile": 1024, "seed": 9007199254740992, "far": 100,
                  "noise_threshold": 0.25},
       "background": {"top": [0.5, 0.7, 1]})");
   CHECK(e.camera.position == glm::dvec3(1, 2, 3));
@@ -112,7 +112,7 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(e.camera.vertical_fov.value() == Approx(std::numbers::pi / 2));
   CHECK((e.film.width == 65535 && e.film.height == 1 && e.film.exposure == -1.5));
   CHECK(e.film.tone == ToneCurve::Agx);
-  CHECK((e.settings.spp == 1048576 && e.settings.bounces == 0 && e.settings.tile == 1024));
+  CHECK((e.settings.spp == 1048576 && e.settings.rr_depth == 0 && e.settings.tile == 1024));
   CHECK(e.settings.seed == 9007199254740992u);
   CHECK(e.settings.far.value() == 100);
   CHECK(e.settings.noise_threshold == 0.25);

@@ -45,7 +45,7 @@ std::string every_number(bool formulas) {
       fmt::format(R"("version": 1, "params": {{"r": 2}},
       "camera": {{"position": {0}, "target": [0, 0, {1}], "up": [0, {1}, 0], "fov": {2}}},
       "film": {{"width": {3}, "height": {4}, "exposure": {5}}},
-      "render": {{"spp": {4}, "bounces": {1}, "tile": {4}, "seed": {1}, "far": {3}}},
+      "render": {{"spp": {4}, "rr_depth": {1}, "tile": {4}, "seed": {1}, "far": {3}}},
       "background": {{"bottom": {6}, "top": {6}}},)",
                   vector, two, number("45", "90/r"), number("200", "100*r"), number("8", "r^3"), minus, color);
   text += fmt::format(R"("materials": {{"a": {{"type": "diffuse", "color": {0}}},
@@ -69,7 +69,7 @@ TEST_CASE("formulas stand wherever numbers do", "[elaborate]") {
   CHECK((a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up));
   CHECK((b.camera.fov == a.camera.fov && b.camera.position == glm::dvec3(2, -2, 3)));
   CHECK((b.film.width == 200 && b.film.height == 8 && b.film.exposure == -2));
-  CHECK((b.settings.spp == 8 && b.settings.bounces == 2 && b.settings.tile == 8 && b.settings.seed == 2));
+  CHECK((b.settings.spp == 8 && b.settings.rr_depth == 2 && b.settings.tile == 8 && b.settings.seed == 2));
   CHECK(b.settings.far.value() == 200);
   CHECK((b.background.bottom == glm::dvec3(0.5, 0.25, 0.5) && b.background.top == b.background.bottom));
   REQUIRE(b.materials.size() == a.materials.size());

@@ -135,7 +135,7 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
 TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[heavy][schema]") {
   json scene = parse(read_file(fs::path(FATHOM_SOURCE_DIR) / "scenes/primitives.json"));
   scene["camera"]["type"] = "perspective";
-  scene["render"] = {{"spp", 1}, {"bounces", 0}, {"tile", 8}, {"seed", 3}, {"far", 100}, {"noise_threshold", 0.1}};
+  scene["render"] = {{"spp", 1}, {"rr_depth", 0}, {"tile", 8}, {"seed", 3}, {"far", 100}, {"noise_threshold", 0.1}};
   scene["objects"][0]["rotate"] = {{"axis", {0, 1, 0}}, {"angle", 30}};
   scene["nodes"] = {{"ball", {{"type", "sphere"}, {"radius", 1}}}};
   const json ball = {{"use", "ball"}, {"scale", 2}, {"name", "b"}};

@@ -25,7 +25,7 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"--versoin", "did you mean `fathom --version`?"},
       {"help rendr", "did you mean `fathom render`?"},
       {"render", "the scene is missing"},
-      {"render ball.json --bounce 4", "did you mean `--bounces`?"},
+      {"render ball.json --rr-dept 4", "did you mean `--rr-depth`?"},
       {"render ball.json --sppp=4", "unknown option `--sppp`"},
       {"render ball.json two.json", "unexpected argument `two.json`"},
       {"render ball.json --spp", "--spp: its value is missing"},
@@ -35,7 +35,7 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"render ball.json -s 0", "--spp: `0`"},
       {"render ball.json -s 1.5", "--spp: `1.5`"},
       {"render ball.json -t 0", "--tile: `0`"},
-      {"render ball.json -b -1", "--bounces: `-1`"},
+      {"render ball.json -b -1", "--rr-depth: `-1`"},
       {"render ball.json --threads 0", "--threads: `0`"},
       {"render ball.json --seed -1", "--seed: `-1`"},
       {"render ball.json --far 0", "--far: `0` is not a positive number"},
@@ -52,10 +52,11 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
       {"render ball.json -f 45", "did you mean `45deg`?"},
       {"render ball.json -f 3.2", "did you mean `3.2deg`?"},
       {"render ball.json --sampler halton", "--sampler: `halton`"},
-      {"render ball.json --light-sampling some", "--light-sampling: `some` is not one of both, lights, hits"},
+      {"render ball.json --light-sampling some", "--light-sampling: `some` is not one of mis, nee, bsdf"},
       {"render ball.json --clamp 0", "--clamp: `0` is not a positive number"},
       {"render ball.json --noise-threshold 0 --uniform", "--noise-threshold does not go with --uniform"},
-      {"render ball.json -s 7 --noise-threshold 0", "--noise-threshold: 7 samples per pixel are too few to share out"},
+      {"render ball.json -s 7 --noise-threshold 0",
+       "--noise-threshold: 7 samples per pixel are too few to share out"},
       {"render ball.json -s 16 --noise-threshold 0 --crop 0,0,4,4", "--crop does not go with --noise-threshold"},
       {"render ball.json --filter sinc", "--filter: `sinc`"},
       {"render ball.json --filter-width 0", "--filter-width: `0` is not a number from 0.01 to 64"},
@@ -140,7 +141,7 @@ TEST_CASE("cli: render --help names every flag of the paper") {
   const std::string help = Folder().run("render -h").out;
   for (const char* names :
        {"-h,--help", "-v,", "--aspect", "-a,--albedo", "-d,--depth", "-n,--normal", "-o,--output",
-        "-r,--res,--resolution", "-b,--bounces", "-f,--fov", "--no-denoise", "-s,--spp", "-t,--tile"}) {
+        "-r,--res,--resolution", "-b,--rr-depth", "-f,--fov", "--no-denoise", "-s,--spp", "-t,--tile"}) {
     CHECK_THAT(help, Contains(names));
   }
 }

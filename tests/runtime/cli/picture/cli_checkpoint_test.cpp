@@ -129,7 +129,7 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
                              {"slow.json -s 4 -o a.exr --fov 30deg", "field of view is"},
                              {"slow.json -s 4 -o a.exr --filter tent", "filter is box there and tent here"},
                              {"slow.json -s 4 -o a.exr --clamp 2", "clamp is none there and 2 here"},
-                             {"slow.json -s 4 -o a.exr -b 3", "bounces is"},
+                             {"slow.json -s 4 -o a.exr -b 3", "rr depth is"},
                              {"slow.json -s 4 -o a.exr --size 20x10", "size is 48x32 there and 20x10 here"}}) {
     const Result result = folder.run(std::string("render ") + other.arguments + " --checkpoint done.film --resume");
     INFO(other.arguments << "\n" << result.err);
@@ -154,7 +154,7 @@ TEST_CASE("cli checkpoint: without --resume a state of this very render is not o
     const Result again = folder.run(std::string("render ") + arguments);
     INFO(arguments << again.err);
     CHECK(again.code == 2);
-    CHECK_THAT(again.err, Contains(file) && Contains("samples a pixel of this very render") &&
+    CHECK_THAT(again.err, Contains(file) && Contains("samples per pixel of this very render") &&
                               Contains("add --resume") && Contains("remove `"));
     CHECK(folder.read(file) == before);
   }
