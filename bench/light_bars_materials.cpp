@@ -91,6 +91,7 @@ MaterialCase random_material(std::uint64_t number) {
   m.coat_ior = 1 + s.next();
   m.thin_walled = s.next() < 0.25f;
   m.opacity = part();
+  m.coat_darkening = part();
   return {fmt::format("random {}", number), m, s.next() < 0.3f && !m.thin_walled};
 }
 

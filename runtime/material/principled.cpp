@@ -40,6 +40,22 @@ glm::vec3 even_over_hemisphere(glm::vec2 u) {
   return {radius * angle.cos, radius * angle.sin, z};
 }
 
+// Returns the part of diffuse light that a boundary lets through. The part is the same from both sides except for
+// eta^2, as radiance is.
+float average_passed(float eta) {
+  return eta >= 1 ? 1 - smooth_albedo(eta).average() : (1 - smooth_albedo(1 / eta).average()) * (eta * eta);
+}
+
+// Returns the factor by which a coat darkens light that the base below it reflects, because the coat's inner side
+// sends part of that light back to the base (OpenPBR 1.1, "Coat darkening"). A white base is not darkened. The albedo
+// of the base does not depend on the direction, so that the factor is the same for wo and wi.
+glm::vec3 coat_darkening(const MaterialPoint& m, float coat_eta) {
+  const glm::vec3 body = glm::mix(m.base_color, glm::vec3(1), m.transmission);
+  const glm::vec3 albedo = glm::mix(body, m.specular_weight * m.base_color, m.metalness);
+  const float inner = 1 - average_passed(1 / coat_eta);
+  return (1 - inner) / (1.0f - glm::min(albedo, glm::vec3(1)) * inner);
+}
+
 AlbedoRow rest_of(AlbedoRow row) {
   for (float& value : row.node) value = std::max(1 - value, 0.0f);
   return row;
@@ -52,12 +68,6 @@ float weighted_eta(float eta, float weight) {
   const double wide = static_cast<double>(eta);
   const double s = std::clamp(std::sqrt(static_cast<double>(weight)) * (wide - 1) / (wide + 1), -0.99, 0.99);
   return static_cast<float>((1 + s) / (1 - s));
-}
-
-// Returns the part of diffuse light that a boundary lets through. The part is the same from both sides except for
-// eta^2, as radiance is.
-float average_passed(float eta) {
-  return eta >= 1 ? 1 - smooth_albedo(eta).average() : (1 - smooth_albedo(1 / eta).average()) * (eta * eta);
 }
 
 }  // namespace
@@ -89,11 +99,14 @@ void Principled::add_coat(const MaterialPoint& m, float eta) {
   smooth_coat_ = coat_ggx_.alpha() < kLeastAlpha;
   coat_row_ = smooth_coat_ ? smooth_albedo(coat_eta_) : reflection_albedo(coat_ggx_.alpha(), coat_eta_);
   const glm::vec3 twice = glm::mix(glm::vec3(1), m.coat_color, coat_weight_);
+  const float darkens = coat_weight_ * m.coat_darkening;
+  const glm::vec3 darkening =
+      darkens > 0 ? glm::mix(glm::vec3(1), coat_darkening(m, coat_eta_), darkens) : glm::vec3(1);
   if (!inside_) {
     coat_passes_o_ = coat_passes(wo_.z);
-    coat_tint_ = twice;
+    coat_tint_ = twice * darkening;
   }
-  coat_tint_through_ = glm::sqrt(twice);
+  coat_tint_through_ = glm::sqrt(twice) * darkening;
 }
 
 void Principled::add_metal(const MaterialPoint& m) {

@@ -14,8 +14,8 @@
 // - Glossy parts under the coat are multiplied by min(t(wo), t(wi)), t = 1 - coat_weight E_coat. That is exact for
 //   mirrors.
 //
-// Differences from OpenPBR: specular_weight changes the index, and so how much light is bent. The coat neither
-// darkens nor changes the boundary below it, and its colour does not depend on the angle. There is no fuzz, thin
+// Differences from OpenPBR: specular_weight changes the index, and so how much light is bent. The coat does not
+// change the boundary below it, and its colour does not depend on the angle. There is no fuzz, thin
 // film, anisotropy, subsurface or dispersion. From inside, pigment is seen without a boundary, and neither the coat
 // nor specular_color takes part in reflection.
 // Tested by: tests/runtime/material/bsdf_test.cpp

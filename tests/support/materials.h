@@ -88,6 +88,7 @@ inline MaterialPoint mix() {
   m.coat_weight = 0.6f;
   m.coat_roughness = 0.4f;
   m.coat_color = {0.8f, 0.9f, 1};
+  m.coat_darkening = 0.7f;
   m.opacity = 0.8f;
   return m;
 }

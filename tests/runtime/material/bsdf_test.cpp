@@ -201,6 +201,35 @@ TEST_CASE("bsdf: varnish over a white surface loses at most a few hundredths", "
   }
 }
 
+// Fraction of diffuse light under a smooth boundary that the boundary sends back: total reflection included, by
+// Fresnel's equations over the outer hemisphere, in double.
+double inner_reflection(double eta) {
+  constexpr int kSteps = 100000;
+  double passed = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double cos = (i + 0.5) / kSteps;
+    passed += 2 * cos * (1 - static_cast<double>(fresnel(static_cast<float>(cos), static_cast<float>(eta)))) / kSteps;
+  }
+  return 1 - passed / (eta * eta);
+}
+
+TEST_CASE("bsdf: a coat darkens what it sends back to the base again and again", "[runtime]") {
+  const glm::vec3 wo = towards(0.7f, 0.1f), wi = towards(0.4f, 0.6f);
+  for (const float gray : {0.0f, 0.2f, 0.8f, 1.0f}) {
+    MaterialPoint m = coated(0);
+    m.base_color = glm::vec3(gray);
+    m.metalness = 1;
+    const float plain = Bsdf(m, kNormal, wo, m.ior, false).evaluate(wi).f.x;
+    m.coat_darkening = 1;
+    const float dark = Bsdf(m, kNormal, wo, m.ior, false).evaluate(wi).f.x;
+    // The sum of the light after 0, 1, 2, ... reflections at the base: (1 - K) / (1 - gray K).
+    const double inner = inner_reflection(static_cast<double>(m.coat_ior));
+    const double expected = (1 - inner) / (1 - static_cast<double>(gray) * inner);
+    CAPTURE(gray, inner);
+    CHECK(dark == Approx(static_cast<double>(plain) * expected).epsilon(2e-3));
+  }
+}
+
 TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees", "[runtime]") {
   MaterialPoint gold = metal(0);
   gold.base_color = {1, 0.7f, 0.3f};
