@@ -27,18 +27,19 @@ Stats run_threads(const PassWork& pass, int threads) {
   return sum;
 }
 
-// PathSample::number of the first sample of half B.
-constexpr std::uint32_t kSecondHalf = 1u << 30;
-
-// Returns the number of samples that the decided halves have when complete.
-std::uint64_t samples_of(const AdaptiveState& state, PixelRect area) {
+// Returns the limits of a pass: end(tile, half) of the pixels of that half of the tile.
+template <class End>
+SampleLimits limits_of(const AdaptiveState& state, PixelRect area, const End& end) {
   const Tiles tiles(area, kAdaptiveTile);
-  std::uint64_t samples = 0;
+  std::vector<std::uint32_t> ends(area.pixels());
   for (std::size_t i = 0; i < state.tiles.size(); ++i) {
-    const auto [first, second] = state.tiles[i].ends;
-    samples += tiles.at(static_cast<std::int64_t>(i)).pixels() * (std::uint64_t{first} + second);
+    const std::uint32_t of_half[2] = {end(state.tiles[i], 0), end(state.tiles[i], 1)};
+    const PixelRect tile = tiles.at(static_cast<std::int64_t>(i));
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) ends[area.index(x, y)] = of_half[half_of(x, y)];
+    }
   }
-  return samples;
+  return {area, std::move(ends)};
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ std::uint64_t samples_of(const AdaptiveState& state, PixelRect area) {
 Stats Passes::run(SampleRange samples) {
   const Settings& settings = world_.settings;
   if (settings.noise_threshold) return run_adaptive();
-  return run_pass(0, {{settings.sampler, settings.seed, settings.spp}}, samples, {});
+  return run_pass(0, samples, {});
 }
 
 RenderEnd Passes::end() const {
@@ -62,9 +63,9 @@ Stats Passes::run_adaptive() {
   const Settings& settings = world_.settings;
   const double threshold = *settings.noise_threshold;
   AdaptiveState& state = render_.adaptive;
-  if (render_.film.stages() == 1) {
+  if (!state.used()) {
     picture_.change([&] {
-      render_.film.begin_stages(adaptive_stages(threshold));
+      if (adaptive_stages(threshold) > 1) render_.film.add_stage();
       render_.covered.resize(render_.film.stages());
       state.tiles.resize(static_cast<std::size_t>(Tiles(settings.crop, kAdaptiveTile).count()));
     });
@@ -78,65 +79,46 @@ Stats Passes::run_adaptive() {
   const bool decided = std::ranges::none_of(state.tiles, &AdaptiveTile::open);
   picture_.change([&] {
     if (!decided) assign_shares(render_.film, settings.spp, threshold, state);
-    picture_.expect(samples_of(state, settings.crop) - render_.film.samples());
   });
   stats.merge(run_shares());
   return stats;
 }
 
-Pass Passes::pass_of(std::size_t half) const {
-  const Settings& settings = world_.settings;
-  const int each = settings.spp / 2;
-  const std::uint64_t seed = half == 0 ? settings.seed : second_seed(settings.seed);
-  return {{settings.sampler, seed, each}, half == 0 ? 0 : kSecondHalf};
-}
-
 Stats Passes::run_round(std::uint32_t end) {
   const AdaptiveState& state = render_.adaptive;
+  const PixelRect area = world_.settings.crop;
   const SampleRange round{state.judged, end};
-  const Tiles tiles(world_.settings.crop, kAdaptiveTile);
+  const Tiles tiles(area, kAdaptiveTile);
   Stats stats;
   for (std::size_t stage = 0; stage < render_.film.stages(); ++stage) {
-    const std::size_t half = stage % 2;
+    // Pixels whose number of samples is decided go on in stage 1.
+    const auto takes_part = [&](const AdaptiveTile& tile, std::size_t half) {
+      return tile.open() && (tile.ends[half] == 0) == (stage == 0);
+    };
     Coverage others;
-    bool some = false;
     for (std::size_t i = 0; i < state.tiles.size(); ++i) {
-      const std::size_t wanted = state.tiles[i].ends[half] == 0 ? half : half + 2;
-      if (state.tiles[i].open() && stage == wanted) {
-        some = true;
-      } else {
-        others.add({tiles.at(static_cast<std::int64_t>(i)), round});
-      }
+      const AdaptiveTile& tile = state.tiles[i];
+      if (!takes_part(tile, 0) && !takes_part(tile, 1)) others.add({tiles.at(static_cast<std::int64_t>(i)), round});
     }
-    if (some) stats.merge(run_pass(stage, pass_of(half), round, {}, others));
+    if (others.blocks().size() == state.tiles.size()) continue;
+    const auto limit = [&](const AdaptiveTile& tile, std::size_t half) { return takes_part(tile, half) ? end : 0; };
+    stats.merge(run_pass(stage, round, limits_of(state, area, limit), others));
   }
   return stats;
 }
 
 Stats Passes::run_shares() {
   const AdaptiveState& state = render_.adaptive;
-  const PixelRect area = world_.settings.crop;
-  const Tiles tiles(area, kAdaptiveTile);
-  Stats stats;
-  for (std::size_t half = 0; half < 2; ++half) {
-    std::vector<int> ends(area.pixels());
-    std::uint32_t last = state.judged;
-    for (std::size_t i = 0; i < state.tiles.size(); ++i) {
-      const std::uint32_t end = state.tiles[i].ends[half];
-      const PixelRect tile = tiles.at(static_cast<std::int64_t>(i));
-      last = std::max(last, end);
-      for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x) ends[area.index(x, y)] = static_cast<int>(end);
-      }
-    }
-    stats.merge(run_pass(half, pass_of(half), {state.judged, last}, SampleLimits(area, std::move(ends))));
-  }
-  return stats;
+  std::uint32_t last = state.judged;
+  for (const AdaptiveTile& tile : state.tiles) last = std::max({last, tile.ends[0], tile.ends[1]});
+  const SampleLimits limits = limits_of(state, world_.settings.crop,
+                                        [](const AdaptiveTile& tile, std::size_t half) { return tile.ends[half]; });
+  picture_.change([&] { picture_.expect(limits.sum() - render_.film.samples()); });
+  return run_pass(0, {state.judged, last}, limits);
 }
 
 // Treats `besides` as done, in addition to the samples in the film.
-Stats Passes::run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
-                       const Coverage& besides) {
+Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& besides) {
   const Settings& settings = world_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);
@@ -146,7 +128,7 @@ Stats Passes::run_pass(std::size_t stage, const Pass& pass, SampleRange samples,
   // With a time limit the first round has one sample per pixel: a user who sets a limit wants an early image of all
   // pixels, however noisy.
   UnitQueue units(crop, side, rounds_of(samples, options_.time_limit ? 1 : kFirstRound), done);
-  return run_threads({world_, pass, stage, limits, units, picture_}, settings.threads);
+  return run_threads({world_, stage, limits, units, picture_}, settings.threads);
 }
 
 }  // namespace fathom::runtime

@@ -24,11 +24,9 @@ class Passes {
 
  private:
   Stats run_adaptive();
-  Stats run_round(std::uint32_t end);  // both halves of all open tiles, from the last judgement up to `end`
-  Stats run_shares();                  // the remaining samples of both halves of all tiles
-  Pass pass_of(std::size_t half) const;
-  Stats run_pass(std::size_t stage, const Pass& pass, SampleRange samples, const SampleLimits& limits,
-                 const Coverage& besides = {});
+  Stats run_round(std::uint32_t end);  // all open tiles, from the last judgement up to `end`
+  Stats run_shares();                  // the remaining samples of all tiles
+  Stats run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& besides = {});
 
   const World& world_;
   const RenderOptions& options_;

@@ -64,8 +64,7 @@ class Ticker {
 
 std::uint64_t samples_of(const Settings& settings) {
   const std::uint32_t each = settings.samples.size();
-  // With a noise threshold the samples are two halves of the same size.
-  return std::uint64_t{settings.crop.pixels()} * (settings.noise_threshold ? each / 2 * 2 : each);
+  return std::uint64_t{settings.crop.pixels()} * each;
 }
 
 // True if a number names the same surface or material in both scenes.
@@ -183,11 +182,12 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
 }
 
 bool can_resume(const PartialRender& render, const Settings& settings) {
-  const std::size_t stages = render.film.stages();
-  const auto tiles = static_cast<std::size_t>(stages > 1 ? Tiles(settings.crop, kAdaptiveTile).count() : 0);
+  const auto tiles = static_cast<std::size_t>(Tiles(settings.crop, kAdaptiveTile).count());
+  const bool adaptive = render.adaptive.used();
   return render.film.area() == settings.crop && render.film.layers() == settings.layers &&
-         render.covered.size() == stages && render.adaptive.tiles.size() == tiles &&
-         (stages == 1 || stages == stages_of(settings));
+         render.covered.size() == render.film.stages() &&
+         render.film.stages() == (adaptive ? stages_of(settings) : 1) &&
+         (!adaptive || (settings.noise_threshold && render.adaptive.tiles.size() == tiles));
 }
 
 RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& options) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "runtime/path/integrator.h"
@@ -18,21 +19,19 @@ namespace fathom::runtime {
 class SampleLimits {
  public:
   SampleLimits() = default;
-  SampleLimits(PixelRect area, std::vector<int> each) : area_(area), each_(std::move(each)) {}
+  SampleLimits(PixelRect area, std::vector<std::uint32_t> each) : area_(area), each_(std::move(each)) {}
 
-  std::uint32_t at(int x, int y) const {
-    return each_.empty() ? ~0u : static_cast<std::uint32_t>(each_[area_.index(x, y)]);
-  }
+  std::uint32_t at(int x, int y) const { return each_.empty() ? ~0u : each_[area_.index(x, y)]; }
+  std::uint64_t sum() const { return std::accumulate(each_.begin(), each_.end(), std::uint64_t{0}); }
 
  private:
   PixelRect area_;
-  std::vector<int> each_;  // [y][x]; empty: no limits
+  std::vector<std::uint32_t> each_;  // [y][x]; empty: no limits
 };
 
 // Data that the threads of one pass share.
 struct PassWork {
   const RenderContext& context;
-  Pass pass;
   std::size_t stage;  // stage of the film
   const SampleLimits& limits;
   UnitQueue& units;
@@ -41,7 +40,7 @@ struct PassWork {
 
 class UnitWorker : private PathSource, private SampleSink {
  public:
-  explicit UnitWorker(const PassWork& work) : work_(work), integrator_(work.context, work.pass, *this, *this) {}
+  explicit UnitWorker(const PassWork& work) : work_(work), integrator_(work.context, *this, *this) {}
 
   void run() { integrator_.run(); }
   Stats stats() const;

@@ -109,7 +109,7 @@ std::optional<ExitCode> check_parts(const std::vector<Part>& parts, const Stream
     const bool alike = first.file.shape.layers == part.file.shape.layers &&
                        first.file.header.width == part.file.header.width &&
                        first.file.header.height == part.file.header.height;
-    if (!alike || (parts.size() > 1 && part.file.shape.stages > 1)) {
+    if (!alike || (parts.size() > 1 && part.file.render.adaptive.used())) {
       return fail(
           streams, kBadScene,
           fmt::format("`{}` cannot be merged: {}", part.path,
@@ -217,7 +217,7 @@ int run_merge(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = add_up(parts, request.limits, sum, streams)) return *code;
   const runtime::SampleBlock all{sum.shape.area, sum.header.samples};
   const auto missing = sum.render.covered.front().missing(all);
-  if (sum.shape.stages == 1 && !missing.empty() && !request.quiet) {
+  if (!sum.render.adaptive.used() && !missing.empty() && !request.quiet) {
     note(streams, "the films are not all of it: there are no " + text_of(missing.front()) +
                       (missing.size() > 1 ? ", among others" : ""));
   }

@@ -3,20 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/exponential.hpp>
+#include <limits>
 
 #include "runtime/base/color.h"
 #include "runtime/base/tiles.h"
 #include "runtime/film/film.h"
-#include "runtime/sampling/sampler.h"
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
 namespace {
 
 constexpr double kMinShare = 0.5, kMaxShare = 4;  // limits of a share, relative to the average
-constexpr std::uint32_t kFirstJudgement = 8;      // samples of a half
+constexpr std::uint32_t kFirstJudgement = 16;     // samples per pixel
 
-std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(std::max(2, spp / 8)); }
+std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(spp / 2); }
+
+// Calls use(x, y) for the pixels of one half of a tile.
+template <class Use>
+void for_each_pixel(PixelRect tile, std::size_t half, const Use& use) {
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      if (half_of(x, y) == half) use(x, y);
+    }
+  }
+}
+
+double pixels_of(PixelRect tile, std::size_t half) {
+  double pixels = 0;
+  for_each_pixel(tile, half, [&](int, int) { ++pixels; });
+  return pixels;
+}
 
 // Returns the variance of the pixel's mean luminance over its luminance. The variance is an upper bound: the channels
 // count as fully correlated.
@@ -26,17 +42,15 @@ double visible_variance(glm::dvec3 radiance, glm::dvec3 variance) {
   return deviation * deviation / (std::max(brightness, 0.0) + kDark);
 }
 
-// Returns the mean over the tile's pixels of the visible standard deviation of one sample. Unlike the root of a mean
-// variance, this mean does not jump with a single bright sample.
-double deviation_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages) {
+// Returns the mean over the pixels of one half of a tile of the visible standard deviation of one sample. Unlike the
+// root of a mean variance, this mean does not jump with a single bright sample.
+double deviation_of(const Film& film, PixelRect tile, std::size_t half) {
   double sum = 0;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const RadianceMeans pixel = film.radiance_of(stages, x, y);
-      sum += std::sqrt(pixel.samples * visible_variance(pixel.radiance, pixel.variance));
-    }
-  }
-  return sum / static_cast<double>(tile.pixels());
+  for_each_pixel(tile, half, [&](int x, int y) {
+    const RadianceMeans pixel = film.all_radiance(x, y);
+    sum += std::sqrt(pixel.samples * visible_variance(pixel.radiance, pixel.variance));
+  });
+  return sum / std::max(1.0, pixels_of(tile, half));
 }
 
 // Convolves [row][column] with the binomial weights 1 2 1 in both directions. A value outside equals the nearest
@@ -59,7 +73,7 @@ std::vector<double> smoothed(const std::vector<double>& values, int columns) {
   return result;
 }
 
-// Claim of one tile on the samples of a half: the tile's number of pixels, its weight, and its min and max samples
+// Claim of the pixels of one half of a tile: their number, its weight, and its min and max samples
 // per pixel.
 struct Claim {
   double pixels, weight, min, max;
@@ -82,15 +96,16 @@ double fitting_factor(const std::vector<Claim>& claims, double budget) {
 class Shares {
  public:
   Shares(const Film& film, int spp, double threshold, const AdaptiveState& state)
-      : film_(film), tiles_(film.area(), kAdaptiveTile), average_(spp / 2), threshold_(threshold), state_(state) {}
+      : film_(film), tiles_(film.area(), kAdaptiveTile), average_(spp), threshold_(threshold), state_(state) {}
 
   // Returns [tile] the number of samples per pixel of `half`.
   std::vector<std::uint32_t> of(std::size_t half) const {
     const std::vector<double> weights = weights_by(1 - half);
-    double budget = average_ * static_cast<double>(film_.area().pixels());
+    double budget = 0;
     std::vector<Claim> claims;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       claims.push_back(claim(i, half, weights[i]));
+      budget += average_ * claims.back().pixels;
       if (state_.tiles[i].ends[half] != 0) budget -= claims.back().pixels * claims.back().max;
     }
     std::vector<Claim> open;
@@ -103,7 +118,7 @@ class Shares {
     for (const Claim& claim : claims) {
       const double share = std::clamp(factor * claim.weight, claim.min, claim.max);
       constexpr double kRounding = 1e-6;  // error of the factor's bisection
-      const double count = std::min(claim.max, std::floor(share + carried / claim.pixels + kRounding));
+      const double count = std::min(claim.max, std::floor(share + carried / std::max(1.0, claim.pixels) + kRounding));
       carried += claim.pixels * (share - count);
       counts.push_back(static_cast<std::uint32_t>(count));
     }
@@ -117,8 +132,7 @@ class Shares {
   std::vector<double> weights_by(std::size_t judge) const {
     std::vector<double> deviations;
     for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
-      deviations.push_back(film_.stages() > 2 ? deviation_of(film_, tile(i), {judge, judge + 2})
-                                              : deviation_of(film_, tile(i), {judge}));
+      deviations.push_back(deviation_of(film_, tile(i), judge));
     }
     std::vector<double> weights = smoothed(deviations, tiles_.columns());
     const double loudest = *std::max_element(weights.begin(), weights.end());
@@ -128,13 +142,12 @@ class Shares {
 
   Claim claim(std::size_t i, std::size_t half, double weight) const {
     const std::uint32_t decided = state_.tiles[i].ends[half];
-    const auto pixels = static_cast<double>(tile(i).pixels());
+    const double pixels = pixels_of(tile(i), half);
     if (decided != 0) return {pixels, weight, static_cast<double>(decided), static_cast<double>(decided)};
     const double taken = state_.judged;
     double max = kMaxShare * average_;
     if (threshold_ > 0) {
-      const std::size_t judge = 1 - half;
-      const double noise = noise_of(film_, tile(i), {judge, judge + 2}) / threshold_;
+      const double noise = noise_of(film_, tile(i), 1 - half) / threshold_;
       max = std::clamp(std::ceil(taken * noise * noise), taken, max);
     }
     return {pixels, weight, std::min(max, std::max(taken, kMinShare * average_)), max};
@@ -142,16 +155,14 @@ class Shares {
 
   const Film& film_;
   const Tiles tiles_;
-  const double average_;  // samples per pixel of a half
+  const double average_;  // samples per pixel
   const double threshold_;
   const AdaptiveState& state_;
 };
 
 }  // namespace
 
-std::size_t adaptive_stages(double threshold) { return threshold > 0 ? 4 : 2; }
-
-std::uint64_t second_seed(std::uint64_t seed) { return mix64(~seed); }
+std::size_t adaptive_stages(double threshold) { return threshold > 0 ? 2 : 1; }
 
 std::uint32_t next_round(std::uint32_t judged, int spp, double threshold) {
   CHECK(spp >= kMinAdaptiveSpp, "too few samples to share out");
@@ -160,15 +171,14 @@ std::uint32_t next_round(std::uint32_t judged, int spp, double threshold) {
   return threshold > 0 ? std::min(last, judged == 0 ? kFirstJudgement : 2 * judged) : last;
 }
 
-double noise_of(const Film& film, PixelRect tile, std::initializer_list<std::size_t> stages) {
-  double sum = 0;
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (int x = tile.x0; x < tile.x1; ++x) {
-      const RadianceMeans half = film.radiance_of(stages, x, y);
-      sum += visible_variance(half.radiance, half.variance) / 2;
-    }
-  }
-  return std::sqrt(sum / static_cast<double>(tile.pixels()));
+double noise_of(const Film& film, PixelRect tile, std::size_t half) {
+  double sum = 0, pixels = 0;
+  for_each_pixel(tile, half, [&](int x, int y) {
+    const RadianceMeans pixel = film.all_radiance(x, y);
+    sum += visible_variance(pixel.radiance, pixel.variance);
+    ++pixels;
+  });
+  return pixels > 0 ? std::sqrt(sum / pixels) : std::numeric_limits<double>::infinity();
 }
 
 double image_noise(const Film& film, PixelRect tile) {
@@ -188,8 +198,8 @@ void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState&
     AdaptiveTile& tile = state.tiles[i];
     if (!tile.open()) continue;
     const PixelRect pixels = tiles.at(static_cast<std::int64_t>(i));
-    const std::array<bool, 2> quiet = {noise_of(film, pixels, {1, 3}) <= threshold,
-                                       noise_of(film, pixels, {0, 2}) <= threshold};
+    const std::array<bool, 2> quiet = {noise_of(film, pixels, 1) <= threshold,
+                                       noise_of(film, pixels, 0) <= threshold};
     for (std::size_t half = 0; half < 2; ++half) {
       if (tile.ends[half] == 0 && quiet[half]) tile.ends[half] = end;
     }

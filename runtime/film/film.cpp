@@ -102,15 +102,14 @@ void Film::restart(PixelRect area) {
   denoised_.clear();
 }
 
-void Film::begin_stages(std::size_t count) {
-  CHECK(stages_.size() == 1 && (count == 2 || count == 4) && samples() == 0, "stages begin with an empty film");
-  stages_.front().odd_halves = {};
-  stages_.resize(count, Stage(stages_.front()));
+void Film::add_stage() {
+  CHECK(stages_.size() == 1 && samples() == 0, "a stage is added to an empty film");
+  stages_.push_back({stages_.front().pixels, stages_.front().squares, {}});
 }
 
 bool Film::add(int x, int y, const PathSample& sample) {
   const std::size_t at = area_.index(x, y);
-  Stage& stage = stages_.back();
+  Stage& stage = stages_.front();
   Pixel& pixel = stage.pixels[at];
   ++pixel.samples;
   bool room = accumulate(pixel.radiance, sample.radiance);
@@ -158,7 +157,7 @@ bool Film::merge(const Film& part, std::size_t stage) {
     const std::size_t from = rows.index(rows.x0, y), to = area_.index(rows.x0, y);
     const auto count = static_cast<std::size_t>(rows.width());
     room &= merge_stage(part, stages_[stage], from, to, count);
-    if (stage < kSeenStages) room &= merge_rest(part, from, to, count);
+    if (stage == 0) room &= merge_rest(part, from, to, count);
   }
   return room;
 }
@@ -183,7 +182,7 @@ bool Film::merge_stage(const Film& part, Stage& stage, std::size_t from, std::si
   return room;
 }
 
-// Merges the sums that all stages share.
+// Merges the sums that only stage 0 has.
 bool Film::merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count) {
   bool room = true;
   for (std::size_t i = 0; layers_.first_hit && i < count; ++i) {
@@ -207,12 +206,10 @@ bool Film::merge_rest(const Film& part, std::size_t from, std::size_t to, std::s
 PixelMeans Film::means(int x, int y) const {
   const std::size_t at = area_.index(x, y);
   PixelMeans means;
-  for (const Stage& stage : seen_stages()) {
-    means.hits += stage.pixels[at].hits;
-    means.samples += stage.pixels[at].samples;
-  }
+  means.hits = stages_.front().pixels[at].hits;
+  means.samples = stages_.front().pixels[at].samples;
   if (means.samples == 0) return means;
-  read_radiance(x, y, means);
+  read_radiance(at, means);
   if (layers_.cost) {
     means.evaluations = static_cast<double>(costs_[at].evaluations) / means.samples;
     means.instructions = static_cast<double>(costs_[at].instructions) / means.samples;
@@ -222,59 +219,50 @@ PixelMeans Film::means(int x, int y) const {
 }
 
 std::size_t Film::memory_per_pixel(FilmLayers layers, std::size_t stages) {
-  const std::size_t stage = sizeof(Pixel) + (layers.variance ? sizeof(Squares) : 0) +
-                            (layers.halves && stages == 1 ? sizeof(OddHalf) : 0);
-  return stages * stage + (layers.first_hit ? sizeof(FirstHit) : 0) + (layers.position ? sizeof(Position) : 0) +
-         (layers.ids ? sizeof(Ids) : 0) + (layers.cost ? sizeof(Cost) : 0);
+  const std::size_t stage = sizeof(Pixel) + (layers.variance ? sizeof(Squares) : 0);
+  return stages * stage + (layers.halves ? sizeof(OddHalf) : 0) + (layers.first_hit ? sizeof(FirstHit) : 0) +
+         (layers.position ? sizeof(Position) : 0) + (layers.ids ? sizeof(Ids) : 0) + (layers.cost ? sizeof(Cost) : 0);
 }
 
-std::uint32_t Film::samples(int x, int y) const {
-  std::uint32_t sum = 0;
-  for (const Stage& stage : seen_stages()) sum += stage.pixels[area_.index(x, y)].samples;
-  return sum;
-}
+std::uint32_t Film::samples(int x, int y) const { return stages_.front().pixels[area_.index(x, y)].samples; }
 
 std::uint64_t Film::samples() const {
   std::uint64_t sum = 0;
-  for (const Stage& stage : seen_stages()) {
-    for (const Pixel& pixel : stage.pixels) sum += pixel.samples;
-  }
+  for (const Pixel& pixel : stages_.front().pixels) sum += pixel.samples;
   return sum;
 }
 
-RadianceMeans Film::radiance_of(std::initializer_list<std::size_t> stages, int x, int y) const {
+RadianceMeans Film::all_radiance(int x, int y) const {
   const std::size_t at = area_.index(x, y);
   Pixel pixel;
   Squares squares;
-  OddHalf odd;
-  for (const std::size_t number : stages) {
-    const Stage& stage = stages_[number];
+  for (const Stage& stage : stages_) {
     add_to(pixel.radiance, stage.pixels[at].radiance);
     pixel.samples += stage.pixels[at].samples;
     if (layers_.variance) add_to(squares.sums, stage.squares[at].sums);
-    if (stage.odd_halves.empty()) continue;
-    add_to(odd.radiance, stage.odd_halves[at].radiance);
-    odd.samples += stage.odd_halves[at].samples;
   }
-  return means_of(pixel, squares, odd);
+  return means_of(pixel, squares);
 }
 
-// The means of the stages are independent, given their numbers of samples, so the variances add up with the squares
-// of the weights.
-void Film::read_radiance(int x, int y, PixelMeans& means) const {
-  const RadianceMeans first = radiance_of({0}, x, y);
-  const RadianceMeans second = stages_.size() > 1 ? radiance_of({1}, x, y) : RadianceMeans();
-  const double w = second.samples == 0 ? 1 : first.samples == 0 ? 0 : 0.5;
-  means.noisy = w * first.radiance + (1 - w) * second.radiance;
-  means.variance = w * w * first.variance + (1 - w) * (1 - w) * second.variance;
-  const bool halves = layers_.halves && stages_.size() > 1;
-  for (int i = 0; i < 2; ++i) means.halves[i] = halves ? (i == 0 ? first : second).radiance : first.halves[i];
-  means.radiance = means.noisy;
-  const std::size_t at = area_.index(x, y);
+void Film::read_radiance(std::size_t at, PixelMeans& means) const {
+  const Stage& stage = stages_.front();
+  const Pixel& pixel = stage.pixels[at];
+  const RadianceMeans sampled = means_of(pixel, layers_.variance ? stage.squares[at] : Squares());
+  means.noisy = means.radiance = sampled.radiance;
+  means.variance = sampled.variance;
   if (denoised()) means.radiance = {denoised_[3 * at], denoised_[3 * at + 1], denoised_[3 * at + 2]};
+  if (!layers_.halves) return;
+  const OddHalf& odd = stage.odd_halves[at];
+  if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
+  const std::uint32_t even = pixel.samples - odd.samples;
+  for (int i = 0; even > 0 && i < 3; ++i) {
+    // In double, because the difference of clamped sums may overflow 64 bits.
+    const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
+    means.halves[0][i] = rest * kUnit / even;
+  }
 }
 
-RadianceMeans Film::means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const {
+RadianceMeans Film::means_of(const Pixel& pixel, const Squares& squares) const {
   RadianceMeans means;
   means.samples = pixel.samples;
   if (pixel.samples == 0) return means;
@@ -282,15 +270,6 @@ RadianceMeans Film::means_of(const Pixel& pixel, const Squares& squares, const O
   for (int i = 0; layers_.variance && i < 3; ++i) {
     means.variance[i] = variance_of_mean(pixel.radiance[i], squares.sums[i], pixel.samples);
   }
-  if (!layers_.halves) return means;
-  means.half_samples[0] = pixel.samples - odd.samples;
-  means.half_samples[1] = odd.samples;
-  for (int i = 0; i < 3; ++i) {
-    // In double, because the difference of clamped sums may overflow 64 bits.
-    const double rest = static_cast<double>(pixel.radiance[i]) - static_cast<double>(odd.radiance[i]);
-    if (means.half_samples[0] > 0) means.halves[0][i] = rest * kUnit / means.half_samples[0];
-  }
-  if (odd.samples > 0) means.halves[1] = mean(odd.radiance, odd.samples);
   return means;
 }
 

@@ -7,19 +7,16 @@
 // its terms: terms of the other sign count in full or not, depending on whether they come after the clamping or
 // before it.
 //
-// A film in stages (runtime/film/adaptive.h) keeps the radiance and the number of samples of each stage separately.
-// Stages 0 and 1 are two halves of the samples, whose means have equal weight. No mean uses stages 2 and 3. merge()
-// adds films of parts of the work up to the film of the whole. film_bytes.cpp converts sums to bytes and back.
+// A film may have a second stage, for samples that only decide numbers of samples (runtime/film/adaptive.h): no mean
+// uses them. merge() adds films of parts of the work up to the film of the whole. film_bytes.cpp converts sums to
+// bytes and back.
 //
 // Tested by: tests/runtime/film/film_test.cpp
 #pragma once
 
-#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <initializer_list>
-#include <span>
 #include <vector>
 
 #include "runtime/base/pixel_rect.h"
@@ -54,27 +51,25 @@ struct PathSample {
   std::uint64_t instructions = 0;  // in all these evaluations
 };
 
-// The layers of a film in addition to radiance (32 bytes per pixel). Each further stage takes the bytes of radiance
-// and variance again.
+// The layers of a film in addition to radiance (32 bytes per pixel). A second stage takes the bytes of radiance and
+// variance again.
 struct FilmLayers {
   bool first_hit = true;  // albedo, normal, depth: 56 bytes per pixel
   bool cost = false;      // evaluations, instructions: 16
   bool position = false;  // of the first hit: 24
   bool ids = false;       // of the first hit's surface and material: 12
   bool variance = false;  // of radiance, as if samples were independent: 48
-  // Radiance of two halves of the samples, for the denoiser: 32 in a film of one stage, 0 with more stages.
-  bool halves = false;
+  bool halves = false;    // radiance of the samples with odd numbers, for the denoiser: 32
 
   bool operator==(const FilmLayers&) const = default;
 };
 inline constexpr FilmLayers kAllLayers{true, true, true, true, true};
 
-// Means over a pixel's samples, 0 for layers that the film does not keep. In a film with stages `radiance` and
-// `noisy` are the mean of the means of stages 0 and 1. The other values are means over the samples of both stages.
+// Means over a pixel's samples, 0 for layers that the film does not keep.
 struct PixelMeans {
   glm::dvec3 radiance{0};
   glm::dvec3 noisy{0};  // radiance before it was denoised; otherwise the same
-  // Radiance of stages 0 and 1. In a film of one stage, radiance of the samples with even and with odd numbers.
+  // Radiance of the samples with even and with odd numbers.
   glm::dvec3 halves[2] = {glm::dvec3(0), glm::dvec3(0)};
   // Variance of the mean `noisy`, as if the samples were independent: the variance of the samples over their number;
   // 0 for fewer than two samples. The samplers sobol and blue spread samples evenly, so the mean's true variance is
@@ -92,10 +87,10 @@ struct PixelMeans {
   std::uint32_t hits = 0, samples = 0;
 };
 
-// Mean radiance over a pixel's samples of some stages, all with equal weight. A half without samples has radiance 0.
+// Mean radiance over all samples of a pixel, those of the second stage included.
 struct RadianceMeans {
-  glm::dvec3 radiance{0}, variance{0}, halves[2] = {glm::dvec3(0), glm::dvec3(0)};  // like the members of PixelMeans
-  std::uint32_t samples = 0, half_samples[2] = {0, 0};
+  glm::dvec3 radiance{0}, variance{0};  // like the members of PixelMeans
+  std::uint32_t samples = 0;
 };
 
 __extension__ typedef unsigned __int128 WideSum;  // ISO C++ has no 128-bit integers
@@ -112,26 +107,25 @@ class Film {
   int height() const { return area_.height(); }
   FilmLayers layers() const { return layers_; }
 
-  // Turns an empty film of one stage into a film of 2 or 4 stages. If stage 0 or 1 has no samples of a pixel, the
-  // pixel's mean is the mean of the other stage.
-  void begin_stages(std::size_t count);
+  // Adds the second stage to an empty film.
+  void add_stage();
   std::size_t stages() const { return stages_.size(); }
 
   // Makes the film empty, with one stage and a new area.
   void restart(PixelRect area);
 
-  // Adds a sample to the last stage. (x, y) is a pixel of the whole image, within area(). Two threads must not add to
-  // one pixel at once. Returns false if a sum was clamped.
+  // Adds a sample to a film of one stage. (x, y) is a pixel of the whole image, within area(). Two threads must not
+  // add to one pixel at once. Returns false if a sum was clamped.
   bool add(int x, int y, const PathSample& sample);
-  // Adds `part`, a film of one stage with the same layers and within area(), to the given stage. For stages 2 and 3,
-  // which means() does not use, adds only radiance, its squares and the numbers of samples. Returns false if a sum
-  // was clamped.
+  // Adds `part`, a film of one stage with the same layers and within area(), to stage 0 or 1. To stage 1, which
+  // means() does not use, adds only radiance, its squares and the numbers of samples. Returns false if a sum was
+  // clamped.
   bool merge(const Film& part, std::size_t stage = 0);
 
   PixelMeans means(int x, int y) const;
   std::uint32_t samples(int x, int y) const;  // same as means(x, y).samples
   std::uint64_t samples() const;              // sum over all pixels
-  RadianceMeans radiance_of(std::initializer_list<std::size_t> stages, int x, int y) const;
+  RadianceMeans all_radiance(int x, int y) const;
 
   // Write and read the sums of the pixels in a rectangle within area(), for film files. read_sums() returns false if
   // the bytes end too early.
@@ -171,8 +165,7 @@ class Film {
   struct Squares {
     WideSum sums[3] = {};
   };
-  // Radiance of one stage, [y][x]. A layer that the film does not keep is empty. Only films of one stage have odd
-  // halves.
+  // Radiance of one stage, [y][x]. A layer that the film does not keep is empty. The second stage has no odd halves.
   struct Stage {
     std::vector<Pixel> pixels;
     std::vector<Squares> squares;
@@ -188,10 +181,6 @@ class Film {
     std::uint64_t evaluations = 0, instructions = 0;
   };
 
-  static constexpr std::size_t kSeenStages = 2;  // number of stages that means() uses
-  std::span<const Stage> seen_stages() const {
-    return std::span(stages_).first(std::min(kSeenStages, stages_.size()));
-  }
   template <class Self, class Sink>
   static void visit_pixel(Self& film, std::size_t at, Sink&& sink);
   bool add_squares(Squares& squares, glm::vec3 radiance);
@@ -199,14 +188,14 @@ class Film {
   // Merge `count` pixels of a row, from index `from` of `part` to index `to` of this film.
   bool merge_stage(const Film& part, Stage& stage, std::size_t from, std::size_t to, std::size_t count);
   bool merge_rest(const Film& part, std::size_t from, std::size_t to, std::size_t count);
-  RadianceMeans means_of(const Pixel& pixel, const Squares& squares, const OddHalf& odd) const;
-  void read_radiance(int x, int y, PixelMeans& means) const;
+  RadianceMeans means_of(const Pixel& pixel, const Squares& squares) const;
+  void read_radiance(std::size_t at, PixelMeans& means) const;
   void read_first_hit(std::size_t at, PixelMeans& means) const;
 
   PixelRect area_;
   FilmLayers layers_;
-  std::vector<Stage> stages_;  // 1, 2 or 4 stages
-  // [y][x], sums over stages 0 and 1. A layer that the film does not keep is empty.
+  std::vector<Stage> stages_;  // 1 or 2 stages
+  // [y][x], sums over stage 0. A layer that the film does not keep is empty.
   std::vector<FirstHit> first_hits_;
   std::vector<Position> positions_;
   std::vector<Ids> ids_;

@@ -85,9 +85,9 @@ bool Film::read_sums(PixelRect rect, vm::ByteReader& in) {
 
 std::size_t Film::file_bytes_per_pixel(FilmLayers layers, std::size_t stages) {
   constexpr std::size_t kSums = 3 * sizeof(std::int64_t), kCount = sizeof(std::uint32_t);
-  const std::size_t stage = kSums + 2 * kCount + (layers.variance ? 3 * sizeof(WideSum) : 0) +
-                            (layers.halves && stages == 1 ? kSums + kCount : 0);
-  return stages * stage + (layers.first_hit ? 2 * kSums + sizeof(std::int64_t) : 0) + (layers.position ? kSums : 0) +
+  const std::size_t stage = kSums + 2 * kCount + (layers.variance ? 3 * sizeof(WideSum) : 0);
+  return stages * stage + (layers.halves ? kSums + kCount : 0) +
+         (layers.first_hit ? 2 * kSums + sizeof(std::int64_t) : 0) + (layers.position ? kSums : 0) +
          (layers.ids ? 3 * kCount : 0) + (layers.cost ? 2 * sizeof(std::uint64_t) : 0);
 }
 

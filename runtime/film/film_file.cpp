@@ -121,7 +121,7 @@ std::optional<FilmFile> read_head_of(Input& in, const ReadLimits& limits) {
 
 bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   film = Film(shape.area, shape.layers);
-  if (shape.stages > 1) film.begin_stages(shape.stages);
+  if (shape.stages > 1) film.add_stage();
   const std::uint64_t pixel = Film::file_bytes_per_pixel(shape.layers, shape.stages);
   const Tiles tiles(shape.area, kFilmTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {

@@ -118,7 +118,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   return covered;
 }
 
-// Reads the state of adaptive sampling: all tiles of a film with several stages, no tiles of a film with one stage.
+// Reads the state of adaptive sampling: all tiles of the area, or none if all pixels take the same number of samples.
 AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   constexpr auto kMost = static_cast<std::uint32_t>(compiler::kMaxSpp);
   AdaptiveState state;
@@ -130,8 +130,9 @@ AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
       if (end > 4 * kMost) in.fail();
     }
   }
-  const std::int64_t wanted = shape.stages > 1 ? Tiles(shape.area, kAdaptiveTile).count() : 0;
-  if (static_cast<std::int64_t>(state.tiles.size()) != wanted || state.judged > kMost) in.fail();
+  const auto tiles = static_cast<std::int64_t>(state.tiles.size());
+  const bool fits = tiles == 0 ? shape.stages == 1 : tiles == Tiles(shape.area, kAdaptiveTile).count();
+  if (!fits || state.judged > kMost) in.fail();
   return state;
 }
 
@@ -141,7 +142,7 @@ bool makes_sense(const FilmFile& head) {
   return side(header.width) && side(header.height) && is_range(header.samples) &&
          std::int64_t{header.width} * header.height <= kMostPixels &&
          is_within(head.shape.area, {0, 0, header.width, header.height}) &&
-         (head.shape.stages == 1 || head.shape.stages == 2 || head.shape.stages == 4);
+         (head.shape.stages == 1 || head.shape.stages == 2);
 }
 
 }  // namespace

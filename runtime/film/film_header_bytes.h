@@ -15,7 +15,7 @@
 namespace fathom::runtime {
 
 inline constexpr std::string_view kFilmMagic = "FATHOMFM";  // format and size of the head follow
-inline constexpr std::uint32_t kFilmFormat = 2;
+inline constexpr std::uint32_t kFilmFormat = 3;
 inline constexpr int kFilmTile = 64;            // side in pixels; each tile of the sums has a digest
 inline constexpr std::size_t kDigestSize = 16;  // bytes
 

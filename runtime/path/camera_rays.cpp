@@ -21,17 +21,17 @@ void make_samplers(const SamplePlan& plan, std::span<const PathKey> keys, Sample
 
 }  // namespace
 
-void begin_paths(const RenderContext& context, const Pass& pass, std::span<const PathKey> keys,
-                 std::span<const std::uint32_t> ids, std::span<PathState> paths, RealScratch& scratch) {
+void begin_paths(const RenderContext& context, std::span<const PathKey> keys, std::span<const std::uint32_t> ids,
+                 std::span<PathState> paths, RealScratch& scratch) {
   CHECK(keys.size() <= kCameraBatch && ids.size() == keys.size(), "a batch of camera rays is too large");
   Samplers samplers;
   std::array<CameraRay, kCameraBatch> rays;
   std::array<float, kCameraBatch> weights;
-  make_samplers(pass.plan, keys, samplers);
+  const Settings& settings = context.settings;
+  make_samplers({settings.sampler, settings.seed, settings.spp}, keys, samplers);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     // A single sample shows the pixel's centre.
-    const FilterSample place =
-        context.settings.spp == 1 ? FilterSample{} : context.filter.sample(samplers[i].next2());
+    const FilterSample place = settings.spp == 1 ? FilterSample{} : context.filter.sample(samplers[i].next2());
     const double x = keys[i].x + 0.5 + static_cast<double>(place.offset.x);
     const double y = keys[i].y + 0.5 + static_cast<double>(place.offset.y);
     rays[i] = context.camera.has_lens() ? context.camera.ray(x, y, samplers[i].next2()) : context.camera.ray(x, y);
@@ -50,7 +50,7 @@ void begin_paths(const RenderContext& context, const Pass& pass, std::span<const
     path.in_shadow_test = false;
     path.ends = false;
     path.result = {};
-    path.result.number = pass.first_number + keys[i].sample;
+    path.result.number = keys[i].sample;
     path.next_medium = context.camera_space ? *context.camera_space
                                             : medium_at(rays[i].origin, context.media, context.materials, scratch);
     path.next = Ray{rays[i].origin, rays[i].direction};

@@ -15,7 +15,7 @@ namespace fathom::runtime {
 inline constexpr std::size_t kCameraBatch = 32;
 
 // Sets paths[ids[i]] to the beginning of path keys[i]. The next ray is the camera ray.
-void begin_paths(const RenderContext& context, const Pass& pass, std::span<const PathKey> keys,
-                 std::span<const std::uint32_t> ids, std::span<PathState> paths, RealScratch& scratch);
+void begin_paths(const RenderContext& context, std::span<const PathKey> keys, std::span<const std::uint32_t> ids,
+                 std::span<PathState> paths, RealScratch& scratch);
 
 }  // namespace fathom::runtime

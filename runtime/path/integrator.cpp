@@ -24,9 +24,8 @@ void for_each_part(std::size_t count, std::size_t size, const Use& use) {
 
 }  // namespace
 
-Integrator::Integrator(const RenderContext& context, const Pass& pass, PathSource& source, SampleSink& sink)
+Integrator::Integrator(const RenderContext& context, PathSource& source, SampleSink& sink)
     : context_(context),
-      pass_(pass),
       source_(source),
       sink_(sink),
       queues_(context),
@@ -59,7 +58,7 @@ bool Integrator::start_paths() {
   const std::span<const std::uint32_t> begun = std::span(ids).first(given);
   std::copy_n(free_ids_.rbegin(), given, ids.begin());
   free_ids_.resize(free_ids_.size() - given);
-  begin_paths(context_, pass_, std::span(keys).first(given), begun, paths_, scratch_);
+  begin_paths(context_, std::span(keys).first(given), begun, paths_, scratch_);
   for (const std::uint32_t id : begun) trace_path(id);
   stats_.primary_rays += given;
   return given == wanted;

@@ -58,7 +58,7 @@ class SampleSink {
 
 class Integrator {
  public:
-  Integrator(const RenderContext& context, const Pass& pass, PathSource& source, SampleSink& sink);
+  Integrator(const RenderContext& context, PathSource& source, SampleSink& sink);
 
   // Follows all paths of the source to their end.
   void run();
@@ -80,7 +80,6 @@ class Integrator {
   void retire_path(std::uint32_t id);    // and free the id
 
   const RenderContext& context_;
-  const Pass pass_;
   PathSource& source_;
   SampleSink& sink_;
   RayQueues queues_;

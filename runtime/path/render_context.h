@@ -36,10 +36,4 @@ struct RenderContext {
 // The name that runtime/render.cpp and runtime/passes.h use.
 using World = RenderContext;
 
-// The random numbers that paths are drawn by, and the paths' place among the samples of their pixel.
-struct Pass {
-  SamplePlan plan;
-  std::uint32_t first_number = 0;  // PathSample::number of the pass's sample 0
-};
-
 }  // namespace fathom::runtime

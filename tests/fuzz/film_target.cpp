@@ -82,12 +82,11 @@ std::vector<Input> seeds_of_film() {
   runtime::FilmLayers every = runtime::kAllLayers;
   every.halves = true;
   for (const runtime::FilmLayers layers : {runtime::FilmLayers{}, every, runtime::FilmLayers{.first_hit = false}}) {
-    for (const std::size_t stages : {1, 2, 4}) {
+    for (const auto& [adaptive, stages] :
+         {std::pair{false, std::size_t{1}}, {true, std::size_t{1}}, {true, std::size_t{2}}}) {
       runtime::PartialRender render{runtime::Film(runtime::PixelRect{2, 1, 20, 4}, layers), {}, {}};
-      if (stages > 1) {
-        render.film.begin_stages(stages);
-        render.adaptive = {4, {{{4, 0}}, {{0, 4}}}};
-      }
+      if (stages > 1) render.film.add_stage();
+      if (adaptive) render.adaptive = {4, {{{4, 0}}, {{0, 4}}}};
       runtime::PathSample sample;
       sample.hit = true;
       sample.radiance = glm::vec3(0.5f, 1, 2);

@@ -182,7 +182,7 @@ std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan
 
 std::optional<std::string> fault_of(const runtime::FilmFile& file, const PlanGrid& grid, const PlanUnit& unit) {
   const bool fits = file.header.width == grid.width && file.header.height == grid.height &&
-                    file.shape.area == unit.area && file.shape.stages == 1;
+                    file.shape.area == unit.area && !file.render.adaptive.used();
   if (!fits || !(file.header.samples == unit.samples)) return "it is of another unit";
   if (!file.render.covered.front().covers({unit.area, unit.samples})) return "it has not all samples";
   return std::nullopt;

@@ -189,7 +189,7 @@ TEST_CASE("cli: flags override the scene") {
 
 TEST_CASE("cli: how samples and light are found, from the command line and the scene") {
   const Folder folder;
-  const std::string scene = R"({"version": 1, "film": {"width": 16, "height": 12}, "render": {"spp": 8%},
+  const std::string scene = R"({"version": 1, "film": {"width": 48, "height": 32}, "render": {"spp": 8%},
       "background": [0.1, 0.1, 0.1], "camera": {"position": [0, 1, 4]},
       "materials": {"lamp": {"type": "emissive", "emission": [9, 9, 9]}, "mirror": {"type": "specular"}},
       "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
@@ -210,7 +210,7 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
   };
   const std::string plain = picture("lit.json"), shared = picture("lit.json --noise-threshold 0");
   CHECK(plain != shared);
-  CHECK_THAT(numbers("lit.json --noise-threshold 0"), Contains("\"primary_rays\": 1536,"));
+  CHECK_THAT(numbers("lit.json --noise-threshold 0"), Contains("\"primary_rays\": 12288,"));
   CHECK(picture("shared.json") == shared);
   CHECK(picture("shared.json --uniform") == plain);
   CHECK(picture("shared.json -s 7") == picture("lit.json -s 7"));

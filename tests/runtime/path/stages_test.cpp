@@ -82,10 +82,10 @@ TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium",
       "objects": [{"type": "sphere", "radius": 1, "material": "glass"}])");
   const RenderContext context = context_of(scene);
   std::vector<PathState> paths(3);
-  const PathKey keys[] = {{2, 1, 0, 0}, {3, 3, 0, 0}};
+  const PathKey keys[] = {{2, 1, 5, 0}, {3, 3, 0, 0}};
   const std::uint32_t ids[] = {2, 0};
   RealScratch scratch;
-  begin_paths(context, {{}, 5}, keys, ids, paths, scratch);
+  begin_paths(context, keys, ids, paths, scratch);
   const PathState& path = paths[2];
   const CameraRay expected = context.camera.ray(2.5, 1.5);
   CHECK(path.next.origin == expected.origin);

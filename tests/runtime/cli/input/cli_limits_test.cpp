@@ -94,9 +94,9 @@ TEST_CASE("cli: memory is counted before it is taken") {
   CHECK(refused.code == 2);
   CHECK(contains(refused.err, "1000 pixels of 112 bytes"));
   CHECK_FALSE(folder.has("no.png"));
-  // A noise threshold adds four stages of 32 bytes and 48 bytes of variance. --denoise adds a copy of the film and its own
-  // buffers.
-  for (const auto& [arguments, each] : {std::pair{"--noise-threshold 1", 344}, {"--denoise", 392}}) {
+  // A noise threshold adds a stage of 32 bytes, and 48 bytes of variance to both stages. --denoise adds a copy of the
+  // film and its own buffers.
+  for (const auto& [arguments, each] : {std::pair{"--noise-threshold 1", 184}, {"--denoise", 392}}) {
     const std::string render = "render -q ball.json -s 16 -o out.png --size 100x10 " + std::string(arguments);
     CHECK(folder.run(render + " --limit memory=" + std::to_string(each * 1000)).code == 0);
     const Result more = folder.run(render + " --limit memory=" + std::to_string(each * 1000 - 1));
