@@ -46,7 +46,7 @@ struct Camera {
   double sensor_width = 36;            // mm; the sensor is as wide as the image
   double width = 4;                    // orthographic: width of the image, scene units
   // Share of a frame's time, from the frame's beginning, during which light enters. 0: all light is of one moment.
-  // Compiled files do not store the shutter: without its text a scene has one moment.
+  // A compiled file without text has one moment.
   double shutter = 0;
 
   // Perspective: the lens. A camera without lens_radius and f_stop is a pinhole.

@@ -79,7 +79,8 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "File to write, usually .fbc; - is standard output", any_text(output));
   arguments.flag("--strip", "Leave out the names of instructions and their places in the scene", strip);
-  arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and no constant is proved", no_text);
+  arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and `check` has nothing to prove",
+                 no_text);
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(scene_arguments.path, output.value_or(""), streams)) return *code;
   auto input = read_scene_text(scene_arguments, streams);

@@ -264,9 +264,9 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
     if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
-    const bool whole = request.stage == kFile;  // print claims as stored, without proving them
-    streams.out << print_compiled(whole ? input.stored->scene : proved_or_claimed(input), request,
-                                  input.stored->contents);
+    const compiler::StoredScene& stored = *input.stored;
+    streams.out << print_compiled(request.stage == kFile ? stored.scene : as_claimed(stored.scene), request,
+                                  stored.contents);
     return kDone;
   }
   if (input.stored && !input.stored->contents.text) {

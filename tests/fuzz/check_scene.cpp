@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/artefact/load.h"
+#include "compiler/artefact/compiled_file.h"
 #include "compiler/artefact/programs.h"
 #include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/read_scene.h"
@@ -76,7 +76,7 @@ void check_stored(const compiler::CompiledScene& scene) {
     check_evaluation(*row.program, random, 4);
     vm::Expression().read(*row.program);
   }
-  test::draw_small(compiler::unproved(scene));
+  test::draw_small(scene);
 }
 
 }  // namespace fathom::fuzz

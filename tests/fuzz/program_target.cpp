@@ -5,7 +5,7 @@
 // The reader refuses an input with a reason, or the result writes as the same bytes and can run.
 #include <algorithm>
 
-#include "compiler/artefact/load.h"
+#include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/check_scene.h"

@@ -112,6 +112,7 @@ std::uint64_t instruction_cost(std::uint32_t word) {
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
 
 std::uint32_t largest_integer(const OpcodeInfo& opcode, int index) {
+  if (opcode.immediate_names.find(':') == opcode.immediate_names.npos) return 0;
   const std::string_view name = nth_name(opcode.immediate_names, index);
   const std::size_t colon = name.find(':');
   if (colon == name.npos) return 0;

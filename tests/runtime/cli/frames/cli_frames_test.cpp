@@ -199,7 +199,7 @@ TEST_CASE("cli frames: programs without their text have no time") {
   REQUIRE(folder.run("compile hop.json -o bare.fbc --no-text -q").code == 0);
   const Result bare = folder.run("render bare.fbc --frames 1:3 -o bare.png");
   CHECK(bare.code == 2);
-  CHECK_THAT(bare.err, Contains("programs without their scene"));
+  CHECK_THAT(bare.err, Contains("programs without the scene they were compiled from"));
   REQUIRE(folder.run_script("\"$fathom\" render - --frames 1:3 -o in.png -q < hop.json").code == 0);
   CHECK(folder.read("in-0002.png") == folder.read("json-0002.png"));
 }
