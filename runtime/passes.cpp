@@ -45,22 +45,22 @@ SampleLimits limits_of(const AdaptiveState& state, PixelRect area, const End& en
 }  // namespace
 
 Stats Passes::run(SampleRange samples) {
-  const Settings& settings = world_.settings;
+  const Settings& settings = context_.settings;
   if (settings.noise_threshold) return run_adaptive();
   return run_pass(0, samples, {});
 }
 
 RenderEnd Passes::end() const {
-  if (picture_.end() != RenderEnd::Done || world_.settings.noise_threshold.value_or(0) <= 0) return picture_.end();
-  const Tiles tiles(world_.settings.crop, kAdaptiveTile);
+  if (picture_.end() != RenderEnd::Done || context_.settings.noise_threshold.value_or(0) <= 0) return picture_.end();
+  const Tiles tiles(context_.settings.crop, kAdaptiveTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
-    if (image_noise(render_.film, tiles.at(i)) > *world_.settings.noise_threshold) return RenderEnd::Done;
+    if (image_noise(render_.film, tiles.at(i)) > *context_.settings.noise_threshold) return RenderEnd::Done;
   }
   return RenderEnd::Noise;
 }
 
 Stats Passes::run_adaptive() {
-  const Settings& settings = world_.settings;
+  const Settings& settings = context_.settings;
   const double threshold = *settings.noise_threshold;
   AdaptiveState& state = render_.adaptive;
   if (!state.used()) {
@@ -86,7 +86,7 @@ Stats Passes::run_adaptive() {
 
 Stats Passes::run_round(std::uint32_t end) {
   const AdaptiveState& state = render_.adaptive;
-  const PixelRect area = world_.settings.crop;
+  const PixelRect area = context_.settings.crop;
   const SampleRange round{state.judged, end};
   const Tiles tiles(area, kAdaptiveTile);
   Stats stats;
@@ -111,7 +111,7 @@ Stats Passes::run_shares() {
   const AdaptiveState& state = render_.adaptive;
   std::uint32_t last = state.judged;
   for (const AdaptiveTile& tile : state.tiles) last = std::max({last, tile.ends[0], tile.ends[1]});
-  const SampleLimits limits = limits_of(state, world_.settings.crop,
+  const SampleLimits limits = limits_of(state, context_.settings.crop,
                                         [](const AdaptiveTile& tile, std::size_t half) { return tile.ends[half]; });
   picture_.change([&] { picture_.expect(limits.sum() - render_.film.samples()); });
   return run_pass(0, {state.judged, last}, limits);
@@ -119,7 +119,7 @@ Stats Passes::run_shares() {
 
 // Treats `besides` as done, in addition to the samples in the film.
 Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& besides) {
-  const Settings& settings = world_.settings;
+  const Settings& settings = context_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);
   Coverage done = besides;
@@ -128,7 +128,7 @@ Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimit
   // With a time limit the first round has one sample per pixel: a user who sets a limit wants an early image of all
   // pixels, however noisy.
   UnitQueue units(crop, side, rounds_of(samples, options_.time_limit ? 1 : kFirstRound), done);
-  return run_threads({world_, stage, limits, units, picture_}, settings.threads);
+  return run_threads({context_, stage, limits, units, picture_}, settings.threads);
 }
 
 }  // namespace fathom::runtime

@@ -13,8 +13,8 @@ namespace fathom::runtime {
 class Passes {
  public:
   // The passes add missing samples to `render`, the render of `picture`.
-  Passes(const World& world, const RenderOptions& options, PartialRender& render, SharedPicture& picture)
-      : world_(world), options_(options), render_(render), picture_(picture) {}
+  Passes(const RenderContext& context, const RenderOptions& options, PartialRender& render, SharedPicture& picture)
+      : context_(context), options_(options), render_(render), picture_(picture) {}
 
   // Renders until all samples are taken or the options say stop. Without a noise threshold, takes only samples in
   // `samples`. Returns the counts of all threads together. Call run() once.
@@ -28,7 +28,7 @@ class Passes {
   Stats run_shares();                  // the remaining samples of all tiles
   Stats run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& besides = {});
 
-  const World& world_;
+  const RenderContext& context_;
   const RenderOptions& options_;
   PartialRender& render_;
   SharedPicture& picture_;

@@ -91,34 +91,34 @@ int samples_with(const compiler::CompiledScene& scene, const Settings& settings,
   return static_cast<int>(samples);
 }
 
-World make_world(const compiler::CompiledScene& scene, const Settings& settings, const RenderOptions& options,
-                 Clock::time_point start) {
-  World world{scene,
-              settings,
-              Camera(scene.camera, settings.width, settings.height),
-              Filter(settings.filter, settings.filter_width),
-              make_field(scene, settings.far),
-              Media(scene, extent_of(scene), settings.far),
-              Materials(scene),
-              Lights(scene, options.environment),
-              {},
-              true};
+RenderContext make_context(const compiler::CompiledScene& scene, const Settings& settings,
+                           const RenderOptions& options, Clock::time_point start) {
+  RenderContext context{scene,
+                        settings,
+                        Camera(scene.camera, settings.width, settings.height),
+                        Filter(settings.filter, settings.filter_width),
+                        make_field(scene, settings.far),
+                        Media(scene, extent_of(scene), settings.far),
+                        Materials(scene),
+                        Lights(scene, options.environment),
+                        {},
+                        true};
   if (settings.regions) {
     Settings share = settings;
     share.spp = samples_with(scene, settings, options);
     RegionOptions regions = region_options(share);
     regions.interrupted = interruption(settings, options, start);
     RegionStore* const store = options.region_store.get();
-    add_regions(world.field, scene, regions, store);
-    if (world.field.regions) regions.memory -= world.field.regions->facts().bytes;
-    world.media.add_regions(scene, regions, store);
+    add_regions(context.field, scene, regions, store);
+    if (context.field.regions) regions.memory -= context.field.regions->facts().bytes;
+    context.media.add_regions(scene, regions, store);
   }
   RealScratch scratch;
-  const glm::dvec3 eye = world.camera.position();
-  if (is_even_around(eye, world.camera.spread(world.filter.radius()), world.field, world.media, scratch)) {
-    world.camera_space = space_at(eye, world.media, world.materials, scratch);
+  const glm::dvec3 eye = context.camera.position();
+  if (is_uniform_around(eye, context.camera.spread(context.filter.radius()), context.field, context.media, scratch)) {
+    context.camera_medium = medium_at(eye, context.media, context.materials, scratch);
   }
-  return world;
+  return context;
 }
 
 void check(const Settings& settings) {
@@ -148,11 +148,11 @@ std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Setti
   return moments;
 }
 
-void count_regions(const World& world, const RenderOptions& options, Stats& stats) {
-  if (!world.field.regions) return;
-  const Regions::Facts& facts = world.field.regions->facts();
+void count_regions(const RenderContext& context, const RenderOptions& options, Stats& stats) {
+  if (!context.field.regions) return;
+  const Regions::Facts& facts = context.field.regions->facts();
   stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, facts.bytes);
-  const bool kept = options.region_store && options.region_store->kept(*world.field.regions);
+  const bool kept = options.region_store && options.region_store->kept(*context.field.regions);
   stats.region_seconds += kept ? 0 : facts.seconds;
   stats.regions_kept += kept;
 }
@@ -211,14 +211,14 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
       if (result.covered.front().covers({settings.crop, moment.samples})) continue;
     }
     if (moment.samples.first > settings.samples.first && picture.stopped()) break;
-    World world = make_world(*moment.scene, settings, options, start);
-    world.numbered = same_numbers(scene, *moment.scene);
+    RenderContext context = make_context(*moment.scene, settings, options, start);
+    context.numbered = same_numbers(scene, *moment.scene);
     if (options.region_store) options.region_store->forget_unused();
     if (!ticker) ticker.emplace(options, picture);
-    Passes passes(world, options, result, picture);
+    Passes passes(context, options, result, picture);
     result.stats.merge(passes.run(moment.samples));
     result.stats.end = passes.end();
-    count_regions(world, options, result.stats);
+    count_regions(context, options, result.stats);
   }
   ticker.reset();
   if (picture.end() != RenderEnd::Done) result.stats.end = picture.end();

@@ -51,8 +51,8 @@ void begin_paths(const RenderContext& context, std::span<const PathKey> keys, st
     path.ends = false;
     path.result = {};
     path.result.number = keys[i].sample;
-    path.next_medium = context.camera_space ? *context.camera_space
-                                            : medium_at(rays[i].origin, context.media, context.materials, scratch);
+    path.next_medium = context.camera_medium ? *context.camera_medium
+                                             : medium_at(rays[i].origin, context.media, context.materials, scratch);
     path.next = Ray{rays[i].origin, rays[i].direction};
     path.next.side = path.next_medium.side;
   }

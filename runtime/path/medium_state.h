@@ -41,8 +41,4 @@ inline glm::vec3 transmittance(const MediumState& medium, double distance) {
   return exp(-medium.absorption * static_cast<float>(std::min(distance, kMaxDistance)));
 }
 
-// The names that runtime/render.cpp uses.
-inline constexpr auto& space_at = medium_at;
-inline constexpr auto& is_even_around = is_uniform_around;
-
 }  // namespace fathom::runtime

@@ -26,14 +26,11 @@ struct RenderContext {
   Media media;
   Materials materials;
   Lights lights;
-  std::optional<MediumState> camera_space;  // the medium in which all camera rays begin, if it is the same for all
+  std::optional<MediumState> camera_medium;  // the medium in which all camera rays begin, if it is the same for all
   bool numbered = true;  // surfaces and materials have the numbers that they have in the picture's own scene
 
   // Returns a field by its number, as MediumState::field has it.
   const Field& field_at(std::size_t number) const { return number == 0 ? field : media.field(number - 1); }
 };
-
-// The name that runtime/render.cpp and runtime/passes.h use.
-using World = RenderContext;
 
 }  // namespace fathom::runtime

@@ -38,7 +38,7 @@ std::string describe_settings(const compiler::CompiledScene& scene, const runtim
   text += fmt::format(
       "sampler {}, filter {}{}\n", compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)],
       compiler::kFilterNames[static_cast<std::size_t>(settings.filter)], settings.noise_threshold ? ", adaptive" : "");
-  text += settings.far ? fmt::format("rays end {:.6g} from the camera\n", *settings.far) : "";
+  text += settings.far ? fmt::format("rays end after {:.6g}\n", *settings.far) : "";
   const compiler::Box bound = scene.bound.moved(scene.origin);
   text += fmt::format("bound {} to {}, Lipschitz constant {:.6g} ({})\n", triple(bound.lo), triple(bound.hi),
                       scene.lipschitz, scene.certified ? "proved" : "an estimate");
