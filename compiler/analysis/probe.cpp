@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -11,6 +10,7 @@
 #include "compiler/shapes/node_table.h"
 #include "compiler/source/limits.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/number/real.h"
 #include "vm/program/parallel_for.h"
 #include "vm/program/verify.h"
 
@@ -30,9 +30,9 @@ class Random {
   Random(std::uint64_t row, std::uint64_t point) : state_((row + 1) * 0x9E3779B97F4A7C15u ^ (point << 20)) { next(); }
   double uniform(double lo, double hi) { return lo + (hi - lo) * static_cast<double>(next() >> 11) * 0x1p-53; }
   glm::dvec3 direction() {
-    const double y = uniform(-1, 1), angle = uniform(0, 2 * std::numbers::pi),
-                 r = std::sqrt(std::max(0.0, 1 - y * y));
-    return {r * std::cos(angle), y, r * std::sin(angle)};
+    const double y = uniform(-1, 1), r = std::sqrt(std::max(0.0, 1 - y * y));
+    const auto [sine, cosine] = vm::real::sin_cos_turns(uniform(0, 1));
+    return {r * cosine, y, r * sine};
   }
 
  private:
@@ -81,7 +81,7 @@ class Prober {
         p -= move;
         value = look(p, row);
       }
-      const double length = size_ * std::exp(random.uniform(std::log(1e-5), std::log(0.1)));
+      const double length = size_ * vm::real::pow(10, random.uniform(-5, -1));
       compare(p, value.distance, p + random.direction() * length, row);
     }
     row.points += last - first;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "compiler/geometry/sine_cosine.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -28,19 +28,14 @@ Axes axes_of(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-double tangent(double angle) {
-  const SineCosine s = sine_cosine(angle / kDegree);
-  return s.sine / s.cosine;
-}
-
 // Returns half the image's width and height without the margins, at unit distance.
 glm::dvec2 slopes(const Camera& camera, double aspect) {
   glm::dvec2 half;
   if (camera.vertical_fov) {
-    half.y = tangent(*camera.vertical_fov / 2);
+    half.y = vm::real::tan(*camera.vertical_fov / 2);
     half.x = half.y * aspect;
   } else {
-    half.x = camera.focal_length ? camera.sensor_width / (2 * *camera.focal_length) : tangent(camera.fov / 2);
+    half.x = camera.focal_length ? camera.sensor_width / (2 * *camera.focal_length) : vm::real::tan(camera.fov / 2);
     half.y = half.x / aspect;
   }
   return half * (1 - 2 * kFrameMargin);

@@ -46,8 +46,8 @@ std::vector<double> sector_folds(int n) {
       continue;
     }
     sectors = (sectors + 1) / 2;
-    const SineCosine line = sine_cosine(180.0 * sectors / n);
-    normals.insert(normals.end(), {-line.cosine, line.sine});
+    const vm::real::SinCos line = vm::real::sin_cos_degrees(180.0 * sectors / n);
+    normals.insert(normals.end(), {-line.cos, line.sin});
   }
   return normals;
 }
@@ -198,8 +198,8 @@ NodeSpec polygon_row() {
 
 std::vector<double> regular_polygon_immediates(Params p) {
   std::vector<double> k = sector_folds(static_cast<int>(p[0]));
-  const SineCosine half = sine_cosine(180 / p[0]);
-  k.insert(k.end(), {half.sine, half.cosine, p[1]});
+  const vm::real::SinCos half = vm::real::sin_cos_degrees(180 / p[0]);
+  k.insert(k.end(), {half.sin, half.cos, p[1]});
   return k;
 }
 Box regular_polygon_bound(Params p) {

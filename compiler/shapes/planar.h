@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 #include <initializer_list>
 
-#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/node_spec.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 
@@ -16,8 +16,8 @@ inline double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; 
 
 // Returns the point at a distance from the origin, at an angle in degrees from +y towards +x.
 inline glm::dvec2 at_polar(double radius, double degrees) {
-  const SineCosine at = sine_cosine(degrees);
-  return {radius * at.sine, radius * at.cosine};
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(degrees);
+  return {radius * at.sin, radius * at.cos};
 }
 
 // Outlines are infinite along z.

@@ -63,8 +63,8 @@ Complaint check_arc(Params p) {
   return check_thickness(p[2], p[0], p[1] == 180 ? "circle" : "pie");
 }
 Code arc_code(Params p) {
-  const SineCosine at = sine_cosine(p[1]);
-  return one(Opcode::Arc, {p[0], p[2], at.sine, at.cosine, p[0] * at.sine, p[0] * at.cosine});
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  return one(Opcode::Arc, {p[0], p[2], at.sin, at.cos, p[0] * at.sin, p[0] * at.cos});
 }
 Box arc_bound(Params p) { return arc_box(p[0], p[1]).grown(p[2]); }
 
@@ -87,8 +87,8 @@ NodeSpec arc_row() {
 // A whole ring has no ends.
 Code ring_code(Params p) {
   if (p[1] == 180) return arc_code(p);
-  const SineCosine at = sine_cosine(p[1]);
-  return one(Opcode::Ring, {p[0], p[2], at.sine, at.cosine, p[0] - p[2], p[0] + p[2]});
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  return one(Opcode::Ring, {p[0], p[2], at.sin, at.cos, p[0] - p[2], p[0] + p[2]});
 }
 Box ring_bound(Params p) { return unite(arc_box(p[0] + p[2], p[1]), mirrored_hull({at_polar(p[0] - p[2], p[1])})); }
 
@@ -111,8 +111,8 @@ NodeSpec ring_row() {
 // A whole disk has no sides.
 Code pie_code(Params p) {
   if (p[1] == 180) return one(Opcode::Circle, {p[0]});
-  const SineCosine at = sine_cosine(p[1]);
-  return one(Opcode::Pie, {p[0], at.sine, at.cosine});
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  return one(Opcode::Pie, {p[0], at.sin, at.cos});
 }
 NodeSpec pie_row() {
   return {.kind = Kind::Pie,
@@ -152,19 +152,19 @@ NodeSpec cut_disk_row() {
 Complaint check_horseshoe(Params p) {
   if (Complaint complaint = check_angle(p[1], false, "")) return complaint;
   if (Complaint complaint = check_thickness(p[3], p[0], "pie")) return complaint;
-  const SineCosine at = sine_cosine(p[1]);
-  const double inner = p[0] - p[3], clear = inner * at.sine + std::min(0.0, p[2] * at.cosine);
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  const double inner = p[0] - p[3], clear = inner * at.sin + std::min(0.0, p[2] * at.cos);
   if (clear >= 0) return std::nullopt;
   return fmt::format("the legs cross each other: give a `length` of at most {:.6g}, or a smaller `angle`",
-                     inner * at.sine / -at.cosine);
+                     inner * at.sin / -at.cos);
 }
 Code horseshoe_code(Params p) {
-  const SineCosine at = sine_cosine(p[1]);
-  return one(Opcode::Horseshoe, {p[0], p[3], at.sine, at.cosine, p[2], p[0] - p[3], p[0] + p[3]});
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  return one(Opcode::Horseshoe, {p[0], p[3], at.sin, at.cos, p[2], p[0] - p[3], p[0] + p[3]});
 }
 Box horseshoe_bound(Params p) {
-  const SineCosine at = sine_cosine(p[1]);
-  const dvec2 leg = p[2] * dvec2(at.cosine, -at.sine);
+  const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
+  const dvec2 leg = p[2] * dvec2(at.cos, -at.sin);
   const dvec2 outer = at_polar(p[0] + p[3], p[1]), inner = at_polar(p[0] - p[3], p[1]);
   return unite(arc_box(p[0] + p[3], p[1]), mirrored_hull({inner, outer + leg, inner + leg}));
 }

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "compiler/geometry/direction.h"
-#include "compiler/geometry/sine_cosine.h"
 #include "compiler/shapes/rows.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -104,11 +104,11 @@ Complaint check_capped_torus(Params p) {
   return fmt::format("`angle` is {}; it is half of what remains of the ring, at most 180 degrees", p[2]);
 }
 Code capped_torus_code(Params p) {
-  const auto [sine, cosine] = sine_cosine(p[2]);
+  const auto [sine, cosine] = vm::real::sin_cos_degrees(p[2]);
   return one(Opcode::CappedTorus, {p[0], p[1], sine, cosine});
 }
 Box capped_torus_bound(Params p) {
-  const auto [sine, cosine] = sine_cosine(p[2]);
+  const auto [sine, cosine] = vm::real::sin_cos_degrees(p[2]);
   const double side = p[2] < 90 ? p[0] * sine + p[1] : p[0] + p[1];
   return {{-side, p[0] * cosine - p[1], -p[1]}, {side, p[0] + p[1], p[1]}};
 }
@@ -265,7 +265,7 @@ Complaint check_infinite_cone(Params p) {
   return fmt::format("`angle` is {}; it is measured from the axis to the side and must be below 90 degrees", p[0]);
 }
 Code infinite_cone_code(Params p) {
-  const auto [sine, cosine] = sine_cosine(p[0]);
+  const auto [sine, cosine] = vm::real::sin_cos_degrees(p[0]);
   return one(Opcode::InfiniteCone, {sine, cosine});
 }
 Box infinite_cone_bound(Params) {

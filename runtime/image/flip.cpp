@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-#include "runtime/base/elementary.h"
+#include "vm/number/real.h"
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
@@ -18,9 +18,8 @@ using Planes = std::array<Plane, 3>;
 constexpr float kColorExponent = 0.7f, kNear = 0.4f, kNearShare = 0.95f;  // q_c, p_c, p_t
 constexpr float kFeatureExponent = 0.5f, kFeatureWidth = 0.082f;          // q_f; w, degrees
 
-// Returns x^y for x, y >= 0; 0^0 is 1.
 float power_of(float x, float y) {
-  return y == 0 ? 1 : static_cast<float>(power(static_cast<double>(x), static_cast<double>(y)));
+  return static_cast<float>(vm::real::pow(static_cast<double>(x), static_cast<double>(y)));
 }
 
 // Matrices of sRGB's primaries and D65, as fractions of whole numbers (IEC 61966-2-1:1999).

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "runtime/base/elementary.h"
+#include "compiler/scene/srgb.h"
 
 namespace fathom::runtime {
 namespace {
@@ -34,7 +34,7 @@ class SrgbBytes {
     while (true) {
       const double middle = (below + enough) / 2;
       if (middle <= below || middle >= enough) return enough;
-      (to_whole<std::uint8_t>(srgb_encode(middle)) >= byte ? enough : below) = middle;
+      (to_whole<std::uint8_t>(compiler::srgb_encode(middle)) >= byte ? enough : below) = middle;
     }
   }
 
@@ -104,7 +104,8 @@ void Shown::row(int y, std::span<std::uint16_t> rgb) const {
   auto out = rgb.begin();
   for (int x = values_.area.x0; x < values_.area.x1; ++x) {
     const glm::dvec3 shown = color(x, y + values_.area.y0);
-    for (int i = 0; i < 3; ++i) *out++ = to_whole<std::uint16_t>(encoded_ ? srgb_encode(shown[i]) : shown[i]);
+    for (int i = 0; i < 3; ++i)
+      *out++ = to_whole<std::uint16_t>(encoded_ ? compiler::srgb_encode(shown[i]) : shown[i]);
   }
 }
 

@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 
-#include "runtime/base/elementary.h"
+#include "compiler/scene/srgb.h"
 #include "runtime/image/image_exr.h"
 #include "runtime/image/image_io.h"
 #include "runtime/image/image_jpeg.h"
@@ -168,7 +168,7 @@ FloatImage from_signals(const Sample* samples, int width, int height, int compon
   constexpr std::size_t kMost = std::numeric_limits<Sample>::max();
   std::vector<float> light(kMost + 1);
   for (std::size_t i = 0; i <= kMost; ++i) {
-    light[i] = static_cast<float>(srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
+    light[i] = static_cast<float>(compiler::srgb_decode(static_cast<double>(i) / static_cast<double>(kMost)));
   }
   return widened(
       samples, width, height, components, [&](Sample sample) { return light[sample]; },

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/mat3x3.hpp>
+#include <numbers>
 
-#include "runtime/base/elementary.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -49,11 +50,12 @@ glm::dvec3 agx(glm::dvec3 light) {
   constexpr double kLeastStop = -12.47393, kMostStop = 4.026069;
   const auto contrast = [](double v) {
     if (!(v > 0x1p-100)) v = 0x1p-100;  // below the least stop
-    const double x = clamp01((log2(v) - kLeastStop) / (kMostStop - kLeastStop));
+    const double x = clamp01((vm::real::log(v) / std::numbers::ln2 - kLeastStop) / (kMostStop - kLeastStop));
     return (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
   };
   // The curve yields a signal for a display of gamma 2.2.
-  return each(kOutset * each(kInset * light, contrast), [](double signal) { return power(clamp01(signal), 2.2); });
+  return each(kOutset * each(kInset * light, contrast),
+              [](double signal) { return vm::real::pow(clamp01(signal), 2.2); });
 }
 
 glm::dvec3 neutral(glm::dvec3 light) {
@@ -93,7 +95,8 @@ glm::dvec3 apply_curve(ToneCurve curve, glm::dvec3 light) {
 }
 
 double exposure_factor(double stops) {
-  return static_cast<double>(exp2(static_cast<float>(std::clamp(stops, -100.0, 100.0))));
+  const double limited = std::clamp(stops, -100.0, 100.0), whole = std::round(limited);
+  return std::ldexp(vm::real::exp((limited - whole) * std::numbers::ln2), static_cast<int>(whole));
 }
 
 }  // namespace fathom::runtime

@@ -1,5 +1,5 @@
 // Tone curves: map scene-linear light to the light of a display, both linear sRGB. The sRGB signal is encoded
-// afterwards (runtime/base/elementary.h).
+// afterwards (compiler/scene/srgb.h).
 //
 //     none     as it is, clipped at 1
 //     filmic   J. Hable, "Filmic Tonemapping for Real-time Rendering", SIGGRAPH course, 2010: 11.2 / 2 becomes white
@@ -28,7 +28,7 @@ struct ToneMapping {
 // Returns values in [0,1] each. Negative light and NaN count as 0.
 glm::dvec3 apply_curve(ToneCurve curve, glm::dvec3 light);
 
-// Returns 2^stops, exact as a float, within 2^-100 and 2^100.
+// Returns 2^stops within 2^-100 and 2^100, exact for whole stops.
 double exposure_factor(double stops);
 
 }  // namespace fathom::runtime

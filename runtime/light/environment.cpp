@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "runtime/base/angle.h"
 #include "runtime/base/color.h"
 #include "runtime/base/elementary.h"
 #include "runtime/sampling/warp.h"
@@ -77,8 +76,8 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
     CHECK(image != nullptr && !image->pixels.empty(),
           "the scene's background is a picture, which must be read first");
     image_ = std::move(image);
-    turn_sine_ = vm::real::sin(background.image.rotate * kDegree);
-    turn_cosine_ = vm::real::cos(background.image.rotate * kDegree);
+    turn_sine_ = vm::real::sin(background.image.rotate * vm::real::kDegree);
+    turn_cosine_ = vm::real::cos(background.image.rotate * vm::real::kDegree);
     strength_ = static_cast<float>(background.image.strength);
     table_ = SphereTable(image_->width, image_->height, filtered_luminance(*image_));
   }
@@ -97,7 +96,7 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
 
 // A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
 void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
-  const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * kDegree), sin2 = sine * sine;
+  const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * vm::real::kDegree), sin2 = sine * sine;
   if (!(luminance(irradiance) > 0)) return;
   const double height = sin2 / (1 + std::sqrt(1 - sin2));
   discs_.push_back({direction, height, std::sqrt(2 * height) + kRounding,

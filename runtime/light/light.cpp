@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "runtime/base/angle.h"
 #include "runtime/base/color.h"
 #include "runtime/material/material.h"
 #include "vm/number/real.h"
@@ -17,7 +16,7 @@ namespace {
 // Minimum probability of near lights, and of those beyond the scene, when there are both: estimates may be far off.
 constexpr float kLeastShare = 0.25f;
 
-float cosine_of_degrees(double degrees) { return static_cast<float>(vm::real::cos(degrees * kDegree)); }
+float cosine_of_degrees(double degrees) { return static_cast<float>(vm::real::cos(degrees * vm::real::kDegree)); }
 
 // Rises from 0 at the cone's edge to 1, smoothly.
 float spot_falloff(float cosine, float outer, float inner) {

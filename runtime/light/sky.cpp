@@ -84,7 +84,7 @@ Sky::Sky(const compiler::Background::Sky& sky) : sun_(sky.sun), scale_(static_ca
     return out;
   };
   const double luminance =
-      (4.0453 * t - 4.9710) * tangent((4.0 / 9 - t / 120) * (kPi - 2 * theta)) - 0.2155 * t + 2.4192;
+      (4.0453 * t - 4.9710) * vm::real::tan((4.0 / 9 - t / 120) * (kPi - 2 * theta)) - 0.2155 * t + 2.4192;
   perez_ = {perez({0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771,
                    -0.0670 * t + 0.3703},
                   luminance),

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "runtime/base/elementary.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -18,19 +18,19 @@ constexpr double kMillimetre = 1e-3;  // scene units, which are metres where f-s
 glm::dvec2 half_size(const compiler::Camera& camera, double aspect) {
   if (camera.projection == Projection::Orthographic) return {camera.width / 2, camera.width / 2 * aspect};
   if (camera.vertical_fov) {
-    const double half = tangent(*camera.vertical_fov / 2);
+    const double half = vm::real::tan(*camera.vertical_fov / 2);
     return {half / aspect, half};
   }
   const double half =
-      camera.focal_length ? camera.sensor_width / (2 * *camera.focal_length) : tangent(camera.fov / 2);
+      camera.focal_length ? camera.sensor_width / (2 * *camera.focal_length) : vm::real::tan(camera.fov / 2);
   return {half, half * aspect};
 }
 
 std::vector<glm::dvec2> polygon(int sides, double rotation) {
   std::vector<glm::dvec2> corners;
   for (int i = 0; i <= sides; ++i) {
-    const SinCosReal angle =
-        sincos_turn(0.25 + rotation / (2 * std::numbers::pi) + static_cast<double>(i % sides) / sides);
+    const vm::real::SinCos angle =
+        vm::real::sin_cos_turns(0.25 + rotation / (2 * std::numbers::pi) + static_cast<double>(i % sides) / sides);
     corners.push_back({angle.cos, angle.sin});
   }
   return corners;
@@ -43,7 +43,7 @@ glm::dvec2 square_to_disk(glm::dvec2 u) {
   if (v == glm::dvec2(0)) return v;
   const bool wide = std::abs(v.x) > std::abs(v.y);
   const double radius = wide ? v.x : v.y;
-  const SinCosReal angle = sincos_turn(wide ? v.y / v.x / 8 : 0.25 - v.x / v.y / 8);
+  const vm::real::SinCos angle = vm::real::sin_cos_turns(wide ? v.y / v.x / 8 : 0.25 - v.x / v.y / 8);
   return {radius * angle.cos, radius * angle.sin};
 }
 
@@ -123,7 +123,8 @@ glm::dvec2 Camera::lens_point(glm::vec2 u) const {
 
 // Longitude grows from the left, half a turn before the centre. Colatitude grows from the top.
 CameraRay Camera::panorama_ray(double x, double y) const {
-  const SinCosReal longitude = sincos_turn(x / size_.x - 0.5), colatitude = sincos_turn(y / size_.y / 2);
+  const auto longitude = vm::real::sin_cos_turns(x / size_.x - 0.5),
+             colatitude = vm::real::sin_cos_turns(y / size_.y / 2);
   const glm::dvec3 level = forward_ * longitude.cos + right_ * longitude.sin;
   return {position_, glm::normalize(level * colatitude.sin + up_ * colatitude.cos)};
 }

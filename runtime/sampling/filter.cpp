@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "runtime/base/elementary.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -22,8 +23,8 @@ double gaussian(double t) {
 // The minimum four-term window: Harris, "On the Use of Windows for Harmonic Analysis with the Discrete Fourier
 // Transform", 1978, table I.
 double blackman_harris(double t) {
-  return 0.35875 + 0.48829 * sincos_turn(t / 2).cos + 0.14128 * sincos_turn(t).cos +
-         0.01168 * sincos_turn(1.5 * t).cos;
+  const auto cosine = [](double turns) { return vm::real::sin_cos_turns(turns).cos; };
+  return 0.35875 + 0.48829 * cosine(t / 2) + 0.14128 * cosine(t) + 0.01168 * cosine(1.5 * t);
 }
 
 // B = C = 1/3: Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", 1988, equation 8.

@@ -89,17 +89,26 @@ HWY_INLINE N polynomial(N x, const double (&c)[kCount]) {
   return sum;
 }
 
-// Returns the sum of the first `terms` terms of 1/first! + sign x/(first + by)! + x^2/(first + 2 by)! + ...
-template <Plain N>
-HWY_INLINE N factorial_series(N x, int terms, int first, int by, double sign) {
-  double factorial[2 + 2 * 16] = {1};
-  for (int i = 1; i <= first + by * (terms - 1); ++i) factorial[i] = factorial[i - 1] * i;
-  N sum = N::broadcast(0.0);
-  for (int i = terms - 1; i >= 0; --i) {
-    sum = sum * x + N::broadcast((i % 2 == 0 ? 1 : sign) / factorial[first + by * i]);
+// Coefficients 1/first!, sign/(first + by)!, 1/(first + 2 by)!, ... of a Taylor series. Constants, because g++ 12
+// divides at run time where they are expressions of a loop.
+template <int kTerms>
+struct Taylor {
+  double c[kTerms];
+
+  constexpr Taylor(int first, int by, double sign) : c{} {
+    double factorial = 1;
+    for (int i = 1, term = 0; term < kTerms; ++i) {
+      factorial *= i;
+      if (i == first + by * term) c[term] = (term % 2 == 0 ? 1 : sign) / factorial, ++term;
+    }
   }
-  return sum;
-}
+};
+template <class P>
+inline constexpr Taylor<P::kSineTerms> kSine{3, 2, -1};
+template <class P>
+inline constexpr Taylor<P::kCosineTerms> kCosine{4, 2, -1};
+template <class P>
+inline constexpr Taylor<P::kExpTerms - 1> kExp{2, 1, 1};
 
 // Returns NaN where a or b is NaN, else `value`.
 template <Plain N>
@@ -185,8 +194,8 @@ HWY_INLINE SinCos<N> sin_cos_reduced(const Quarter<N>& q) {
   using P = Precision<N>;
   const N r = q.high, z = r * r, one = N::broadcast(1.0);
   const N half_z = z * N::broadcast(0.5), c = one - half_z;
-  const N sine = -factorial_series(z, P::kSineTerms, 3, 2, -1);
-  const N cosine = factorial_series(z, P::kCosineTerms, 4, 2, -1);
+  const N sine = -polynomial(z, kSine<P>.c);
+  const N cosine = polynomial(z, kCosine<P>.c);
   return {r + (r * (z * sine) + q.low * c), c + (((one - c) - half_z) + (z * z * cosine - r * q.low))};
 }
 
@@ -293,7 +302,7 @@ HWY_INLINE N exp(N x) {
   const N c = clamp(x, P::kExpLimit), one = N::broadcast(1.0);
   const N n = round_nearest(c * N::broadcast(1.4426950408889634074));
   const N r = (c - n * N::broadcast(P::kLn2[0])) - n * N::broadcast(P::kLn2[1]);
-  const N y = one + (r + r * r * factorial_series(r, P::kExpTerms - 1, 2, 1, 1));
+  const N y = one + (r + r * r * polynomial(r, kExp<P>.c));
   // 2^n in two factors, because n exceeds the range of exponents at both ends.
   const N half = floor(n * N::broadcast(0.5));
   return y * power_of_two(half) * power_of_two(n - half);

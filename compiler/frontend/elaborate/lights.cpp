@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "compiler/frontend/records/record_family.h"
 #include "compiler/frontend/records/record_reader.h"
 #include "compiler/geometry/direction.h"
-#include "compiler/geometry/sine_cosine.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -30,8 +28,8 @@ Background::Sky read_sky(const RecordReader& reader, Diagnostics& diagnostics) {
   Background::Sky sky;
   sky.sun = direction(reader.vec3("sun"));
   if (reader.value("elevation") || reader.value("azimuth")) {
-    const auto [up, along] = sine_cosine(reader.number("elevation"));
-    const auto [sine, cosine] = sine_cosine(reader.number("azimuth"));
+    const auto [up, along] = vm::real::sin_cos_degrees(reader.number("elevation"));
+    const auto [sine, cosine] = vm::real::sin_cos_degrees(reader.number("azimuth"));
     sky.sun = {along * cosine, up, -along * sine};
   }
   if (sky.sun.y < 0) {

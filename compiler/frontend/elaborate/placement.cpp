@@ -6,12 +6,12 @@
 #include <glm/geometric.hpp>
 
 #include "compiler/geometry/direction.h"
-#include "compiler/geometry/sine_cosine.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 glm::dmat3 rotation_about(glm::dvec3 axis, double degrees) {
   const glm::dvec3 u = direction(axis);
-  const auto [s, c] = sine_cosine(degrees);
+  const auto [s, c] = vm::real::sin_cos_degrees(degrees);
   // Rodrigues' formula: R v = c v + s (u x v) + (1 - c) u (u . v); column j is R e_j.
   glm::dmat3 r;
   for (int j = 0; j < 3; ++j) {

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <type_traits>
 
 #include "compiler/frontend/records/record_family.h"
 #include "compiler/frontend/records/record_reader.h"
-#include "compiler/geometry/sine_cosine.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -37,9 +36,9 @@ void check_view(const Camera& camera, const RecordReader& reader, Span place, Di
 }
 
 void read_field_of_view(const RecordReader& reader, Camera& camera) {
-  camera.fov = reader.number("fov") * kDegree;
+  camera.fov = reader.number("fov") * vm::real::kDegree;
   camera.sensor_width = reader.number("sensor_width");
-  if (reader.value("fov_y")) camera.vertical_fov = reader.number("fov_y") * kDegree;
+  if (reader.value("fov_y")) camera.vertical_fov = reader.number("fov_y") * vm::real::kDegree;
   if (reader.value("focal_length")) camera.focal_length = reader.number("focal_length");
 }
 
@@ -48,7 +47,7 @@ void read_lens(const RecordReader& reader, Camera& camera, Diagnostics& diagnost
   if (reader.value("lens_radius")) camera.lens_radius = reader.number("lens_radius");
   if (reader.value("f_stop")) camera.f_stop = reader.number("f_stop");
   camera.blades = static_cast<int>(reader.number("blades"));
-  camera.blade_rotation = reader.number("blade_rotation") * kDegree;
+  camera.blade_rotation = reader.number("blade_rotation") * vm::real::kDegree;
   if (reader.value("focus_distance")) camera.focus_distance = reader.number("focus_distance");
   const syntax::Value* focus = reader.value("focus");
   if (focus == nullptr) return;

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compiler/frontend/records/record_reader.h"
 #include "compiler/frontend/syntax/make_syntax.h"
+#include "vm/number/real.h"
 
 namespace fathom::compiler {
 namespace {
@@ -197,7 +197,7 @@ class Converter {
     const glm::dvec3 axis(rotation[1].z - rotation[2].y, rotation[2].x - rotation[0].z,
                           rotation[0].y - rotation[1].x);
     const double trace = rotation[0].x + rotation[1].y + rotation[2].z;
-    const double angle = std::atan2(glm::length(axis), trace - 1) * 180 / std::numbers::pi;
+    const double angle = vm::real::atan2(glm::length(axis), trace - 1) / vm::real::kDegree;
     if (angle != 0 && !round) {
       RecordMaker turn(Span{});
       turn.add("axis", glm::length(axis) > 1e-6 ? axis : half_turn_axis(rotation)).add("angle", angle);
@@ -307,7 +307,7 @@ class Converter {
     constexpr double kFieldOfView = 40, kMargin = 1.1, kAspect = 640.0 / 360.0;
     const glm::dvec3 middle = (lo + hi) / 2.0, half = (hi - lo) / 2.0;
     const double reach = kMargin * std::max({half.y, half.x / kAspect, 1e-3});
-    const double away = half.z + reach / std::tan(kFieldOfView / 360 * std::numbers::pi);
+    const double away = half.z + reach / vm::real::tan(kFieldOfView / 2 * vm::real::kDegree);
     RecordMaker camera(whole), film(whole), background(whole), out(whole);
     camera.add("position", middle + glm::dvec3(0, 0, away)).add("target", middle).add("fov_y", kFieldOfView);
     film.add("width", 640.0).add("height", 360.0);

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vm/number/real.h"
+#include "compiler/scene/srgb.h"
 
 namespace fathom::compiler {
 namespace {
@@ -19,10 +19,6 @@ constexpr double kLeastByte = 16;
 
 // Returns the value of a hexadecimal digit of either case, or npos for other characters.
 std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
-
-double srgb_to_linear(double signal) {
-  return signal <= 0.04045 ? signal / 12.92 : vm::real::pow((signal + 0.055) / 1.055, 2.4);
-}
 
 }  // namespace
 
@@ -44,7 +40,7 @@ std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnos
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t byte =
         digits.size() == 3 ? 17 * hex_digit(digits[i]) : 16 * hex_digit(digits[2 * i]) + hex_digit(digits[2 * i + 1]);
-    channels.push_back({value.span, srgb_to_linear(static_cast<double>(byte) / 255)});
+    channels.push_back({value.span, srgb_decode(static_cast<double>(byte) / 255)});
   }
   return syntax::Value{value.span, std::move(channels)};
 }

@@ -4,8 +4,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "compiler/geometry/sine_cosine.h"
 #include "compiler/scene/framing.h"
+#include "vm/number/real.h"
 
 namespace fathom::cli {
 namespace {
@@ -15,7 +15,7 @@ using compiler::Camera;
 std::string point(glm::dvec3 p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); }
 
 // Formats an angle with 15 digits, few enough to drop the rounding error of the conversion to radians and back.
-std::string degrees(double radians) { return fmt::format("{:.15g}", radians / compiler::kDegree); }
+std::string degrees(double radians) { return fmt::format("{:.15g}", radians / vm::real::kDegree); }
 
 bool along(glm::dvec3 a, glm::dvec3 b) {
   return !(glm::length(glm::cross(glm::normalize(a), glm::normalize(b))) > 1e-6);

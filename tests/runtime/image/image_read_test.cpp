@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "runtime/base/elementary.h"
+#include "compiler/scene/srgb.h"
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_io.h"
 #include "tests/support/temporary_folder.h"
@@ -75,7 +75,7 @@ TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
     REQUIRE(write_image(picture, folder.file(name)) == std::nullopt);
     const auto image = std::get<FloatImage>(read_image(folder.file(name)));
     for (std::size_t i = 0; i < 256; ++i) {
-      CHECK(image.values[1][i] == static_cast<float>(srgb_decode(static_cast<double>(i) / 255)));
+      CHECK(image.values[1][i] == static_cast<float>(compiler::srgb_decode(static_cast<double>(i) / 255)));
     }
   }
 }

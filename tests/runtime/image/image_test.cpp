@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runtime/base/elementary.h"
+#include "compiler/scene/srgb.h"
 #include "runtime/film/film_layers.h"
 
 namespace fathom::runtime::image_test {
@@ -47,7 +47,8 @@ TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[ru
   int wrong = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
     const double light = film.means(i % kSide, i / kSide).radiance.x;
-    wrong += picture.rgb[static_cast<std::size_t>(3 * i)] != static_cast<int>(srgb_encode(light) * 255 + 0.5);
+    wrong +=
+        picture.rgb[static_cast<std::size_t>(3 * i)] != static_cast<int>(compiler::srgb_encode(light) * 255 + 0.5);
   }
   CHECK(wrong == 0);
 }
@@ -78,7 +79,7 @@ TEST_CASE("image: 16 bits are the nearest word, and 8 bits the same picture", "[
   for (int i = 0; i < kWidth; ++i) {
     const std::size_t at = static_cast<std::size_t>(3 * i);
     const double light = apply_curve(ToneCurve::Filmic, glm::dvec3(2 * film.means(i, 0).radiance.x)).x;
-    wrong += words[at] != static_cast<int>(srgb_encode(light) * 65535 + 0.5);
+    wrong += words[at] != static_cast<int>(compiler::srgb_encode(light) * 65535 + 0.5);
     apart += std::abs(words[at] / 257.0 - bytes[at]) > 0.501;
   }
   CHECK(wrong == 0);

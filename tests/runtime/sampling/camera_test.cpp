@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "runtime/base/elementary.h"
 #include "runtime/sampling/sampler.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime::camera_test {
 namespace {
@@ -77,8 +77,8 @@ TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "
   const CameraRay plain = camera.ray(3.7, 11.2), lens = camera.ray(3.7, 11.2, {0.1f, 0.9f});
   CHECK((plain.origin == lens.origin && plain.direction == lens.direction));
   // The direction by the formula without a lens.
-  const double sx = (2 * 3.7 / 30 - 1) * tangent(M_PI / 4);
-  const double sy = (1 - 2 * 11.2 / 20) * (tangent(M_PI / 4) * (20.0 / 30));
+  const double sx = (2 * 3.7 / 30 - 1) * vm::real::tan(M_PI / 4);
+  const double sy = (1 - 2 * 11.2 / 20) * (vm::real::tan(M_PI / 4) * (20.0 / 30));
   CHECK(plain.direction ==
         glm::normalize(glm::dvec3(1, 0, 0) * sx + glm::dvec3(0, 1, 0) * sy + glm::dvec3(0, 0, -1)));
 }
@@ -111,7 +111,7 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
   const glm::dvec3 forward = forward_of(spec);
   for (const double d : {1.5, 3.0, 3.9, 5.0, 40.0}) {
     const double circle = 2 * radius * f * std::abs(d - focus) / (d * (focus - f));
-    const double pixels = 1000 * circle / (2 * v * tangent(spec.fov / 2));
+    const double pixels = 1000 * circle / (2 * v * vm::real::tan(spec.fov / 2));
     // The furthest pixels to either side that see the point through some place of the lens. Their ray passes the
     // point at the lens's rim. A ray further out misses the point.
     const glm::dvec3 point = spec.position + d * forward;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/vm/interpret/formula.h"
+#include "vm/number/real.h"
 
 namespace fathom::test::elementary_test {
 namespace {
@@ -133,6 +134,29 @@ TEST_CASE("double kernels are within 1e-14", "[elementary]") {
     INFO(vm::info(kernel.opcode).mnemonic << ": " << worst << " at " << at);
     CHECK(worst <= 1e-14);
   }
+}
+
+TEST_CASE("sine and cosine of turns and degrees are within 1e-15, and exact at quarter turns", "[elementary]") {
+  using vm::real::SinCos;
+  const long double full = 2 * std::acos(-1.0L);
+  const auto error = [&](SinCos angle, long double turns) {
+    const long double x = full * (turns - std::round(turns));
+    return static_cast<double>(std::max(std::abs(std::sin(x) - angle.sin), std::abs(std::cos(x) - angle.cos)));
+  };
+  double worst = 0;
+  for (int i = -(1 << 18); i <= 1 << 19; ++i) {
+    const double turns = i * 0x1p-18 + (i % 7) * 1e-9, degrees = i * 0.0037;
+    worst = std::max(worst, error(vm::real::sin_cos_turns(turns), turns));
+    worst = std::max(worst, error(vm::real::sin_cos_degrees(degrees), static_cast<long double>(degrees) / 360));
+  }
+  CHECK(worst <= 2e-16);
+  for (int quarter = -8; quarter <= 8; ++quarter) {
+    for (const SinCos angle : {vm::real::sin_cos_turns(quarter / 4.0), vm::real::sin_cos_degrees(quarter * 90.0)}) {
+      CHECK(angle.sin == (quarter % 2 == 0 ? 0 : (quarter & 3) == 1 ? 1 : -1));
+      CHECK(angle.cos == (quarter % 2 != 0 ? 0 : (quarter & 3) == 0 ? 1 : -1));
+    }
+  }
+  CHECK(vm::real::sin_cos_degrees(36e17 + 1024).sin == vm::real::sin_cos_degrees(1024).sin);
 }
 
 TEST_CASE("atan2 and pow against libm", "[elementary]") {
