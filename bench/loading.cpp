@@ -63,7 +63,7 @@ int run(int argc, char** argv) {
   if (paths.empty()) {
     paths = {FATHOM_SOURCE_DIR "/tests/data/prospero.vm", FATHOM_SOURCE_DIR "/scenes/gallery/ten-thousand.fathom"};
   }
-  const runtime::Pinned pinned;
+  const runtime::PinnedThread pinned;
   fmt::print("{:<22} {:>10} {:>10}   compile / load, median (min to max) of {} rounds\n", "scene", "compile, ms",
              "load, ms", kRounds);
   bool holds = true;

@@ -110,7 +110,7 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     regions.interrupted = interruption(settings, options, start);
     RegionStore* const store = options.region_store.get();
     add_regions(context.field, scene, regions, store);
-    if (context.field.regions) regions.memory -= context.field.regions->facts().bytes;
+    if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
     context.media.add_regions(scene, regions, store);
   }
   RealScratch scratch;
@@ -150,11 +150,11 @@ std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Setti
 
 void count_regions(const RenderContext& context, const RenderOptions& options, Stats& stats) {
   if (!context.field.regions) return;
-  const Regions::Facts& facts = context.field.regions->facts();
-  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, facts.bytes);
-  const bool kept = options.region_store && options.region_store->kept(*context.field.regions);
-  stats.region_seconds += kept ? 0 : facts.seconds;
-  stats.regions_kept += kept;
+  const Regions::Summary& summary = context.field.regions->summary();
+  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, summary.bytes);
+  const bool reused = options.region_store && options.region_store->reused(*context.field.regions);
+  stats.region_seconds += reused ? 0 : summary.seconds;
+  stats.regions_reused += reused;
 }
 
 }  // namespace
@@ -213,7 +213,7 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
     if (moment.samples.first > settings.samples.first && picture.stopped()) break;
     RenderContext context = make_context(*moment.scene, settings, options, start);
     context.numbered = same_numbers(scene, *moment.scene);
-    if (options.region_store) options.region_store->forget_unused();
+    if (options.region_store) options.region_store->drop_unused();
     if (!ticker) ticker.emplace(options, picture);
     Passes passes(context, options, result, picture);
     result.stats.merge(passes.run(moment.samples));

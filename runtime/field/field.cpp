@@ -34,8 +34,8 @@ std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i,
   return std::nullopt;
 }
 
-// Computes Field::longest_told by trying lengths, each eight times shorter than the one before.
-double longest_told(const compiler::CompiledField& scene, double extent) {
+// Computes Field::max_informative_length by trying lengths, each eight times shorter than the one before.
+double max_informative_length(const compiler::CompiledField& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
   // kTold: share of the slope's range that the Lipschitz constant alone allows. kNear: share of the extent.
   constexpr double kTold = 0.8, kNear = 1e-4;
@@ -80,7 +80,7 @@ int room_of(const Field& field, const compiler::CompiledField& compiled) {
 void become_large(Field& field, const FarLevels& levels) {
   field.far_levels = levels;
   field.convex = false;
-  field.longest_told = 0;
+  field.max_informative_length = 0;
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   field.surface = &compiled.surface;
   field.bound = compiled.bound.grown(kBoundMargin * extent);
   field.lipschitz = compiled.lipschitz;
-  field.longest_told = longest_told(compiled, extent);
+  field.max_informative_length = max_informative_length(compiled, extent);
   field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
   field.magnitude = static_cast<float>(compiled.magnitude);
   field.band = static_cast<float>(kBand * extent);

@@ -28,7 +28,7 @@ struct Field {
   // Maximum length of an interval, scene units, over which along() tells how steep the field is, tried on some lines
   // near surfaces. Interval arithmetic knows nothing of an iterated map until the interval is tiny. Infinite if the
   // compiler proved the field's Lipschitz constant, 0 for a large scene.
-  double longest_told;
+  double max_informative_length;
   // Rounding of distances where no surface is near, for scenes so large that they could have regions. The functions
   // below evaluate to the same bits with regions and without.
   FarLevels far_levels;
@@ -49,7 +49,7 @@ struct Field {
   }
 
   // True if the convexity radius is available, which `evaluator` does not compute.
-  bool knows_convex() const { return convex && evaluator == nullptr; }
+  bool has_convexity() const { return convex && evaluator == nullptr; }
 
   // Evaluate distances: of many points in float, or of one or many in double. In a large scene the distances are
   // rounded where no surface is near. In float, regions leave the number of instructions per point in the scratch. In

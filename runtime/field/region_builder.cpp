@@ -66,7 +66,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   choose_grid();
   make_grid();
   count_bytes();
-  regions_->facts_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  regions_->summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return regions_;
 }
 
@@ -75,11 +75,11 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 // much as many instructions of the whole program.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
-  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, budget_.most_work /= 2) {
+  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.most_work /= 2) {
     if (plan_.instructions > budget_.most_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->skeletons_ = {};
-    regions_->facts_ = {};
+    regions_->summary_ = {};
     budget_.bytes = regions_->constants_->bytes();
     budget_.work = 0, budget_.pending_bytes = 0;
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
@@ -100,7 +100,7 @@ int RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
 }
 
 void RegionBuilder::split_all(std::vector<RegionCell> cells) {
-  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, longer_};
+  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, choice_factor_};
   while (!cells.empty() && !budget_.is_spent()) {
     std::vector<RegionPiece> pieces(cells.size());
     budget_.pending_bytes = 0;
@@ -110,7 +110,7 @@ void RegionBuilder::split_all(std::vector<RegionCell> cells) {
           splitter.run(cells[i], pieces[i]);
           cells[i].part = {};
         });
-    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, budget_.pending_bytes);
+    regions_->summary_.building = std::max<std::size_t>(regions_->summary_.building, budget_.pending_bytes);
     if (budget_.is_spent()) return;
     append_all(cells, pieces);
   }
@@ -146,7 +146,7 @@ std::uint32_t RegionBuilder::append(RegionPiece& piece) {
     r.nodes_.push_back(node);
   }
   r.pool_.insert(r.pool_.end(), piece.pool.begin(), piece.pool.end());
-  r.facts_.far += piece.facts.far, r.facts_.programs += piece.facts.programs;
+  r.summary_.far += piece.summary.far, r.summary_.programs += piece.summary.programs;
   return first;
 }
 
@@ -215,13 +215,13 @@ void RegionBuilder::make_grid() {
 
 void RegionBuilder::count_bytes() {
   Regions& r = *regions_;
-  r.facts_.levels = r.tree_.levels;
-  r.facts_.skeletons = r.skeletons_.size();
+  r.summary_.levels = r.tree_.levels;
+  r.summary_.skeletons = r.skeletons_.size();
   r.constants_->forget_rows();
-  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
+  r.summary_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
                    r.constants_->bytes();
   constexpr std::size_t kCache = 1u << 20;
-  r.tree_.beyond_cache = r.facts_.bytes > kCache;
+  r.tree_.beyond_cache = r.summary_.bytes > kCache;
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

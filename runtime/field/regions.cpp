@@ -8,7 +8,7 @@
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
-Regions::Found Regions::find(float x, float y, float z) const {
+Regions::RegionLookup Regions::find(float x, float y, float z) const {
   const float p[3] = {x, y, z};
   std::array<std::uint32_t, 3> cell;
   const float most = static_cast<float>(1u << tree_.levels);
@@ -35,21 +35,21 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
                        vm::Workspace& workspace) const {
   static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
   CHECK(count <= kMostPoints, "a batch of points is too large");
-  FoundPoints found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
+  LookupResult found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
   std::fill_n(s.instructions.data(), count, 0);
   s.counters.far += count - found.near;
   if (found.outside) [[unlikely]]
-    found.near = settle_outside(points, found.near, distance, s, workspace);
+    found.near = evaluate_outside(points, found.near, distance, s, workspace);
   s.counters.specialised += found.near;
   sort(points, found.near, s);
-  for (const std::uint32_t number : s.met) {
+  for (const std::uint32_t number : s.active) {
     const vm::Skeleton& skeleton = skeletons_[number];
     std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
     for (const vm::SkeletonJob& job : jobs) s.instructions[job.point] = skeleton.instructions;
     vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, distance, workspace);
     jobs.clear();
   }
-  s.met.clear();
+  s.active.clear();
   far_.apply(points, count, distance);
 }
 
@@ -62,7 +62,7 @@ void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const 
   for (std::size_t j = 0; j < near; ++j) {
     const std::uint32_t i = s.point[j], at = Node{0, s.ref[j]}.payload(), number = pool_[at];
     std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
-    if (jobs.empty()) s.met.push_back(number);
+    if (jobs.empty()) s.active.push_back(number);
     jobs.push_back({points.x[i], points.y[i], points.z[i], s.limit[j], at, i});
     if (tree_.beyond_cache) skeletons_.prefetch(*constants_, pool_.data(), at);
   }
@@ -70,7 +70,7 @@ void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const 
 
 // Finds the leaves of the points outside the root. Points whose leaf needs the whole program, as outside a bounded
 // scene's root, are evaluated at once. Returns the number of points left.
-std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
+std::size_t Regions::evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
                                     vm::Workspace& workspace) const {
   std::size_t left = 0;
   for (std::size_t j = 0; j < near; ++j) {
@@ -78,7 +78,7 @@ std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* 
     std::uint32_t ref = s.ref[j];
     float limit = s.limit[j];
     if (ref == kOutside) {
-      const Found found = find(points.x[i], points.y[i], points.z[i]);
+      const RegionLookup found = find(points.x[i], points.y[i], points.z[i]);
       ref = found.node.ref, limit = found.node.value;
     }
     if (Node{0, ref}.payload() == kWhole) {
@@ -113,7 +113,7 @@ const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
 
 double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& instructions) const {
   const glm::vec3 f(p);
-  const Found found = find(f.x, f.y, f.z);
+  const RegionLookup found = find(f.x, f.y, f.z);
   const double limit = static_cast<double>(found.node.value);
   if (found.node.kind() == Kind::Far) return far_(limit, f.x, f.y, f.z);
   const vm::Part& part = part_of(found.node, scratch);
@@ -124,7 +124,7 @@ double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& inst
 Regions::Region Regions::region(glm::dvec3 p) const {
   static constexpr const char* kNames[] = {"inner", "far", "program"};
   const glm::vec3 f(p);
-  const Found found = find(f.x, f.y, f.z);
+  const RegionLookup found = find(f.x, f.y, f.z);
   Region region{
       {glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())},
       kNames[static_cast<std::size_t>(found.node.kind())],

@@ -62,7 +62,7 @@ struct RegionScratch {
   PerPoint<std::uint32_t> point, ref;                // of the points in no far leaf: index, word of the leaf
   PerPoint<float> limit;
   std::vector<std::vector<vm::SkeletonJob>> jobs;  // [skeleton]
-  std::vector<std::uint32_t> met;                  // the skeletons that have jobs
+  std::vector<std::uint32_t> active;                  // the skeletons that have jobs
   PerPoint<std::uint32_t> instructions;            // [point] number evaluated for the point
   RegionCounters counters;
 };
@@ -114,7 +114,7 @@ class Regions {
   vm::SurfaceShares evaluate_placed_shares(glm::dvec3 point, RealScratch& scratch) const;
   vm::SurfacePlace evaluate_place(glm::dvec3 point, RealScratch& scratch) const;
 
-  struct Facts {
+  struct Summary {
     std::size_t far = 0, programs = 0;  // numbers of leaves
     std::size_t skeletons = 0;
     std::size_t bytes = 0;
@@ -122,7 +122,7 @@ class Regions {
     int levels = 0;
     double seconds = 0;  // time to build
   };
-  const Facts& facts() const { return facts_; }
+  const Summary& summary() const { return summary_; }
 
   enum class Kind : std::uint32_t { Inner, Far, Program };
   struct Node {
@@ -138,14 +138,14 @@ class Regions {
 
  private:
   friend class RegionBuilder;
-  struct Found {
+  struct RegionLookup {
     Node node;
     int level;                          // the cell's level; -1 outside the root
     std::array<std::uint32_t, 3> cell;  // position in finest cells; outside the root, the face's index comes first
   };
-  Found find(float x, float y, float z) const;
+  RegionLookup find(float x, float y, float z) const;
   void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
-  std::size_t settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
+  std::size_t evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
                              vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
@@ -162,7 +162,7 @@ class Regions {
   std::optional<vm::Constants> constants_;
   vm::Skeletons skeletons_;
   std::vector<std::uint32_t> pool_;  // programs of the leaves
-  Facts facts_;
+  Summary summary_;
 };
 
 }  // namespace fathom::runtime

@@ -18,7 +18,7 @@
 
 namespace fathom::runtime {
 
-enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
+enum class LaneVerdict : std::uint8_t { Active, Hit, Miss, Invalid, Certify, OutOfSteps };
 enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Cross, Retreat, Refine };
 
 // The rows of a lane's state. Every row costs time, because a step reads and writes most rows. So the last rows, from

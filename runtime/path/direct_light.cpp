@@ -103,7 +103,7 @@ void end_shadow_rays(const RenderContext& context, std::size_t field, std::span<
   for (const RayHit& ray_hit : ray_hits) {
     PathState& path = paths[ray_hit.id];
     path.in_shadow_test = false;
-    const bool missed = ray_hit.status == RayHit::Status::Miss || ray_hit.status == RayHit::Status::Contact;
+    const bool missed = ray_hit.status == RayHit::Status::Miss || ray_hit.status == RayHit::Status::NearMiss;
     if (!missed || is_endless(field, rays, ray_hit.id)) continue;
     if (!rays.empty()) {
       const ShadowRay& shadow = rays[ray_hit.id];

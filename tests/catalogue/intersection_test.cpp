@@ -79,7 +79,7 @@ TEST_CASE("I3: near misses of a sphere miss it", "[catalogue]") {
   for (const RayHit& ray_hit : result.ray_hits) {
     const Ray& ray = rays[ray_hit.id];
     false_hits += ray_hit.status == RayHit::Status::Hit && gap_of(ray) > 4e-7L;
-    const Certified certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
+    const CertifiedResult certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
     false_certified += certified.status == RayHit::Status::Hit;
   }
   CHECK(false_hits == 0);

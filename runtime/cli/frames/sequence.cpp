@@ -111,8 +111,8 @@ class FrameRun {
       return code;
     }
     ++rendered_;
-    regions_built_ += job.stats().region_bytes > 0 && job.stats().regions_kept == 0;
-    regions_kept_ += job.stats().regions_kept;
+    regions_built_ += job.stats().region_bytes > 0 && job.stats().regions_reused == 0;
+    regions_kept_ += job.stats().regions_reused;
     if (const auto problem = journal_.add(frame, job.header(), picture.request)) return fail(streams_, kIo, *problem);
     return code;
   }

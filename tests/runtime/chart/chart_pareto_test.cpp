@@ -64,7 +64,7 @@ TEST_CASE("chart pareto: only rows of one scene and class are compared", "[chart
 
 TEST_CASE("chart pareto: all kinds of failures count, contacts do not", "[chart]") {
   RayMeasurement of;
-  of.false_hit_ppm = 1, of.false_miss_ppm = 10, of.exhausted_ppm = 100, of.gross_ppm = 1000, of.contact_ppm = 1e4;
+  of.false_hit_ppm = 1, of.false_miss_ppm = 10, of.exhausted_ppm = 100, of.gross_ppm = 1000, of.near_miss_ppm = 1e4;
   CHECK(failures_ppm(of) == 1111);
 }
 

@@ -237,8 +237,8 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
       field.regions->evaluate(at.points(), kMostPoints, values.data(), scratch, workspace);
       std::vector<std::uint32_t> bits;
       for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value + 0.0f));
-      const Regions::Facts& facts = field.regions->facts();
-      for (const std::size_t n : {facts.far, facts.programs, facts.skeletons, facts.bytes}) {
+      const Regions::Summary& summary = field.regions->summary();
+      for (const std::size_t n : {summary.far, summary.programs, summary.skeletons, summary.bytes}) {
         bits.push_back(static_cast<std::uint32_t>(n));
       }
       if (expected.empty()) expected = bits;
@@ -251,14 +251,14 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
 
 TEST_CASE("regions: stay within the memory they are given", "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, false, false));
-  const std::size_t freely = with_regions(scene).regions->facts().bytes;
+  const std::size_t freely = with_regions(scene).regions->summary().bytes;
   std::size_t built = 0;
   for (const std::size_t share : {1, 2, 4, 8, 64}) {
     Field field = make_field(scene);
     add_regions(field, scene, {.memory = freely / share});
     if (!field.regions) continue;
     ++built;
-    CHECK(field.regions->facts().bytes <= freely / share);
+    CHECK(field.regions->summary().bytes <= freely / share);
   }
   CHECK(built >= 2);
   CHECK(built < 5);
@@ -321,7 +321,7 @@ RenderOptions part_of_picture() {
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
           "[regions]") {
   const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
-  const std::size_t freely = with_regions(scene).regions->facts().bytes;
+  const std::size_t freely = with_regions(scene).regions->summary().bytes;
   RenderOptions options = part_of_picture();
   options.regions = false;
   const std::uint64_t expected = render(scene, options).film.hash();
@@ -364,9 +364,9 @@ TEST_CASE("regions: scenes that take many times their memory to build have none"
   const compiler::CompiledScene scene = tests::compiled(grid(100));
   const auto facts_of = [&](std::size_t memory) {
     const auto regions = Regions::build(scene.surface, scene.contents, {.memory = memory});
-    return regions ? regions->facts() : Regions::Facts{};
+    return regions ? regions->summary() : Regions::Summary{};
   };
-  const Regions::Facts freely = facts_of(64u << 20), less = facts_of(freely.building * 3 / 4);
+  const Regions::Summary freely = facts_of(64u << 20), less = facts_of(freely.building * 3 / 4);
   CHECK(freely.bytes > 0);
   CHECK((less.bytes > 0 && less.bytes <= freely.bytes));
   CHECK(facts_of(freely.building / 2 - 1).bytes == 0);

@@ -46,7 +46,7 @@ TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[ren
   for (const std::size_t id : {1, 3, 5, 7}) paths[id].in_shadow_test = true;
   std::vector<RayHit> ray_hits;
   const Status statuses[] = {Status::Hit, Status::Hit,     Status::Miss,    Status::Miss,
-                             Status::Hit, Status::Contact, Status::Invalid, Status::Hit};
+                             Status::Hit, Status::NearMiss, Status::Invalid, Status::Hit};
   for (std::uint32_t id = 0; id < 8; ++id) ray_hits.push_back({id, statuses[id]});
   for (const bool passes : {false, true}) {
     CAPTURE(passes);
@@ -116,7 +116,7 @@ TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[render]")
   const RenderContext context = context_of(scene);
   std::vector<PathState> paths(4);
   std::vector<RayHit> ray_hits;
-  for (const Status status : {Status::Miss, Status::Hit, Status::Contact, Status::Invalid}) {
+  for (const Status status : {Status::Miss, Status::Hit, Status::NearMiss, Status::Invalid}) {
     const auto id = static_cast<std::uint32_t>(ray_hits.size());
     paths[id].in_shadow_test = true;
     paths[id].shadow_radiance = glm::vec3(1, 2, 3);
@@ -124,7 +124,7 @@ TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[render]")
   }
   end_shadow_rays(context, 0, ray_hits, paths, {});
   for (const RayHit& ray_hit : ray_hits) {
-    const bool free = ray_hit.status == Status::Miss || ray_hit.status == Status::Contact;
+    const bool free = ray_hit.status == Status::Miss || ray_hit.status == Status::NearMiss;
     CHECK(paths[ray_hit.id].result.radiance == (free ? glm::vec3(1, 2, 3) : glm::vec3(0)));
     CHECK(!paths[ray_hit.id].in_shadow_test);
   }

@@ -120,7 +120,7 @@ background [1, 1, 1]
 object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), floor(i/49)])]
 )");
   REQUIRE(folder.run("render many.fathom -o a.png -q --stats-json stats.json").code == 0);
-  CHECK_THAT(folder.read("stats.json"), Contains("\"regions_kept\": 7,"));
+  CHECK_THAT(folder.read("stats.json"), Contains("\"regions_reused\": 7,"));
   REQUIRE(folder.run("render many.fathom -o b.png -q --no-regions").code == 0);
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }

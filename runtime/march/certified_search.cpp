@@ -1,4 +1,4 @@
-#include "runtime/march/search.h"
+#include "runtime/march/certified_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr std::uint32_t kCoarsening = 1u << 8;  // evaluations beyond the budget per doubling of the resolution
-// Maximum of the coarsened resolution, relative to max(1, |p|) or to the stretch, so that the search does not pass
+// Maximum of the coarsened resolution, relative to max(1, |p|) or to the interval, so that the search does not pass
 // over surfaces that follow a point that is hard to search.
 constexpr double kCoarsest = 0x1p-10;
 // Segments shorter than this, relative to max(1, |p|), are not cut further: a thousand times the rounding of double.
@@ -21,19 +21,19 @@ constexpr double kResolution = 0x1p-40;
 // brackets in float (stream.cpp).
 constexpr double kRootResolution = 0x1p-30;
 // Minimum length of a segment worth intervals, relative to the part that its near end excludes, because intervals
-// cost many evaluations. kCostlyRangeRatio applies where Field::longest_told is finite: intervals of iterated maps
+// cost many evaluations. kCostlyRangeRatio applies where Field::max_informative_length is finite: intervals of iterated maps
 // cost a hundred evaluations.
 constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
 // An interval is informative if it narrows the bounds on the slope to this share.
 constexpr double kProgress = 0.8;
 // After an uninformative interval, the search next tries a segment kShorter times shorter. The search tries longer
-// segments only after kSeldom evaluations, and then after twice as many.
+// segments only after kRetryPeriod evaluations, and then after twice as many.
 constexpr double kShorter = 8;
-constexpr std::uint32_t kSeldom = 1u << 10;
+constexpr std::uint32_t kRetryPeriod = 1u << 10;
 // In a large scene intervals need the whole program, but an evaluation only a small part of it. Intervals are tried
-// after this many evaluations, or after a kAskedShare-th of the program's instructions if that is more, and after the
+// after this many evaluations, or after a kIntervalPeriodShare-th of the program's instructions if that is more, and after the
 // same number again.
-constexpr std::uint32_t kLeastAsked = 16, kAskedShare = 4;
+constexpr std::uint32_t kMinIntervalPeriod = 16, kIntervalPeriodShare = 4;
 // kReach: length of a step, relative to the length at which the balls of both ends just touch. kLargestSlope: maximum
 // slope expected, relative to its bound (compare tiered-inl.h).
 constexpr double kReach = 0.995, kLargestSlope = 0.9;
@@ -46,28 +46,28 @@ constexpr double kLevelRoundings = 4, kLeastLevel = 0x1p-20;
 
 }  // namespace
 
-Search::Search(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch)
+CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const RayInterval& interval)
     : field_(&field),
       origin_(origin),
       direction_(direction),
       side_(side),
-      speed_(field.lipschitz * glm::length(direction)),
-      stretch_(stretch),
-      back_(stretch.hint - stretch.begin),
+      max_slope_(field.lipschitz * glm::length(direction)),
+      interval_(interval),
+      backtrack_(interval.hint - interval.begin),
       done_(false),
-      range_ratio_(std::isfinite(field.longest_told) ? kCostlyRangeRatio : kRangeRatio),
-      hopeless_(field.longest_told / glm::length(direction)),
-      dear_(field.far_levels.used() ? std::max(kLeastAsked, field.distance->instructions() / kAskedShare) : 0),
-      ask_at_(dear_ > 0 ? dear_ : kSeldom) {
-  ask(stretch.begin, Purpose::Begin);
+      range_ratio_(std::isfinite(field.max_informative_length) ? kCostlyRangeRatio : kRangeRatio),
+      max_informative_(field.max_informative_length / glm::length(direction)),
+      interval_period_(field.far_levels.used() ? std::max(kMinIntervalPeriod, field.distance->instructions() / kIntervalPeriodShare) : 0),
+      next_interval_at_(interval_period_ > 0 ? interval_period_ : kRetryPeriod) {
+  request(interval.begin, Purpose::Begin);
 }
 
-void Search::ask(double t, Purpose purpose) {
-  wanted_ = t;
+void CertifiedSearch::request(double t, Purpose purpose) {
+  requested_t_ = t;
   purpose_ = purpose;
 }
 
-void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
+void CertifiedSearch::supply(double f, std::uint64_t instructions, RealScratch& scratch) {
   ++result_.evaluations;
   result_.instructions += instructions;
   rounding_ = field_->rounding(point());
@@ -79,11 +79,11 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
     case Purpose::Begin:
       return begin(g);
     case Purpose::End:
-      now_.gb = g;
-      if (!pending_.empty() && pending_.back().a == now_.b) pending_.back().ga = g;
-      return go_on(scratch);
-    case Purpose::Cut:
-      if (cut(g)) go_on(scratch);
+      current_.gb = g;
+      if (!pending_.empty() && pending_.back().a == current_.b) pending_.back().ga = g;
+      return advance(scratch);
+    case Purpose::Split:
+      if (split(g)) advance(scratch);
       return;
     case Purpose::Root:
       return narrow_bracket(g - root_level_);
@@ -91,132 +91,132 @@ void Search::give(double f, std::uint64_t instructions, RealScratch& scratch) {
 }
 
 // Begins the search where g >= 0. Otherwise moves `begin` back if there is a hint, or reports a hit there.
-void Search::begin(double g) {
-  double& from = stretch_.begin;
-  if (g < 0 && back_ > 0 && from > 0) {
-    from = std::max(0.0, from - back_);
-    back_ *= 2;
-    return ask(from, Purpose::Begin);
+void CertifiedSearch::begin(double g) {
+  double& from = interval_.begin;
+  if (g < 0 && backtrack_ > 0 && from > 0) {
+    from = std::max(0.0, from - backtrack_);
+    backtrack_ *= 2;
+    return request(from, Purpose::Begin);
   }
   if (g < 0) return hit(from, from);
-  now_ = {from, g, stretch_.end, 0, speed_, speed_};
-  if (stretch_.hint > from && stretch_.hint < stretch_.end) {
-    now_.b = stretch_.hint;
-    // The far part's value at the hint is set with the near part's end, in give().
-    pending_.push_back({now_.b, g, stretch_.end, std::nan(""), speed_, speed_});
+  current_ = {from, g, interval_.end, 0, max_slope_, max_slope_};
+  if (interval_.hint > from && interval_.hint < interval_.end) {
+    current_.b = interval_.hint;
+    // The far part's value at the hint is set with the near part's end, in supply().
+    pending_.push_back({current_.b, g, interval_.end, std::nan(""), max_slope_, max_slope_});
   }
-  ask(now_.b, Purpose::End);
+  request(current_.b, Purpose::End);
 }
 
 // Continues with the near part of the segment that was cut. A near part that is free is left behind, and the search
 // continues with the far part, which then is not stored. False if the search is done or looks for a root.
-bool Search::cut(double g) {
-  const Segment nearer{now_.a, now_.ga, wanted_, g, now_.fall, now_.rise};
-  if (is_free(nearer, gap_of(nearer)) && !hides_end(nearer)) {
-    now_.a = wanted_, now_.ga = g;
-    return leave_behind(nearer);
+bool CertifiedSearch::split(double g) {
+  const Segment nearer{current_.a, current_.ga, requested_t_, g, current_.fall, current_.rise};
+  if (is_free(nearer, gap_of(nearer)) && !may_hide_end(nearer)) {
+    current_.a = requested_t_, current_.ga = g;
+    return pass_segment(nearer);
   }
-  if (g >= 0) pending_.push_back({wanted_, g, now_.b, now_.gb, now_.fall, now_.rise});
-  now_ = nearer;
+  if (g >= 0) pending_.push_back({requested_t_, g, current_.b, current_.gb, current_.fall, current_.rise});
+  current_ = nearer;
   return true;
 }
 
 // Settles the nearest segment, again and again, until a value is needed.
-void Search::go_on(RealScratch& scratch) {
-  while (settle(scratch)) {
-    if (pending_.empty()) return end(contact_ ? RayHit::Status::Contact : RayHit::Status::Miss);
-    now_ = pending_.back();
+void CertifiedSearch::advance(RealScratch& scratch) {
+  while (process_segment(scratch)) {
+    if (pending_.empty()) return end(near_miss_ ? RayHit::Status::NearMiss : RayHit::Status::Miss);
+    current_ = pending_.back();
     pending_.pop_back();
-    if (std::isnan(now_.gb)) return ask(now_.b, Purpose::End);
+    if (std::isnan(current_.gb)) return request(current_.b, Purpose::End);
   }
 }
 
 // True if the segment is finished: free, or too short to decide. Otherwise the segment holds a root or is cut in two,
 // and the search needs a value.
-bool Search::settle(RealScratch& scratch) {
-  Segment& s = now_;
+bool CertifiedSearch::process_segment(RealScratch& scratch) {
+  Segment& s = current_;
   Gap gap = gap_of(s);
   bool free = is_free(s, gap);
-  Told told = Told::Nothing;
+  IntervalOutcome outcome = IntervalOutcome::Nothing;
   if (!free && worth_narrowing(s, gap)) {
-    told = narrow(s, scratch);
+    outcome = narrow(s, scratch);
     gap = gap_of(s);
-    free = told == Told::Free || is_free(s, gap);
-    if (!free && told == Told::Slope && s.gb < 0 && s.rise <= 0) {
+    free = outcome == IntervalOutcome::Free || is_free(s, gap);
+    if (!free && outcome == IntervalOutcome::Slope && s.gb < 0 && s.rise <= 0) {
       find_root(s, 0);
       return false;
     }
   }
-  if (free && hides_end(s)) {
-    ask((s.a + s.b) / 2, Purpose::Cut);
+  if (free && may_hide_end(s)) {
+    request((s.a + s.b) / 2, Purpose::Split);
     return false;
   }
-  if (free) return leave_behind(s);
+  if (free) return pass_segment(s);
   const double open = gap.hi - gap.lo, middle = (gap.lo + gap.hi) / 2;
   if (open <= coarsened(s.gb < 0 ? kRootResolution : kResolution, middle) || !(middle > s.a && middle < s.b)) {
     if (s.gb < 0) {
       find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
       return false;
     }
-    contact_ = true;
+    near_miss_ = true;
     // Beyond a segment without informative intervals, e.g. where a field comes down to a plateau, intervals may be
     // tried on longer segments again.
-    hopeless_ = std::max(hopeless_, kShorter * (s.b - s.a));
+    max_informative_ = std::max(max_informative_, kShorter * (s.b - s.a));
     return side_ > 0 || !ends_solid(s, true);
   }
-  ask(told == Told::Slope ? middle : std::min(middle, place_to_cut(s, gap)), Purpose::Cut);
+  request(outcome == IntervalOutcome::Slope ? middle : std::min(middle, split_point(s, gap)), Purpose::Split);
   return false;
 }
 
 // Goes on beyond a segment that is free. False if the solid turns out to have ended before.
-bool Search::leave_behind(const Segment& s) {
+bool CertifiedSearch::pass_segment(const Segment& s) {
   slope_ = (s.gb - s.ga) / (s.b - s.a);
-  return side_ > 0 || !ends_solid(s, is_still(s));
+  return side_ > 0 || !ends_solid(s, is_flat(s));
 }
 
 // True if all of a segment is at the rounding level of 0, given that its ends are.
-bool Search::is_still(const Segment& s) const {
+bool CertifiedSearch::is_flat(const Segment& s) const {
   return std::min(s.fall, s.rise) * (s.b - s.a) <= kLevelRoundings * rounding_;
 }
 
 // True if a free segment of a solid may be at the rounding level of 0 for long, next to an end at that level.
-bool Search::hides_end(const Segment& s) const {
+bool CertifiedSearch::may_hide_end(const Segment& s) const {
   const double level = kLevelRoundings * rounding_;
   if (side_ > 0 || (s.ga > level && s.gb > level) || s.b - s.a <= kLeastLevel * scale(s.a)) return false;
-  return s.ga > level || s.gb > level || !is_still(s);
+  return s.ga > level || s.gb > level || !is_flat(s);
 }
 
-// True if a solid has ended by the end of the segment. `still`: g rises nowhere far within the segment.
-bool Search::ends_solid(const Segment& s, bool still) {
+// True if a solid has ended by the end of the segment. `flat`: g rises nowhere far within the segment.
+bool CertifiedSearch::ends_solid(const Segment& s, bool flat) {
   const double level = kLevelRoundings * rounding_;
   if (s.gb > level) {
     above_ = s.b, g_above_ = s.gb;
   } else if (s.ga > level) {
     above_ = s.a, g_above_ = s.ga;
-  } else if (still) {
-    if (std::isnan(level_from_)) level_from_ = s.a, g_level_ = s.ga;
-    if (s.b - level_from_ <= kLeastLevel * scale(level_from_)) return false;
+  } else if (flat) {
+    if (std::isnan(level_begin_)) level_begin_ = s.a, g_level_ = s.ga;
+    if (s.b - level_begin_ <= kLeastLevel * scale(level_begin_)) return false;
     leave_solid(level);
     return true;
   }
-  level_from_ = std::nan("");
+  level_begin_ = std::nan("");
   return false;
 }
 
 // Ends a solid where g came down to the rounding level at which it has stayed since.
-void Search::leave_solid(double level) {
-  if (g_above_ == 0) return hit(level_from_, level_from_);
+void CertifiedSearch::leave_solid(double level) {
+  if (g_above_ == 0) return hit(level_begin_, level_begin_);
   root_level_ = 2 * level;
-  find_root({above_, g_above_ - root_level_, level_from_, g_level_ - root_level_, 0, 0}, 0);
+  find_root({above_, g_above_ - root_level_, level_begin_, g_level_ - root_level_, 0, 0}, 0);
 }
 
 // Returns the t at which to cut: so near that intervals may be informative for the near part, otherwise where the
 // balls of the near end and of the new sample should just touch if g keeps its slope, or just beyond a root that is
 // near.
-double Search::place_to_cut(const Segment& s, const Gap& gap) const {
+double CertifiedSearch::split_point(const Segment& s, const Gap& gap) const {
   const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
   const double least = gap.lo + coarsened(kResolution, gap.lo);
-  if (hopeless_ > range_ratio_ * near) return std::max(s.a + hopeless_, least);
+  if (max_informative_ > range_ratio_ * near) return std::max(s.a + max_informative_, least);
   double step = kReach * (near + s.ga / s.rise) / (1 - slope / s.rise);
   if (slope < 0) {
     const double open = 0.75 * coarsened(kRootResolution, gap.lo);
@@ -225,10 +225,10 @@ double Search::place_to_cut(const Segment& s, const Gap& gap) const {
   return std::max(s.a + step, least);
 }
 
-bool Search::is_free(const Segment& s, const Gap& gap) { return s.gb >= 0 && gap.lo > gap.hi; }
+bool CertifiedSearch::is_free(const Segment& s, const Gap& gap) { return s.gb >= 0 && gap.lo > gap.hi; }
 
 // Returns the part in which neither end's value and slope exclude g < 0. The gap is empty (lo > hi) if there is none.
-Search::Gap Search::gap_of(const Segment& s) {
+CertifiedSearch::Gap CertifiedSearch::gap_of(const Segment& s) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double lo = s.fall > 0 ? s.a + s.ga / s.fall : infinity;
   if (s.gb < 0) return {std::min(lo, s.b), s.b};
@@ -236,17 +236,17 @@ Search::Gap Search::gap_of(const Segment& s) {
   return {lo, hi};
 }
 
-bool Search::worth_narrowing(const Segment& s, const Gap& gap) {
+bool CertifiedSearch::worth_narrowing(const Segment& s, const Gap& gap) {
   const double length = s.b - s.a;
   if (length <= range_ratio_ * (gap.lo - s.a)) return false;
-  if (length <= hopeless_ && dear_ == 0) return true;
-  if (result_.evaluations < ask_at_) return false;
-  ask_at_ = dear_ > 0 ? result_.evaluations + dear_ : 2 * ask_at_;
+  if (length <= max_informative_ && interval_period_ == 0) return true;
+  if (result_.evaluations < next_interval_at_) return false;
+  next_interval_at_ = interval_period_ > 0 ? result_.evaluations + interval_period_ : 2 * next_interval_at_;
   return true;
 }
 
 // Narrows the segment's bounds by interval arithmetic.
-Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
+CertifiedSearch::IntervalOutcome CertifiedSearch::narrow(Segment& s, RealScratch& scratch) {
   ++result_.evaluations;
   const double length = s.b - s.a, known = s.fall + s.rise;
   std::optional<vm::AlongLine> line = field_->along(origin_, direction_, s.a, s.b, scratch, result_.instructions);
@@ -269,60 +269,60 @@ Search::Told Search::narrow(Segment& s, RealScratch& scratch) {
       free = line->value.hi < 0;
     }
   }
-  const bool told = free || s.fall + s.rise < kProgress * known;
-  hopeless_ = told ? std::max(hopeless_, kShorter * length) : length / kShorter;
-  return free ? Told::Free : told ? Told::Slope : Told::Nothing;
+  const bool outcome = free || s.fall + s.rise < kProgress * known;
+  max_informative_ = outcome ? std::max(max_informative_, kShorter * length) : length / kShorter;
+  return free ? IntervalOutcome::Free : outcome ? IntervalOutcome::Slope : IntervalOutcome::Nothing;
 }
 
 // Narrows the root of a segment over which g falls from above zero to zero or below. The first root is in an interval
 // of that width. By the Illinois method (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
-void Search::find_root(const Segment& s, double width) {
+void CertifiedSearch::find_root(const Segment& s, double width) {
   bracket_ = {s.a, s.b, s.ga, s.gb, 0, 0};
   width_ = width;
-  next_of_bracket();
+  continue_bracket();
 }
 
-void Search::next_of_bracket() {
+void CertifiedSearch::continue_bracket() {
   const Bracket& b = bracket_;
   const double width = b.hi - b.lo, least = 0.25 * kResolution * scale(b.hi);
   if (width <= 2 * least || b.g_hi == 0 || b.rounds == kMostRounds) return hit(b.g_hi == 0 ? b.hi : b.lo, b.hi);
   const double secant = b.lo + width * (b.rounds % 8 == 7 ? 0.5 : b.g_lo / (b.g_lo - b.g_hi));
-  ask(std::clamp(secant, b.lo + least, b.hi - least), Purpose::Root);
+  request(std::clamp(secant, b.lo + least, b.hi - least), Purpose::Root);
 }
 
-void Search::narrow_bracket(double g) {
+void CertifiedSearch::narrow_bracket(double g) {
   Bracket& b = bracket_;
   if (g > 0) {
-    b.lo = wanted_, b.g_lo = g;
+    b.lo = requested_t_, b.g_lo = g;
     if (b.kept > 0) b.g_hi *= 0.5;
     b.kept = 1;
   } else {
-    b.hi = wanted_, b.g_hi = g;
+    b.hi = requested_t_, b.g_hi = g;
     if (b.kept < 0) b.g_lo *= 0.5;
     b.kept = -1;
   }
   ++b.rounds;
-  next_of_bracket();
+  continue_bracket();
 }
 
-double Search::scale(double t) const {
+double CertifiedSearch::scale(double t) const {
   const glm::dvec3 p = glm::abs(origin_ + t * direction_);
   return std::max({1.0, p.x, p.y, p.z});
 }
-double Search::coarsened(double resolution, double t) const {
+double CertifiedSearch::coarsened(double resolution, double t) const {
   const double finest = resolution * scale(t);
   if (result_.evaluations <= kSearchBudget) return finest;
   const double coarser = std::ldexp(finest, static_cast<int>((result_.evaluations - kSearchBudget) / kCoarsening));
-  return std::min(coarser, std::max(finest, kCoarsest * std::min(scale(t), stretch_.end - stretch_.begin)));
+  return std::min(coarser, std::max(finest, kCoarsest * std::min(scale(t), interval_.end - interval_.begin)));
 }
 
-void Search::hit(double lo, double hi) {
+void CertifiedSearch::hit(double lo, double hi) {
   result_.t = (lo + hi) / 2;
   result_.width = std::max({hi - lo, width_, 0.0});
   end(RayHit::Status::Hit);
 }
 
-void Search::end(RayHit::Status status) {
+void CertifiedSearch::end(RayHit::Status status) {
   result_.status = status;
   result_.side = side_ < 0 ? -1 : 1;
   done_ = true;

@@ -1,10 +1,10 @@
 // The baseline methods of following rays, for comparison (method.h). A hit is where the field falls below epsilon,
 // and a ray that takes too many evaluations is given up. For a register of lanes at once.
-#if defined(FATHOM_RUNTIME_TRACED_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_RUNTIME_TRACED_INL
-#undef FATHOM_RUNTIME_TRACED_INL
+#if defined(FATHOM_RUNTIME_SPHERE_TRACING_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_RUNTIME_SPHERE_TRACING_INL
+#undef FATHOM_RUNTIME_SPHERE_TRACING_INL
 #else
-#define FATHOM_RUNTIME_TRACED_INL
+#define FATHOM_RUNTIME_SPHERE_TRACING_INL
 #endif
 
 #include "runtime/march/lane-inl.h"
