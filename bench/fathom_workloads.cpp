@@ -100,7 +100,7 @@ class ShadowRenderer {
         free_.push_back(hit_slots_[i]);
         continue;
       }
-      const Ray ray = leave(hits_[i], points_[i], light_, false);
+      const Ray ray = spawn_ray(hits_[i], points_[i], light_, false);
       slot.ray.origin = ray.origin;
       slot.ray.direction = ray.direction;
       slot.shadow = true;

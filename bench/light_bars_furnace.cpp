@@ -121,7 +121,7 @@ void even_light(const Furnaces& furnaces) {
   }
 }
 
-void lamps(const Furnaces& furnaces) {
+void area_lights(const Furnaces& furnaces) {
   using runtime::LightSampling;
   const std::pair<const char*, LightScene> scenes[] = {
       {"P3: under a ball", tests::under_ball(0.5, 0, 2)},
@@ -147,7 +147,7 @@ void furnace_bars(BarTable& table, const LightCounts& counts) {
   const Furnaces furnaces(table, counts.relative_sigma);
   closed_rooms(furnaces);
   even_light(furnaces);
-  lamps(furnaces);
+  area_lights(furnaces);
   for (const double albedo : {0.5, 0.9}) {
     for (const double degrees : {20.0, 40.0}) {
       RenderOptions options;

@@ -68,7 +68,7 @@ class Scene {
       runtime::SurfacePoint point{};
       runtime::find_surfaces(scene_, field_, {&hit, 1}, {&point, 1}, workspace);
       runtime::Sampler sampler(1, ray_hit.id, 0, 0);
-      diffuse_.push_back(runtime::leave(
+      diffuse_.push_back(runtime::spawn_ray(
           hit, point, runtime::to_frame(point.normal, runtime::square_to_cosine_hemisphere(sampler.next2())), false));
     }
   }

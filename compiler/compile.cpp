@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compiler/analysis/extent.h"
-#include "compiler/analysis/lamps.h"
+#include "compiler/analysis/area_lights.h"
 #include "compiler/analysis/lints.h"
 #include "compiler/analysis/media.h"
 #include "compiler/analysis/nan_regions.h"
@@ -323,14 +323,14 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   }
   if (options.lint || options.lint_picture) lint_light(elaborated->scene, *elaborated, whole->surface, diagnostics);
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
-  std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);
+  std::vector<AreaLight> area_lights = find_area_lights(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(*whole),
                        std::move(source),
                        origin,
                        whole_extent,
                        std::move(*media),
-                       std::move(lamps),
+                       std::move(area_lights),
                        std::move(*formulas),
                        count_nodes(field),
                        ""};

@@ -38,7 +38,7 @@ bool UnitWorker::next_pixel() {
     if (y_ == area.y1) {
       taking_ = false;
       open_[unit_].all_begun = true;
-      if (open_[unit_].ended == open_[unit_].begun) hand_in(unit_);
+      if (open_[unit_].ended == open_[unit_].begun) submit_unit(unit_);
     }
   }
   if (!taking_ && !next_unit()) return false;
@@ -74,11 +74,11 @@ bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
   OpenUnit& unit = open_[key.unit];
   const std::optional<double>& max = work_.context.settings.sample_clamp;
   const bool room = unit.film.add(key.x, key.y, max ? clamped(sample, static_cast<float>(*max)) : sample);
-  if (++unit.ended == unit.begun && unit.all_begun) hand_in(key.unit);
+  if (++unit.ended == unit.begun && unit.all_begun) submit_unit(key.unit);
   return room;
 }
 
-void UnitWorker::hand_in(std::uint32_t number) {
+void UnitWorker::submit_unit(std::uint32_t number) {
   const OpenUnit& unit = open_[number];
   const std::uint64_t rays = integrator_.stats().march.rays;
   if (!work_.picture.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;

@@ -57,7 +57,7 @@ class UnitWorker : private PathSource, private SampleSink {
   bool add(const PathKey& key, const PathSample& sample) override;
   bool next_pixel();
   bool next_unit();
-  void hand_in(std::uint32_t number);
+  void submit_unit(std::uint32_t number);
 
   const PassWork& work_;
   std::vector<OpenUnit> open_;       // [PathKey::unit]

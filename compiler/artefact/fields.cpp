@@ -21,7 +21,7 @@ constexpr double kTiny = 1e-300;  // bound of numbers above 0
 constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
 constexpr std::string_view kBackgrounds[] = {"gradient", "sky", "image"};
 constexpr std::string_view kLights[] = {"point", "spot", "directional"};
-constexpr std::string_view kLamps[] = {"sphere", "box", "cylinder", "capsule", "quad"};
+constexpr std::string_view kAreaLightShapes[] = {"sphere", "box", "cylinder", "capsule", "quad"};
 constexpr std::string_view kMaterials[] = {"diffuse", "emissive", "specular", "transparent", "principled"};
 
 void index(Archive& a, std::string_view name, std::uint32_t& number, std::size_t count) {
@@ -155,8 +155,8 @@ void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) 
   }
 }
 
-void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
-  field(a, "shape", l.shape, ChoiceNames(kLamps));
+void fields(Archive& a, AreaLight& l, const CompiledScene& scene) {
+  field(a, "shape", l.shape, ChoiceNames(kAreaLightShapes));
   field(a, "rotation", l.rotation, -1.001, 1.001);
   field(a, "translation", l.translation, -kAny, kAny);
   field(a, "radius", l.radius, 0, kAny);
@@ -332,7 +332,7 @@ void fields(Archive& a, CompiledScene& scene) {
     field(archive, "shift", surface.shift, -kAny, kAny);
   });
   if (a.reading() && !a.failed() && scene.surfaces.empty()) a.fail("there is no surface");
-  list(a, "lamps", scene.lamps, [&](Archive& archive, Lamp& lamp) { fields(archive, lamp, scene); });
+  list(a, "lamps", scene.area_lights, [&](Archive& archive, AreaLight& area_light) { fields(archive, area_light, scene); });
   record(a, "field", static_cast<CompiledField&>(scene));
   media(a, scene);
 }

@@ -113,8 +113,8 @@ bool check_shutter(const SceneInput& input, const SceneArguments& frame, const c
                    const Sequence& sequence, int number, const Streams& streams) {
   if (!(scene.camera.shutter > 0) || !sequence.animation.time) return true;
   const double open = scene.camera.shutter / sequence.fps;
-  for (const runtime::ShutterRun& run :
-       runtime::shutter_runs(scene.settings.spp, runtime::kUsualShutterTimes, scene.settings.seed, number)) {
+  for (const runtime::ShutterInterval& run :
+       runtime::shutter_intervals(scene.settings.spp, runtime::kDefaultShutterTimes, scene.settings.seed, number)) {
     SceneArguments moment = frame;
     moment.definitions.emplace_back(compiler::kTimeParameter, sequence.time_of(number) + open * run.time);
     moment.inspect = nullptr;

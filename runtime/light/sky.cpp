@@ -7,7 +7,7 @@
 
 #include "runtime/base/angle.h"
 #include "runtime/base/elementary.h"
-#include "runtime/sampling/sphere_table.h"
+#include "runtime/sampling/piecewise_constant_sphere.h"
 #include "vm/number/real.h"
 
 namespace fathom::runtime {

@@ -106,7 +106,7 @@ std::vector<ImageVariant> image_variants(const compiler::CompiledScene& scene) {
   }
   // Sky and environment map are light sources that can be sampled.
   const bool surrounded = scene.background.type != compiler::Background::Type::Gradient;
-  if (scene.lamps.empty() && scene.lights.empty() && !surrounded) return variants;
+  if (scene.area_lights.empty() && scene.lights.empty() && !surrounded) return variants;
   for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
     variants.push_back({.sampler = sampler});
   variants.push_back({.light_sampling = LightSampling::Nee});

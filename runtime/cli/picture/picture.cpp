@@ -87,10 +87,10 @@ std::optional<ExitCode> open_shutter(Picture& picture, const SceneInput& input, 
   RenderRequest& request = picture.request;
   const double open = picture.scene.camera.shutter / request.frames.fps.value_or(picture.scene.film.fps);
   const int frame = request.frame && !request.frames.fixed_noise ? request.frame->number : 0;
-  const int times = request.frames.shutter_times.value_or(runtime::kUsualShutterTimes);
-  const auto runs = runtime::shutter_runs(picture.scene.settings.spp, times, seed, frame);
+  const int times = request.frames.shutter_times.value_or(runtime::kDefaultShutterTimes);
+  const auto runs = runtime::shutter_intervals(picture.scene.settings.spp, times, seed, frame);
   picture.moments.reserve(runs.size());  // options.moments points to the elements
-  for (const runtime::ShutterRun& run : runs) {
+  for (const runtime::ShutterInterval& run : runs) {
     MaybeScene scene = compile_moment(picture, input, time + open * run.time, streams);
     if (const auto* code = std::get_if<ExitCode>(&scene)) return *code;
     picture.moments.push_back(std::get<compiler::CompiledScene>(std::move(scene)));

@@ -118,7 +118,7 @@ TEST_CASE("every shipped scene reads back from its bytes and from its listing", 
 TEST_CASE("all that a scene can say reads back, with and without places and text", "[artefact]") {
   const CompiledScene scene = tests::compiled(kEverything);
   REQUIRE(scene.media.size() == 1);
-  REQUIRE(scene.lamps.size() == 1);
+  REQUIRE(scene.area_lights.size() == 1);
   REQUIRE(scene.formulas.size() == 1);
   REQUIRE(scene.textures.size() >= 3);
   for (const bool debug : {true, false}) {

@@ -28,7 +28,7 @@ const char* const kGroundScene = R"("camera": {"position": [0, 0.5, 4], "target"
     "film": {"width": 32, "height": 16}, "background": {"bottom": [0.2, 0.2, 0.2], "top": [1, 1, 1]},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1}, {"type": "sphere", "radius": 1}])";
 // A floor under a small lamp.
-const char* const kLampScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
+const char* const kAreaLightScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
     "film": {"width": 32, "height": 16}, "render": {"rr_depth": 2},
     "materials": {"lamp": {"type": "emissive", "emission": [50, 50, 50]}},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
@@ -133,7 +133,7 @@ TEST_CASE("chart: what is charted ends with the reference, and starts with what 
   CHECK((painted.front().sampler == settings.sampler && painted.front().light_sampling == settings.light_sampling));
   CHECK(compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)] == kDefaultSampler);
   CHECK(kLightSamplingNames[static_cast<std::size_t>(settings.light_sampling)] == kDefaultLights);
-  CHECK(image_variants(scene_of(kLampScene)).size() == 9);
+  CHECK(image_variants(scene_of(kAreaLightScene)).size() == 9);
   // Regression: the sky was not counted as a light to sample.
   const std::string under_sky = R"("background": {"type": "sky"}, "objects": [{"type": "sphere", "radius": 1}])";
   CHECK(image_variants(scene_of(under_sky)).size() == 9);
@@ -248,7 +248,7 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
 }
 
 TEST_CASE("chart: samplers and ways to find light are told apart, and looking for lamps pays", "[chart]") {
-  const auto scene = scene_of(kLampScene);
+  const auto scene = scene_of(kAreaLightScene);
   const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 3, .reference_spp = 1024};
   const std::vector<ImageVariant> variants = {
       {}, {.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf}};

@@ -212,7 +212,7 @@ TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance the
 }
 
 // A floor lit by a small bright lamp that few paths hit.
-compiler::CompiledScene floor_and_lamp() {
+compiler::CompiledScene floor_and_area_light() {
   return scene_of(
       R"("camera": {"position": [0, 1, 0.5], "target": [0, 0, 0], "fov": 60}, "background": [0.2, 0.2, 0.2],
       "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
@@ -223,7 +223,7 @@ compiler::CompiledScene floor_and_lamp() {
 
 // As a control, stopping by the samples that are kept is biased.
 TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][heavy]") {
-  const auto scene = floor_and_lamp();
+  const auto scene = floor_and_area_light();
   constexpr double kThreshold = 0.25;
   constexpr int kMost = 256;
   RenderOptions options = uniform(adaptive_options(8, 8, test::few(40000)));

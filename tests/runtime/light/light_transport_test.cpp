@@ -112,10 +112,10 @@ TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
   expect(tests::veiled_drink(), options, 1e-3);
 }
 
-// Regression: shadow rays found light on a clear lamp's surface although water filled the lamp, and light through an
+// Regression: shadow rays found light on a clear area light's surface although water filled the area light, and light through an
 // unbounded sea.
 TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
-  for (const LightScene& scene : {tests::drowned_lamp(), tests::bottomless_sea()}) {
+  for (const LightScene& scene : {tests::submerged_area_light(), tests::bottomless_sea()}) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
       RenderOptions options = square(8, 16);
@@ -240,7 +240,7 @@ Cells cells_of(const compiler::CompiledScene& scene, LightSampling way, int spp,
 }
 
 TEST_CASE("light: looking for lights, hitting them and both give one picture", "[render][light][heavy]") {
-  const auto scene = scene_of(tests::kLampRoom);
+  const auto scene = scene_of(tests::kAreaLightRoom);
   const Cells both = cells_of(scene, LightSampling::Mis, 32, 0);
   for (const LightSampling way : {LightSampling::Nee, LightSampling::Bsdf}) {
     const Cells other = cells_of(scene, way, way == LightSampling::Bsdf ? 128 : 32, 1000);

@@ -107,7 +107,7 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
       const glm::dvec3 away = i % 3 == 0 ? aside : direction;
       const double side = glm::dot(away, normal) < 0 ? -1 : 1;
       const glm::dvec3 up = away + (side - 1) * glm::dot(away, normal) * normal;
-      rays.push_back(leave(places.hits[i], places.points[i], glm::normalize(up), false));
+      rays.push_back(spawn_ray(places.hits[i], places.points[i], glm::normalize(up), false));
       clear += rays.back().clear > 0;
       without.push_back(rays.back());
       without.back().clear = 0;

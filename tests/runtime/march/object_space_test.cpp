@@ -32,7 +32,7 @@ CompiledScene scene_of(const std::string& objects, const std::string& materials 
 vec3 color_at(const CompiledScene& scene, dvec3 p) {
   RealScratch scratch;
   const Field field = make_field(scene);
-  const vm::SurfacePlace found = find_place(scene, field, p - scene.origin, scratch);
+  const vm::SurfacePlace found = find_object_point(scene, field, p - scene.origin, scratch);
   return Materials(scene)
       .at(scene.surfaces[found.surface].material, p - scene.origin, found.place, scratch.workspace)
       .base_color;
@@ -222,7 +222,7 @@ TEST_CASE("object space: hits, blends and lamps show the patterns of the moved b
   // With "left", both balls share a material, but each has its own coordinates.
   for (const char* right : {"right", "left"}) {
     const CompiledScene own = room(kOwn, right);
-    CHECK(own.lamps.size() == 1);
+    CHECK(own.area_lights.size() == 1);
     CHECK(apart(moved, render(own, options).film) < 1e-5);
   }
 }

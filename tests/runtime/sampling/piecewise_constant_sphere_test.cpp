@@ -1,6 +1,6 @@
 // A table of directions: conversion to longitude and latitude and back, cells sampled by probability. Chi-square
 // test: environment_test.cpp.
-#include "runtime/sampling/sphere_table.h"
+#include "runtime/sampling/piecewise_constant_sphere.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,7 +27,7 @@ TEST_CASE("sphere table: longitude and latitude there and back", "[lights]") {
 TEST_CASE("sphere table: a single cell takes every sample", "[lights]") {
   std::vector<float> values(8 * 4, 0.0f);
   values[8 * 1 + 5] = 3;
-  const SphereTable table(8, 4, values);
+  const PiecewiseConstantSphere table(8, 4, values);
   const double solid_angle = 2 * M_PI / 8 * (std::cos(M_PI / 4) - std::cos(M_PI / 2));
   CHECK(table.mean() == Approx(3 * solid_angle / (4 * M_PI)));
   for (std::uint32_t i = 0; i < 1000; ++i) {
@@ -38,11 +38,11 @@ TEST_CASE("sphere table: a single cell takes every sample", "[lights]") {
   }
   CHECK(table.pdf(glm::vec3(from_latlong({5.5 / 8, 1.5 / 4}))) == Approx(1 / solid_angle));
   CHECK(table.pdf(glm::vec3(from_latlong({4.5 / 8, 1.5 / 4}))) == 0);
-  CHECK(SphereTable(8, 4, std::vector<float>(32, 0.0f)).mean() == 0);
+  CHECK(PiecewiseConstantSphere(8, 4, std::vector<float>(32, 0.0f)).mean() == 0);
 }
 
 TEST_CASE("sphere table: equal values are equal densities", "[lights]") {
-  const SphereTable table(16, 8, std::vector<float>(128, 0.7f));
+  const PiecewiseConstantSphere table(16, 8, std::vector<float>(128, 0.7f));
   CHECK(table.mean() == Approx(0.7));
   for (double v = 0.01; v < 1; v += 0.1)
     CHECK(table.pdf(glm::vec3(from_latlong({0.3, v}))) == Approx(1 / (4 * M_PI)));

@@ -1,4 +1,4 @@
-#include "runtime/sampling/sphere_table.h"
+#include "runtime/sampling/piecewise_constant_sphere.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ glm::dvec3 from_latlong(glm::dvec2 uv) {
   return {-sine * vm::real::sin(turn), vm::real::cos(polar), sine * vm::real::cos(turn)};
 }
 
-SphereTable::SphereTable(int width, int height, std::span<const float> values)
+PiecewiseConstantSphere::PiecewiseConstantSphere(int width, int height, std::span<const float> values)
     : width_(static_cast<std::size_t>(width)), height_(static_cast<std::size_t>(height)) {
   CHECK(width > 0 && height > 0 && values.size() == width_ * height_,
         "a table of directions has width x height cells");
@@ -68,11 +68,11 @@ SphereTable::SphereTable(int width, int height, std::span<const float> values)
   for (double& running : rows_) running = sum > 0 ? running / sum : 0;
 }
 
-double SphereTable::solid_angle(std::size_t row) const {
+double PiecewiseConstantSphere::solid_angle(std::size_t row) const {
   return kTurn / static_cast<double>(width_) * (heights_[row] - heights_[row + 1]);
 }
 
-glm::vec3 SphereTable::sample(glm::vec2 u) const {
+glm::vec3 PiecewiseConstantSphere::sample(glm::vec2 u) const {
   const auto [row, down] = find(std::span<const double>(rows_), static_cast<double>(u.y));
   const auto [column, along] = find(std::span(columns_).subspan(row * width_, width_), static_cast<double>(u.x));
   const double y = heights_[row] + down * (heights_[row + 1] - heights_[row]);
@@ -82,7 +82,7 @@ glm::vec3 SphereTable::sample(glm::vec2 u) const {
   return {-sine * static_cast<double>(turn.sin), y, sine * static_cast<double>(turn.cos)};
 }
 
-float SphereTable::pdf(glm::vec3 direction) const {
+float PiecewiseConstantSphere::pdf(glm::vec3 direction) const {
   if (!(mean_ > 0)) return 0;
   const glm::dvec2 uv = to_latlong(glm::dvec3(direction));
   const std::size_t row = cell(uv.y, height_), column = cell(uv.x, width_);

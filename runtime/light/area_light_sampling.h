@@ -15,9 +15,9 @@ namespace fathom::runtime {
 
 inline double sqr(double x) { return x * x; }
 
-// The parts of a shape, with weights. choose() picks a part by a number, and makes the number uniform again.
+// A distribution over the parts of a shape. sample() picks a part by a number, and makes the number uniform again.
 template <std::size_t N>
-struct Parts {
+struct DiscreteDistribution {
   std::array<double, N> weights{};
 
   double sum() const {
@@ -25,9 +25,9 @@ struct Parts {
     for (const double w : weights) total += w;
     return total;
   }
-  double share(std::size_t part) const { return weights[part] / sum(); }
+  double pmf(std::size_t part) const { return weights[part] / sum(); }
   // Requires sum() > 0.
-  std::size_t choose(double& u) const {
+  std::size_t sample(double& u) const {
     double rest = u * sum();
     std::size_t part = 0, last = 0;
     for (std::size_t i = 0; i < N; ++i) {

@@ -5,7 +5,7 @@
 
 namespace fathom::runtime {
 
-struct LightQuery {
+struct LightSampleContext {
   glm::dvec3 position;      // in the programs' coordinates
   glm::vec3 normal;         // of the surface there, unit
   bool both_sides = false;  // light from behind the surface counts, too

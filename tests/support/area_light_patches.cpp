@@ -1,4 +1,4 @@
-#include "tests/support/lamp_patches.h"
+#include "tests/support/area_light_patches.h"
 
 #include <algorithm>
 #include <functional>
@@ -12,19 +12,19 @@
 
 namespace fathom::test {
 
-using compiler::Lamp;
+using compiler::AreaLight;
 using glm::dvec3;
-using runtime::LampShape, runtime::Sampler, runtime::ShapeSample;
+using runtime::AreaLightShape, runtime::Sampler, runtime::ShapeSample;
 
 namespace {
 
-Lamp lamp_of(Lamp::Shape shape) {
-  Lamp lamp;
-  lamp.shape = shape;
+AreaLight make_area_light(AreaLight::Shape shape) {
+  AreaLight area_light;
+  area_light.shape = shape;
   const dvec3 z = glm::normalize(dvec3(1, -2, 3)), x = glm::normalize(glm::cross(dvec3(0, 1, 0), z));
-  lamp.rotation = glm::dmat3(x, glm::cross(z, x), z);
-  lamp.translation = {0.3, -0.2, 0.1};
-  return lamp;
+  area_light.rotation = glm::dmat3(x, glm::cross(z, x), z);
+  area_light.translation = {0.3, -0.2, 0.1};
+  return area_light;
 }
 // Part of an area light's surface, parametrised over the unit square, in the light's local space.
 struct Patch {
@@ -91,29 +91,29 @@ Patch face_of_box(dvec3 half, int axis, double sign) {
           [=](dvec3 q) { return glm::dvec2(q[j] / half[j] + 1, q[k] / half[k] + 1) / 2.0; },
           [=](dvec3 q) { return std::abs(q[axis] - sign * half[axis]) < 1e-9 * half[axis]; }};
 }
-Patch face_of_quad(const Lamp& lamp, double sign) {
-  const double skew = lamp.corners[2].x - 1, z = sign * lamp.radius;
+Patch face_of_quad(const AreaLight& area_light, double sign) {
+  const double skew = area_light.corners[2].x - 1, z = sign * area_light.radius;
   return {[=](double u, double v) { return dvec3(-1 + u * (2 + skew * v), v - 0.5, z); },
           [=](dvec3 q) { return glm::dvec2((q.x + 1) / (2 + skew * (q.y + 0.5)), q.y + 0.5); },
           [=](dvec3 q) { return q.z * sign > 0; }};
 }
 
-std::vector<Patch> patches_of(const Lamp& lamp, dvec3 place) {
-  const dvec3 from = glm::transpose(lamp.rotation) * (place - lamp.translation);
-  const double r = lamp.radius, h = lamp.half_height;
+std::vector<Patch> patches_of(const AreaLight& area_light, dvec3 place) {
+  const dvec3 from = glm::transpose(area_light.rotation) * (place - area_light.translation);
+  const double r = area_light.radius, h = area_light.half_height;
   std::vector<Patch> patches;
-  switch (lamp.shape) {
-    case Lamp::Shape::Sphere:
+  switch (area_light.shape) {
+    case AreaLight::Shape::Sphere:
       return {cap_of_ball(r, 0, 0)};
-    case Lamp::Shape::Cylinder:
+    case AreaLight::Shape::Cylinder:
       return {side_of(r, h, false, from), disc_of(r, h), disc_of(r, -h)};
-    case Lamp::Shape::Capsule:
+    case AreaLight::Shape::Capsule:
       return {side_of(r, h, true, from), cap_of_ball(r, h, 1), cap_of_ball(r, h, -1)};
-    case Lamp::Shape::Quad:
-      return {face_of_quad(lamp, 1), face_of_quad(lamp, -1)};
-    case Lamp::Shape::Box:
+    case AreaLight::Shape::Quad:
+      return {face_of_quad(area_light, 1), face_of_quad(area_light, -1)};
+    case AreaLight::Shape::Box:
       for (int axis = 0; axis < 3; ++axis) {
-        for (const double sign : {-1.0, 1.0}) patches.push_back(face_of_box(lamp.half_size, axis, sign));
+        for (const double sign : {-1.0, 1.0}) patches.push_back(face_of_box(area_light.half_size, axis, sign));
       }
   }
   return patches;
@@ -125,8 +125,8 @@ std::size_t bin(double t) { return static_cast<std::size_t>(std::clamp(static_ca
 
 // Integrates the density over each bin of a patch: density per solid angle, times the solid angle of small pieces of
 // the surface.
-void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid, std::vector<double>& expected) {
-  const Lamp& lamp = shape.lamp();
+void integrate(const AreaLightShape& shape, const Patch& patch, dvec3 from, int grid, std::vector<double>& expected) {
+  const AreaLight& area_light = shape.area_light();
   const std::size_t first = expected.size();
   expected.resize(first + kBins * kBins);
   const double du = 1.0 / (kBins * grid), dv = 1.0 / (kBins * grid), e = 1e-6;
@@ -135,8 +135,8 @@ void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid,
       const double u = (i + 0.5) * du, v = (j + 0.5) * dv;
       const dvec3 along_u = (patch.place(u + e, v) - patch.place(u - e, v)) / (2 * e);
       const dvec3 along_v = (patch.place(u, v + e) - patch.place(u, v - e)) / (2 * e);
-      const dvec3 area = lamp.rotation * glm::cross(along_u, along_v) * (du * dv);
-      const dvec3 place = lamp.rotation * patch.place(u, v) + lamp.translation, way = place - from;
+      const dvec3 area = area_light.rotation * glm::cross(along_u, along_v) * (du * dv);
+      const dvec3 place = area_light.rotation * patch.place(u, v) + area_light.translation, way = place - from;
       const double d2 = glm::dot(way, way), solid_angle = std::abs(glm::dot(area, way)) / (d2 * std::sqrt(d2));
       // Pieces that face away are hidden by the light itself.
       const dvec3 inwards = shape.centre() - place;
@@ -147,8 +147,8 @@ void integrate(const LampShape& shape, const Patch& patch, dvec3 from, int grid,
 }
 
 // Counts n samples per bin. The last bin counts failed samples.
-std::vector<double> count_samples(const LampShape& shape, const std::vector<Patch>& patches, dvec3 from, int n) {
-  const Lamp& lamp = shape.lamp();
+std::vector<double> count_samples(const AreaLightShape& shape, const std::vector<Patch>& patches, dvec3 from, int n) {
+  const AreaLight& area_light = shape.area_light();
   std::vector<double> counts(patches.size() * kBins * kBins + 1);
   for (int i = 0; i < n; ++i) {
     Sampler sampler(1, static_cast<std::uint32_t>(i), 0, 0);
@@ -157,7 +157,7 @@ std::vector<double> count_samples(const LampShape& shape, const std::vector<Patc
       ++counts.back();
       continue;
     }
-    const dvec3 local = glm::transpose(lamp.rotation) * (s.position - lamp.translation);
+    const dvec3 local = glm::transpose(area_light.rotation) * (s.position - area_light.translation);
     std::size_t patch = 0;
     while (patch + 1 < patches.size() && !patches[patch].holds(local)) ++patch;
     const glm::dvec2 uv = patches[patch].parameters(local);
@@ -168,31 +168,31 @@ std::vector<double> count_samples(const LampShape& shape, const std::vector<Patc
 
 }  // namespace
 
-Lamp ball(double radius) {
-  Lamp lamp = lamp_of(Lamp::Shape::Sphere);
-  lamp.radius = radius;
-  return lamp;
+AreaLight ball(double radius) {
+  AreaLight area_light = make_area_light(AreaLight::Shape::Sphere);
+  area_light.radius = radius;
+  return area_light;
 }
-Lamp box(dvec3 half) {
-  Lamp lamp = lamp_of(Lamp::Shape::Box);
-  lamp.half_size = half;
-  return lamp;
+AreaLight box(dvec3 half) {
+  AreaLight area_light = make_area_light(AreaLight::Shape::Box);
+  area_light.half_size = half;
+  return area_light;
 }
-Lamp round(Lamp::Shape shape, double radius, double half_height) {
-  Lamp lamp = lamp_of(shape);
-  lamp.radius = radius;
-  lamp.half_height = half_height;
-  return lamp;
+AreaLight round(AreaLight::Shape shape, double radius, double half_height) {
+  AreaLight area_light = make_area_light(shape);
+  area_light.radius = radius;
+  area_light.half_height = half_height;
+  return area_light;
 }
-Lamp quad(double thickness, double skew) {
-  Lamp lamp = lamp_of(Lamp::Shape::Quad);
-  lamp.radius = thickness;
-  lamp.corners = {{{-1, -0.5}, {1, -0.5}, {1 + skew, 0.5}, {-1, 0.5}}};
-  return lamp;
+AreaLight quad(double thickness, double skew) {
+  AreaLight area_light = make_area_light(AreaLight::Shape::Quad);
+  area_light.radius = thickness;
+  area_light.corners = {{{-1, -0.5}, {1, -0.5}, {1 + skew, 0.5}, {-1, 0.5}}};
+  return area_light;
 }
 
-ChiSquare lamp_chi_square(const LampShape& shape, dvec3 from, int samples, int grid) {
-  const std::vector<Patch> patches = patches_of(shape.lamp(), from);
+ChiSquare area_light_chi_square(const AreaLightShape& shape, dvec3 from, int samples, int grid) {
+  const std::vector<Patch> patches = patches_of(shape.area_light(), from);
   std::vector<double> expected;
   for (const Patch& patch : patches) integrate(shape, patch, from, grid, expected);
   const double mass = std::accumulate(expected.begin(), expected.end(), 0.0);

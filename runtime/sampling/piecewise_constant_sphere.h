@@ -2,7 +2,7 @@
 // latitude-longitude image. Within a cell directions are uniform per solid angle.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 3rd ed. 2016, sections 13.6.7 and 14.2.4, with the
-// cells' solid angles instead of the sine at their middles. Tested by: tests/runtime/sampling/sphere_table_test.cpp
+// cells' solid angles instead of the sine at their middles. Tested by: tests/runtime/sampling/piecewise_constant_sphere_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -17,11 +17,11 @@ namespace fathom::runtime {
 glm::dvec2 to_latlong(glm::dvec3 direction);
 glm::dvec3 from_latlong(glm::dvec2 uv);
 
-class SphereTable {
+class PiecewiseConstantSphere {
  public:
-  SphereTable() = default;
+  PiecewiseConstantSphere() = default;
   // Takes densities in any unit, finite and not negative: `height` rows of `width` cells, from +y down.
-  SphereTable(int width, int height, std::span<const float> values);
+  PiecewiseConstantSphere(int width, int height, std::span<const float> values);
 
   // Returns the mean of the values over the sphere; 0 when there is nothing to sample.
   double mean() const { return mean_; }

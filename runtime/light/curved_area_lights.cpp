@@ -1,4 +1,4 @@
-#include "runtime/light/round_lamps.h"
+#include "runtime/light/curved_area_lights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,13 @@
 
 #include "runtime/base/angle.h"
 #include "runtime/base/elementary.h"
-#include "runtime/light/lamp_parts.h"
+#include "runtime/light/area_light_sampling.h"
 #include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
 
-using compiler::Lamp;
+using compiler::AreaLight;
 using glm::dvec2;
 using glm::dvec3;
 
@@ -97,9 +97,9 @@ struct Side {
 };
 
 // Weights of the cap and the side. A cap is seen only from beyond its plane.
-Parts<2> cylinder_parts(const Lamp& lamp, dvec3 from, const Side& side) {
-  Parts<2> parts;
-  const double above = std::abs(from.y) - lamp.half_height, r2 = sqr(lamp.radius);
+DiscreteDistribution<2> cylinder_parts(const AreaLight& area_light, dvec3 from, const Side& side) {
+  DiscreteDistribution<2> parts;
+  const double above = std::abs(from.y) - area_light.half_height, r2 = sqr(area_light.radius);
   const double d2 = sqr(above) + sqr(from.x) + sqr(from.z) + r2 / 2;
   if (above > 0) parts.weights[0] = kPi * r2 * above / (d2 * std::sqrt(d2));
   parts.weights[1] = side.weight(from);
@@ -108,61 +108,61 @@ Parts<2> cylinder_parts(const Lamp& lamp, dvec3 from, const Side& side) {
 
 }  // namespace
 
-ShapeSample sample_cylinder(const Lamp& lamp, dvec3 from, dvec2 u) {
-  const Side side(from, lamp.radius, lamp.half_height);
-  const Parts<2> parts = cylinder_parts(lamp, from, side);
+ShapeSample sample_cylinder(const AreaLight& area_light, dvec3 from, dvec2 u) {
+  const Side side(from, area_light.radius, area_light.half_height);
+  const DiscreteDistribution<2> parts = cylinder_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return {};
-  const std::size_t part = parts.choose(u.x);
+  const std::size_t part = parts.sample(u.x);
   ShapeSample out;
   if (part == 0) {
-    const double r = lamp.radius * std::sqrt(u.x);
+    const double r = area_light.radius * std::sqrt(u.x);
     const SinCos turn = sincos_turn(static_cast<float>(u.y));
     out.normal = dvec3(0, from.y > 0 ? 1 : -1, 0);
-    out.position = {r * static_cast<double>(turn.cos), out.normal.y * lamp.half_height,
+    out.position = {r * static_cast<double>(turn.cos), out.normal.y * area_light.half_height,
                     r * static_cast<double>(turn.sin)};
-    out.pdf = area_to_solid_angle(out, from, kPi * sqr(lamp.radius));
+    out.pdf = area_to_solid_angle(out, from, kPi * sqr(area_light.radius));
   } else {
     out = side.sample(from, u);
   }
-  out.pdf *= parts.share(part);
+  out.pdf *= parts.pmf(part);
   return out;
 }
 
-double cylinder_pdf(const Lamp& lamp, dvec3 from, dvec3 hit) {
-  const Side side(from, lamp.radius, lamp.half_height);
-  const Parts<2> parts = cylinder_parts(lamp, from, side);
+double cylinder_pdf(const AreaLight& area_light, dvec3 from, dvec3 hit) {
+  const Side side(from, area_light.radius, area_light.half_height);
+  const DiscreteDistribution<2> parts = cylinder_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return 0;
-  const bool on_side = std::abs(hit.y) - lamp.half_height < std::sqrt(sqr(hit.x) + sqr(hit.z)) - lamp.radius;
-  if (on_side) return parts.share(1) * side.pdf(from, hit);
+  const bool on_side = std::abs(hit.y) - area_light.half_height < std::sqrt(sqr(hit.x) + sqr(hit.z)) - area_light.radius;
+  if (on_side) return parts.pmf(1) * side.pdf(from, hit);
   const dvec3 up(0, hit.y > 0 ? 1 : -1, 0);
-  return parts.share(0) * area_to_solid_angle({hit, up}, from, kPi * sqr(lamp.radius));
+  return parts.pmf(0) * area_to_solid_angle({hit, up}, from, kPi * sqr(area_light.radius));
 }
 
-double cylinder_distance(const Lamp& lamp, dvec3 p) {
-  const double out = std::sqrt(sqr(p.x) + sqr(p.z)) - lamp.radius, up = std::abs(p.y) - lamp.half_height;
+double cylinder_distance(const AreaLight& area_light, dvec3 p) {
+  const double out = std::sqrt(sqr(p.x) + sqr(p.z)) - area_light.radius, up = std::abs(p.y) - area_light.half_height;
   return std::abs(std::min(std::max(out, up), 0.0) + std::sqrt(sqr(std::max(out, 0.0)) + sqr(std::max(up, 0.0))));
 }
 
 namespace {
 
-dvec3 ball_of(const Lamp& lamp, bool upper) { return {0, upper ? lamp.half_height : -lamp.half_height, 0}; }
+dvec3 ball_of(const AreaLight& area_light, bool upper) { return {0, upper ? area_light.half_height : -area_light.half_height, 0}; }
 
 }  // namespace
 
-double capsule_distance(const Lamp& lamp, dvec3 p) {
-  return glm::length(p - dvec3(0, std::clamp(p.y, -lamp.half_height, lamp.half_height), 0)) - lamp.radius;
+double capsule_distance(const AreaLight& area_light, dvec3 p) {
+  return glm::length(p - dvec3(0, std::clamp(p.y, -area_light.half_height, area_light.half_height), 0)) - area_light.radius;
 }
 
 namespace {
 
 // Weights of the lower ball, the upper ball and the side. A ball that is not the nearer end counts half, because only
 // half of the ball is outside the solid.
-Parts<3> capsule_parts(const Lamp& lamp, dvec3 from, const Side& side) {
-  Parts<3> parts;
-  if (!(capsule_distance(lamp, from) > 0)) return parts;
+DiscreteDistribution<3> capsule_parts(const AreaLight& area_light, dvec3 from, const Side& side) {
+  DiscreteDistribution<3> parts;
+  if (!(capsule_distance(area_light, from) > 0)) return parts;
   for (const bool upper : {false, true}) {
-    const bool whole = upper ? from.y > lamp.half_height : from.y < -lamp.half_height;
-    parts.weights[upper] = (whole ? 2 : 1) * kPi * ball_height(from, ball_of(lamp, upper), lamp.radius);
+    const bool whole = upper ? from.y > area_light.half_height : from.y < -area_light.half_height;
+    parts.weights[upper] = (whole ? 2 : 1) * kPi * ball_height(from, ball_of(area_light, upper), area_light.radius);
   }
   parts.weights[2] = side.weight(from);
   return parts;
@@ -170,25 +170,25 @@ Parts<3> capsule_parts(const Lamp& lamp, dvec3 from, const Side& side) {
 
 }  // namespace
 
-ShapeSample sample_capsule(const Lamp& lamp, dvec3 from, dvec2 u) {
-  const Side side(from, lamp.radius, lamp.half_height);
-  const Parts<3> parts = capsule_parts(lamp, from, side);
+ShapeSample sample_capsule(const AreaLight& area_light, dvec3 from, dvec2 u) {
+  const Side side(from, area_light.radius, area_light.half_height);
+  const DiscreteDistribution<3> parts = capsule_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return {};
-  const std::size_t part = parts.choose(u.x);
-  ShapeSample out = part == 2 ? side.sample(from, u) : sample_ball(from, ball_of(lamp, part == 1), lamp.radius, u);
-  out.pdf *= parts.share(part);
-  if (part < 2 && (part == 1 ? out.position.y : -out.position.y) <= lamp.half_height) out.pdf = 0;
+  const std::size_t part = parts.sample(u.x);
+  ShapeSample out = part == 2 ? side.sample(from, u) : sample_ball(from, ball_of(area_light, part == 1), area_light.radius, u);
+  out.pdf *= parts.pmf(part);
+  if (part < 2 && (part == 1 ? out.position.y : -out.position.y) <= area_light.half_height) out.pdf = 0;
   return out;
 }
 
-double capsule_pdf(const Lamp& lamp, dvec3 from, dvec3 hit) {
-  const Side side(from, lamp.radius, lamp.half_height);
-  const Parts<3> parts = capsule_parts(lamp, from, side);
+double capsule_pdf(const AreaLight& area_light, dvec3 from, dvec3 hit) {
+  const Side side(from, area_light.radius, area_light.half_height);
+  const DiscreteDistribution<3> parts = capsule_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return 0;
-  if (std::abs(hit.y) <= lamp.half_height) return parts.share(2) * side.pdf(from, hit);
+  if (std::abs(hit.y) <= area_light.half_height) return parts.pmf(2) * side.pdf(from, hit);
   const bool upper = hit.y > 0;
-  if (!(glm::dot(hit - ball_of(lamp, upper), from - hit) > 0)) return 0;
-  return parts.share(upper) * ball_pdf(from, ball_of(lamp, upper), lamp.radius);
+  if (!(glm::dot(hit - ball_of(area_light, upper), from - hit) > 0)) return 0;
+  return parts.pmf(upper) * ball_pdf(from, ball_of(area_light, upper), area_light.radius);
 }
 
 }  // namespace fathom::runtime

@@ -16,15 +16,15 @@
 
 namespace fathom::runtime {
 
-class SeenRectangle {
+class SphericalRectangle {
  public:
-  struct Place {
+  struct Sample {
     glm::dvec2 at;  // x and y
     double pdf;     // per solid angle; 0: no sample, the rectangle is too small or seen from its edge
   };
 
   // The rectangle [x0,x1] x [y0,y1] in the plane at distance z > 0.
-  SeenRectangle(double x0, double x1, double y0, double y1, double z) : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z_(z) {
+  SphericalRectangle(double x0, double x1, double y0, double y1, double z) : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z_(z) {
     const double least = std::max({y0, -y1, 0.0});
     z2_ = z * z;
     c2_ = z2_ + least * least;
@@ -32,7 +32,7 @@ class SeenRectangle {
     g1_ = sine(x1, c2_);
   }
 
-  Place sample(glm::dvec2 u) const {
+  Sample sample(glm::dvec2 u) const {
     const double g = g0_ + u.x * (g1_ - g0_);
     const double x = std::clamp(g * std::sqrt(c2_ / std::max(1 - g * g, kLeast)), x0_, x1_);
     const double d2 = x * x + z2_, h0 = sine(y0_, d2), h1 = sine(y1_, d2);

@@ -1,4 +1,4 @@
-#include "compiler/analysis/lamps.h"
+#include "compiler/analysis/area_lights.h"
 
 #include <algorithm>
 #include <array>
@@ -28,15 +28,15 @@ bool is_way(Kind kind) {
   return kind == Kind::Union || kind == Kind::Transform || kind == Kind::Scaled || kind == Kind::Paint;
 }
 
-// A similarity transform into a lamp's space: q = R^T (p - t) / s.
-struct LampPlacement {
+// A similarity transform into an area light's space: q = R^T (p - t) / s.
+struct AreaLightPlacement {
   dmat3 rotation;
   dvec3 translation;
   double scale;
 };
 
 // Returns nullopt when the map scales directions differently.
-std::optional<LampPlacement> placement_of(const Affine& to_local) {
+std::optional<AreaLightPlacement> placement_of(const Affine& to_local) {
   constexpr double kTolerance = 1e-9;
   const std::array<dvec3, 3>& rows = to_local.rows;
   const double length = glm::length(rows[0]);
@@ -44,12 +44,12 @@ std::optional<LampPlacement> placement_of(const Affine& to_local) {
     if (!(std::abs(glm::length(rows[i]) - length) <= kTolerance * length)) return std::nullopt;
     if (!(std::abs(glm::dot(rows[i], rows[(i + 1) % 3])) <= kTolerance * length * length)) return std::nullopt;
   }
-  return LampPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
+  return AreaLightPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
                    1 / length};
 }
 
-// Sets the lamp's space: the quad's plane becomes the xy plane, the quad's centre the origin.
-void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place) {
+// Sets the area light's space: the quad's plane becomes the xy plane, the quad's centre the origin.
+void set_quad(AreaLight& area_light, std::span<const double> p, const AreaLightPlacement& place) {
   std::array<dvec3, 4> v;
   dvec3 middle(0);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -59,44 +59,44 @@ void set_quad(Lamp& lamp, std::span<const double> p, const LampPlacement& place)
   const dvec3 x = glm::normalize(v[1] - v[0]);
   // The cross product of a convex quad's diagonals is twice its area along the normal.
   const dvec3 z = glm::normalize(glm::cross(v[2] - v[0], v[3] - v[1]));
-  lamp.rotation = dmat3(x, glm::cross(z, x), z);
-  lamp.translation = middle;
-  lamp.radius = p[12] * place.scale;
-  for (std::size_t i = 0; i < 4; ++i) lamp.corners[i] = dvec2(glm::transpose(lamp.rotation) * (v[i] - middle));
+  area_light.rotation = dmat3(x, glm::cross(z, x), z);
+  area_light.translation = middle;
+  area_light.radius = p[12] * place.scale;
+  for (std::size_t i = 0; i < 4; ++i) area_light.corners[i] = dvec2(glm::transpose(area_light.rotation) * (v[i] - middle));
 }
 
-std::optional<Lamp> lamp_of(Kind kind, std::span<const double> p, const Affine& to_local) {
-  const std::optional<LampPlacement> place = placement_of(to_local);
+std::optional<AreaLight> lamp_of(Kind kind, std::span<const double> p, const Affine& to_local) {
+  const std::optional<AreaLightPlacement> place = placement_of(to_local);
   if (!place) return std::nullopt;
-  Lamp lamp;
-  lamp.rotation = place->rotation;
-  lamp.translation = place->translation;
+  AreaLight area_light;
+  area_light.rotation = place->rotation;
+  area_light.translation = place->translation;
   switch (kind) {
     case Kind::Box:
-      lamp.shape = Lamp::Shape::Box;
-      lamp.half_size = place->scale * dvec3(p[0], p[1], p[2]);
+      area_light.shape = AreaLight::Shape::Box;
+      area_light.half_size = place->scale * dvec3(p[0], p[1], p[2]);
       break;
     case Kind::Cylinder:
     case Kind::Capsule:
-      lamp.shape = kind == Kind::Cylinder ? Lamp::Shape::Cylinder : Lamp::Shape::Capsule;
-      lamp.radius = place->scale * p[0];
-      lamp.half_height = place->scale * p[1];
+      area_light.shape = kind == Kind::Cylinder ? AreaLight::Shape::Cylinder : AreaLight::Shape::Capsule;
+      area_light.radius = place->scale * p[0];
+      area_light.half_height = place->scale * p[1];
       break;
     case Kind::Quad:
-      lamp.shape = Lamp::Shape::Quad;
-      set_quad(lamp, p, *place);
+      area_light.shape = AreaLight::Shape::Quad;
+      set_quad(area_light, p, *place);
       break;
     default:
-      lamp.shape = Lamp::Shape::Sphere;
-      lamp.radius = place->scale * p[0];
+      area_light.shape = AreaLight::Shape::Sphere;
+      area_light.radius = place->scale * p[0];
   }
-  return lamp;
+  return area_light;
 }
 
-// Visits beyond one per node. A non-uniform scale can lead to any number of visits and to no lamp.
-constexpr std::size_t kMaxVisits = 8 * kMaxLamps;
+// Visits beyond one per node. A non-uniform scale can lead to any number of visits and to no area light.
+constexpr std::size_t kMaxVisits = 8 * kMaxAreaLights;
 
-// Identifies lamps in the same place. Equal lamps that different transforms place there are rare and count twice.
+// Identifies area lights in the same place. Equal area lights that different transforms place there are rare and count twice.
 using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
 
 class Finder {
@@ -108,13 +108,13 @@ class Finder {
     const Affine identity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
     tasks_.push_back({scene.root, identity, std::nullopt});
     const std::size_t most_visits = graph_.size() + kMaxVisits;
-    for (std::size_t i = 0; i < most_visits && !tasks_.empty() && lamps_.size() < kMaxLamps; ++i) {
+    for (std::size_t i = 0; i < most_visits && !tasks_.empty() && area_lights_.size() < kMaxAreaLights; ++i) {
       const Task task = tasks_.back();
       tasks_.pop_back();
       visit(task);
     }
   }
-  std::vector<Lamp> take() { return std::move(lamps_); }
+  std::vector<AreaLight> take() { return std::move(area_lights_); }
 
  private:
   struct Task {
@@ -132,7 +132,7 @@ class Finder {
   }
   std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
 
-  // Marks the nodes that hold lamps, with and without a glowing Paint above them. The walk enters only marked nodes.
+  // Marks the nodes that hold area lights, with and without a glowing Paint above them. The walk enters only marked nodes.
   void mark() {
     holds_.resize(graph_.size());
     for (NodeId id = 0; id < graph_.size(); ++id) {
@@ -177,29 +177,29 @@ class Finder {
 
   void add(const Task& task) {
     const std::span<const double> params = graph_.params(task.node);
-    std::optional<Lamp> lamp = lamp_of(graph_.kind(task.node), params, task.to_local);
-    if (!lamp) return;
-    LampPlace place{static_cast<int>(lamp->shape), task.to_local.params(), {params.begin(), params.end()}};
+    std::optional<AreaLight> area_light = lamp_of(graph_.kind(task.node), params, task.to_local);
+    if (!area_light) return;
+    LampPlace place{static_cast<int>(area_light->shape), task.to_local.params(), {params.begin(), params.end()}};
     if (!taken_.insert(std::move(place)).second) return;
-    lamp->surface = *task.surface;
-    lamp->material = surfaces_[*task.surface].material;
-    lamps_.push_back(*lamp);
+    area_light->surface = *task.surface;
+    area_light->material = surfaces_[*task.surface].material;
+    area_lights_.push_back(*area_light);
   }
 
   const Graph& graph_;
   const std::span<const Surface> surfaces_;
   const std::span<const Material> materials_;
-  std::vector<std::array<bool, 2>> holds_;  // [node][1 below a glowing Paint] true if it holds lamps
+  std::vector<std::array<bool, 2>> holds_;  // [node][1 below a glowing Paint] true if it holds area lights
   std::vector<bool> shared_;                // [node] true if several nodes use it
   std::vector<Task> tasks_;
   std::set<Visited> visited_;
   std::set<LampPlace> taken_;
-  std::vector<Lamp> lamps_;
+  std::vector<AreaLight> area_lights_;
 };
 
 }  // namespace
 
-std::vector<Lamp> find_lamps(const Scene& scene, std::span<const Surface> surfaces,
+std::vector<AreaLight> find_area_lights(const Scene& scene, std::span<const Surface> surfaces,
                              std::span<const Material> materials) {
   return Finder(scene, surfaces, materials).take();
 }
