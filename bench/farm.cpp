@@ -280,7 +280,7 @@ void simulate(const Farm& farm, const Job& job) {
              farm.name);
   fmt::print("unit s longest     units  seconds  ratio start% lost% wait% disk%      GB merge min\n");
   for (const double seconds : kUnitSeconds) simulate(farm, job, seconds, "");
-  simulate(farm, job, cli::usual_unit_seconds(job.all_seconds(), job.machines), "fathom plan");
+  simulate(farm, job, cli::default_unit_seconds(job.all_seconds(), job.machines), "fathom plan");
 }
 
 void run(const std::string& path) {

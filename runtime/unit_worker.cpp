@@ -52,7 +52,7 @@ bool UnitWorker::next_unit() {
   const auto block = work_.units.take();
   if (!block) return false;
   const bool first = work_.stage == 0 && block->samples.first == work_.context.settings.samples.first;
-  if (work_.picture.stopped(first)) return false;
+  if (work_.shared_film.should_stop(first)) return false;
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(open_.size()));
     open_.push_back({{}, Film({}, work_.context.settings.layers)});
@@ -81,7 +81,7 @@ bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
 void UnitWorker::submit_unit(std::uint32_t number) {
   const OpenUnit& unit = open_[number];
   const std::uint64_t rays = integrator_.stats().march.rays;
-  if (!work_.picture.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
+  if (!work_.shared_film.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
   reported_rays_ = rays;
   free_.push_back(number);
 }

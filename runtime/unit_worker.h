@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runtime/path/integrator.h"
-#include "runtime/shared_picture.h"
+#include "runtime/shared_film.h"
 #include "runtime/units.h"
 
 namespace fathom::runtime {
@@ -35,7 +35,7 @@ struct PassWork {
   std::size_t stage;  // stage of the film
   const SampleLimits& limits;
   UnitQueue& units;
-  SharedPicture& picture;
+  SharedFilm& shared_film;
 };
 
 class UnitWorker : private PathSource, private SampleSink {

@@ -7,7 +7,7 @@
 
 namespace fathom::runtime {
 
-std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first) {
+std::vector<SampleRange> split_into_rounds(SampleRange samples, std::uint32_t first) {
   std::vector<SampleRange> rounds;
   std::uint32_t begin = samples.first, size = first;
   while (begin < samples.last) {

@@ -30,7 +30,7 @@ TextMaker text_maker(const Limits& limits) {
 
 }  // namespace
 
-std::optional<KeptScene> read_kept(Source& source, Diagnostics& diagnostics, const Limits& limits,
+std::optional<SceneWithFormulas> read_with_formulas(Source& source, Diagnostics& diagnostics, const Limits& limits,
                                    const ImportReader& imports) {
   return read_text_with_formulas(source, limits, diagnostics, {imports, text_maker(limits)});
 }

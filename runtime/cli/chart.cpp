@@ -161,7 +161,7 @@ class Charts {
   void add_map(runtime::PageScene& section, const std::vector<float>& values, int width, int height,
                const std::string& suffix, const char* title, const char* reading) {
     const std::string name = fmt::format("{}-{}.png", section.name, suffix);
-    const runtime::Picture picture = runtime::draw_map(values, width, height, runtime::scale_for(values, true));
+    const runtime::ByteImage picture = runtime::draw_map(values, width, height, runtime::scale_for(values, true));
     if (!problem_) problem_ = runtime::write_image(picture, path_of(name));
     section.maps.push_back({name, title, reading});
   }

@@ -17,8 +17,8 @@
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/input/text_file.h"
 #include "runtime/cli/options/frame_options.h"
-#include "runtime/cli/options/held_messages.h"
-#include "runtime/cli/picture/picture_warning.h"
+#include "runtime/cli/options/buffered_messages.h"
+#include "runtime/cli/picture/image_warning.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/sampling/shutter.h"
 
@@ -118,7 +118,7 @@ bool check_shutter(const SceneInput& input, const SceneArguments& frame, const c
     SceneArguments moment = frame;
     moment.definitions.emplace_back(compiler::kTimeParameter, sequence.time_of(number) + open * run.time);
     moment.inspect = nullptr;
-    HeldMessages held(streams);
+    BufferedMessages held(streams);
     if (std::holds_alternative<compiler::CompiledScene>(compile_scene(input, moment, held.streams()))) continue;
     held.release();
     return false;
@@ -138,9 +138,9 @@ ExitCode check_frames(const CheckRequest& request, SceneInput& input, const Stre
     const int frame = sequence.frames.at(index);
     const SceneArguments arguments = sequence.at(request.scene, frame);
     compiler::Scene graph;
-    HeldMessages held(streams);
+    BufferedMessages held(streams);
     const auto compiled = compile_checked(input, arguments, graph, held.streams());
-    held.release_news(last);
+    held.release_if_new(last);
     const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
     if (scene && !std::exchange(reported, true)) print_report(request, *scene, graph, streams);
     if (scene && check_shutter(input, arguments, *scene, sequence, frame, streams)) continue;

@@ -107,7 +107,7 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
   auto text = read_text(path, limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&text)) return fail(streams, path, *read_error);
   const compiler::Source listing(source_name(path), std::get<std::string>(std::move(text)));
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;

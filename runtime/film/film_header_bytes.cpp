@@ -99,7 +99,7 @@ bool is_range(SampleRange samples) {
 }
 
 // Refuses blocks that are not in the canonical form, because they may overlap. Checks the form instead of making it:
-// the file may hold any blocks, and tidying overlapping blocks takes far longer than reading them.
+// the file may hold any blocks, and canonicalising overlapping blocks takes far longer than reading them.
 Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   Coverage covered;
   const std::size_t count = in.count(24);
@@ -114,7 +114,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
     }
     covered.add(block);
   }
-  if (!covered.is_tidy()) in.fail();
+  if (!covered.is_canonical()) in.fail();
   return covered;
 }
 
@@ -122,7 +122,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
 AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   constexpr auto kMost = static_cast<std::uint32_t>(compiler::kMaxSpp);
   AdaptiveState state;
-  state.judged = in.u32();
+  state.tested_spp = in.u32();
   state.tiles.resize(in.count(8));
   for (AdaptiveTile& tile : state.tiles) {
     for (std::uint32_t& end : tile.ends) {
@@ -132,7 +132,7 @@ AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   }
   const auto tiles = static_cast<std::int64_t>(state.tiles.size());
   const bool fits = tiles == 0 ? shape.stages == 1 : tiles == Tiles(shape.area, kAdaptiveTile).count();
-  if (!fits || state.judged > kMost) in.fail();
+  if (!fits || state.tested_spp > kMost) in.fail();
   return state;
 }
 
@@ -180,7 +180,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
       out.u32(block.samples.last);
     }
   }
-  out.u32(render.adaptive.judged);
+  out.u32(render.adaptive.tested_spp);
   out.u32(static_cast<std::uint32_t>(render.adaptive.tiles.size()));
   for (const AdaptiveTile& tile : render.adaptive.tiles) {
     for (const std::uint32_t end : tile.ends) out.u32(end);

@@ -24,7 +24,7 @@ namespace fathom::runtime {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using Decoded = std::variant<FloatImage, std::string>;
+using DecodeResult = std::variant<FloatImage, std::string>;
 
 // Returns an image of that size with the channels R, G, B and perhaps A.
 FloatImage empty_image(int width, int height, bool alpha) {
@@ -156,10 +156,10 @@ bool begins_as(ImageFormat format, const Bytes& bytes) {
 
 // True if the first bytes are the format's signature. For a format that is shown, any such signature will do.
 bool has_signature(ImageFormat format, const Bytes& bytes) {
-  constexpr std::array kShown = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
+  constexpr std::array kDisplayFormats = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
   const auto begins = [&](ImageFormat other) { return begins_as(other, bytes); };
-  const bool shown = std::find(kShown.begin(), kShown.end(), format) != kShown.end();
-  return shown ? std::any_of(kShown.begin(), kShown.end(), begins) : begins(format);
+  const bool display = std::find(kDisplayFormats.begin(), kDisplayFormats.end(), format) != kDisplayFormats.end();
+  return display ? std::any_of(kDisplayFormats.begin(), kDisplayFormats.end(), begins) : begins(format);
 }
 
 // Makes an image of integer samples [y][x][component], taken for sRGB signals.
@@ -175,21 +175,21 @@ FloatImage from_signals(const Sample* samples, int width, int height, int compon
       [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
 }
 
-Decoded decode_deep(const Bytes& bytes, double memory) {
+DecodeResult decode_deep(const Bytes& bytes, double memory) {
   const auto read = decode_png(bytes, memory);
   if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
-  const auto& picture = std::get<PngPicture>(read);
+  const auto& picture = std::get<PngImage>(read);
   return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
 }
 
-Decoded decode_lossy(const Bytes& bytes, double memory) {
+DecodeResult decode_lossy(const Bytes& bytes, double memory) {
   const auto read = decode_jpeg(bytes, memory);
   if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
-  const auto& picture = std::get<JpegPicture>(read);
+  const auto& picture = std::get<JpegImage>(read);
   return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
 }
 
-Decoded decode_shown(const Bytes& bytes, double memory) {
+DecodeResult decode_display(const Bytes& bytes, double memory) {
   // Decodes PNG and JPEG by their signature, whatever the name says. stb allocates the size that a PNG's chunk states
   // before it reads the chunk, and invents the missing end of a JPEG.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
@@ -210,7 +210,7 @@ bool ends_hdr_header(const Bytes& bytes) {
   return end != text.npos && text.find('\n', end + 2) != text.npos;
 }
 
-Decoded decode_hdr(const Bytes& bytes, double memory) {
+DecodeResult decode_hdr(const Bytes& bytes, double memory) {
   // stb would otherwise decode any other image to linear light.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   if (!ends_hdr_header(bytes)) return "its header does not end";
@@ -245,7 +245,7 @@ std::optional<T> to(std::string_view word) {
 }
 
 // Source: see write_float_map().
-Decoded decode_pfm(const Bytes& bytes, double memory) {
+DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t at = 0;
   const std::string_view kind = next_word(text, at);
@@ -294,7 +294,7 @@ bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes&
   return std::ferror(file.get()) == 0;
 }
 
-Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
+DecodeResult decode(ImageFormat format, const Bytes& bytes, double memory) {
   if (!has_signature(format, bytes)) return "it does not begin as such a file does";
   if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
   switch (format) {
@@ -305,28 +305,28 @@ Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
     case ImageFormat::Hdr:
       return decode_hdr(bytes, memory);
     default:
-      return decode_shown(bytes, memory);
+      return decode_display(bytes, memory);
   }
 }
 
 }  // namespace
 
-std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits) {
+std::variant<FloatImage, ImageReadError> read_image(const std::string& path, const ReadLimits& limits) {
   const ImageFormatInfo* format = image_format_of(path);
   if (format == nullptr) {
-    return UnreadImage{
+    return ImageReadError{
         fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
   }
   Bytes bytes;
   if (!read_bytes(path, format->format, limits.memory, bytes)) {
-    return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+    return ImageReadError{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
   }
   if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {
-    return UnreadImage{fmt::format("cannot read `{}`: it is too large", path)};
+    return ImageReadError{fmt::format("cannot read `{}`: it is too large", path)};
   }
-  Decoded decoded = decode(format->format, bytes, limits.memory);
+  DecodeResult decoded = decode(format->format, bytes, limits.memory);
   if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
-  return UnreadImage{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
+  return ImageReadError{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
                                  std::get<std::string>(decoded))};
 }
 

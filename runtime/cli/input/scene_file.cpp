@@ -25,10 +25,10 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
   const std::string& path = arguments.path;
   auto text = read_text(path, arguments.limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    const Help help = unreadable->help.empty() ? Help{} : Help{unreadable->help};
-    return fail_about(arguments, unreadable->code,
-                      fmt::format("cannot read {}: {}", cli::quoted(path), unreadable->reason), help, streams);
+  if (const auto* read_error = std::get_if<ReadError>(&text)) {
+    const Help help = read_error->help.empty() ? Help{} : Help{read_error->help};
+    return fail_about(arguments, read_error->code,
+                      fmt::format("cannot read {}: {}", cli::quoted(path), read_error->reason), help, streams);
   }
   return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
 }

@@ -32,9 +32,9 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-ProgressLine::~ProgressLine() { wipe(); }
+ProgressLine::~ProgressLine() { erase(); }
 
-void ProgressLine::wipe() {
+void ProgressLine::erase() {
   if (drawn_ && streams_.terminal) streams_.err << "\r\033[K" << std::flush;
   drawn_ = false;
 }

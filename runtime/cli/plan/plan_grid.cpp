@@ -32,7 +32,7 @@ PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number) {
           {first, std::min(first + grid.block, grid.spp)}};
 }
 
-double usual_unit_seconds(double all_seconds, std::optional<int> machines) {
+double default_unit_seconds(double all_seconds, std::optional<int> machines) {
   if (!machines) return kUnitSeconds;
   const double each = all_seconds / *machines / kUnitsPerMachine;
   return std::max(std::clamp(each, kLeastUnitSeconds, kMostUnitSeconds), *machines / kStartsPerSecond);

@@ -25,7 +25,7 @@ std::optional<std::string> fault_in(const std::string& file, const PlanGrid& gri
                                     const runtime::ReadLimits& limits) {
   if (!exists(file)) return "";
   const auto read = sums ? runtime::read_film(file, limits) : runtime::read_film_header(file, limits);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return unread->problem;
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return read_error->problem;
   return fault_of(std::get<runtime::FilmFile>(read), grid, unit);
 }
 

@@ -80,14 +80,14 @@ TEST_CASE("adaptive: each half is judged by the other, and by samples that no me
   state.tiles.resize(1);
   put(film, 0, [](int) { return 0.0f; });  // half 0 is below the threshold: 1 ends
   put(film, 1, [](int) { return 0.9f; });  // half 1 is above the threshold: 0 goes on
-  judge(film, 2, 0.1, state);
+  test_convergence(film, 2, 0.1, state);
   CHECK(state.tiles[0].ends == Ends{0, 2});
   // Further samples of half 1 decide when half 0 ends.
   for (int i = 0; i < 200; ++i)
     put(
         film, 1, [](int) { return 0.0f; }, 1);
   CHECK(film.means(3, 3).samples == 2);
-  judge(film, 402, 0.1, state);
+  test_convergence(film, 402, 0.1, state);
   CHECK(state.tiles[0].ends == Ends{402, 2});
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("adaptive: shares use up the budget, by the root of the other half's d
   // By half 0 the left of the image has a quarter of the deviation of the right; by half 1 all of it is alike.
   put(film, 0, [](int x) { return x < 48 ? 0.1f : 0.4f; });
   put(film, 1, [](int) { return 0.2f; });
-  assign_shares(film, 64, 0, state);
+  allocate_samples(film, 64, 0, state);
   std::uint32_t sums[2] = {0, 0};
   for (const AdaptiveTile& tile : state.tiles) {
     for (std::size_t half = 0; half < 2; ++half) sums[half] += tile.ends[half];
@@ -112,13 +112,13 @@ TEST_CASE("adaptive: no share is below half or above four times the average, or 
   Film film(16 * 40, 16, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(40)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int x) { return x >= 304 && x < 336 ? 0.99f : 1e-4f; });
-  assign_shares(film, 64, 0, state);
+  allocate_samples(film, 64, 0, state);
   for (const AdaptiveTile& tile : state.tiles) {
     for (const std::uint32_t end : tile.ends) CHECK((end >= 32 && end <= 256));
   }
   CHECK(state.tiles[19].ends == Ends{256, 256});
   AdaptiveState late{60, std::vector<AdaptiveTile>(40)};
-  assign_shares(film, 64, 0, late);
+  allocate_samples(film, 64, 0, late);
   CHECK(late.tiles[0].ends[0] >= 60);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("adaptive: a share is no larger than the threshold asks for") {
   AdaptiveState state{2, std::vector<AdaptiveTile>(4)};
   // The variance of the mean of two samples is 0.01: the noise is 0.1, and 4 times as many samples halve it.
   const double noise = noise_of(film, {0, 0, 16, 16}, 0);
-  assign_shares(film, 64, noise / 2, state);
+  allocate_samples(film, 64, noise / 2, state);
   for (const AdaptiveTile& tile : state.tiles) CHECK((tile.ends[0] == 8 && tile.ends[1] == 8));
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("adaptive: without noise all pixels have the same number") {
   Film film(64, 32, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(8)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int) { return 0.0f; });
-  assign_shares(film, 16, 0, state);
+  allocate_samples(film, 16, 0, state);
   for (const AdaptiveTile& tile : state.tiles) CHECK(tile.ends == Ends{16, 16});
 }
 
@@ -351,7 +351,7 @@ TEST_CASE("adaptive: an interrupted render goes on to the same bits", "[render][
       int units = 0;
       stopping.on_progress = [&](const Progress&) { cancel = ++units >= stop; };
       const RenderResult stopped = render(scene, stopping);
-      after_judgement += stopped.adaptive.judged > 0 && stopped.stats.end == RenderEnd::Cancelled;
+      after_judgement += stopped.adaptive.tested_spp > 0 && stopped.stats.end == RenderEnd::Cancelled;
       RenderOptions going_on = options;
       REQUIRE(can_resume(stopped, stopped.settings));
       going_on.resume_from = std::make_shared<PartialRender>(stopped);

@@ -124,7 +124,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
     file.append(reinterpret_cast<const char*>(&digest.high), 8);
     write_bytes(path, file + bytes.substr(20 + size + 16));
     const auto read = read_film(path);
-    if (const auto* unread = std::get_if<UnreadFilm>(&read)) {
+    if (const auto* unread = std::get_if<FilmReadError>(&read)) {
       REQUIRE_FALSE(unread->missing);
     } else {
       ++accepted;  // the change was a name, a value or another valid number
@@ -158,7 +158,7 @@ TEST_CASE("film files: what can be written can be read, however long") {
   CHECK((std::get<FilmFile>(read).header.identity == wrote.header.identity));
   CHECK((std::get<FilmFile>(read).header.attributes == wrote.header.attributes));
   const auto small = read_film(path, {1 << 20});
-  CHECK(std::get<UnreadFilm>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
+  CHECK(std::get<FilmReadError>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
 }
 
 TEST_CASE("film files: more rows of an identity than are ever written are refused") {
@@ -167,8 +167,8 @@ TEST_CASE("film files: more rows of an identity than are ever written are refuse
   wrote.header.identity.assign(10000, {"", ""});
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
   const auto read = read_film_header(folder.file("a.film"));
-  REQUIRE(std::holds_alternative<UnreadFilm>(read));
-  CHECK(std::get<UnreadFilm>(read).problem.find("head makes no sense") != std::string::npos);
+  REQUIRE(std::holds_alternative<FilmReadError>(read));
+  CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
 TEST_CASE("film files: what a head becomes is counted before it is made") {
@@ -177,11 +177,11 @@ TEST_CASE("film files: what a head becomes is counted before it is made") {
   for (int i = 0; i < 10000; ++i) wrote.header.attributes[std::to_string(i)] = 0;
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
   CHECK(std::holds_alternative<FilmFile>(read_film_header(folder.file("a.film"), {3e6})));
-  CHECK(std::holds_alternative<UnreadFilm>(read_film_header(folder.file("a.film"), {1.4e6})));
+  CHECK(std::holds_alternative<FilmReadError>(read_film_header(folder.file("a.film"), {1.4e6})));
   std::string bytes = bytes_of(folder.file("a.film"));
   bytes[15] ^= 1;  // a byte of the head's length
   write_bytes(folder.file("a.film"), bytes);
-  CHECK(std::get<UnreadFilm>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
+  CHECK(std::get<FilmReadError>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
 }
 
 TEST_CASE("film files: sums that take more memory than is allowed are not read") {
@@ -194,7 +194,7 @@ TEST_CASE("film files: sums that take more memory than is allowed are not read")
   header.height = 100;
   REQUIRE_FALSE(write_film(header, large, path));
   CHECK(std::holds_alternative<FilmFile>(read_film(path, {2e6})));
-  CHECK(std::holds_alternative<UnreadFilm>(read_film(path, {1e6})));
+  CHECK(std::holds_alternative<FilmReadError>(read_film(path, {1e6})));
   CHECK(std::holds_alternative<FilmFile>(read_film_header(path, {1e6})));
 }
 
@@ -212,22 +212,22 @@ TEST_CASE("film files: blocks that overlap are refused as fast as they are read"
   const auto start = std::chrono::steady_clock::now();
   const auto read = read_film(folder.file("a.film"));
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
-  CHECK(std::get<UnreadFilm>(read).problem.find("head makes no sense") != std::string::npos);
+  CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
 TEST_CASE("film files: what is no film, or not there, is said to be so") {
   const tests::TemporaryFolder folder;
   write_bytes(folder.file("a.film"), "{\"version\": 1}                 ");
   const auto other = read_film(folder.file("a.film"));
-  REQUIRE(std::holds_alternative<UnreadFilm>(other));
-  CHECK_FALSE(std::get<UnreadFilm>(other).missing);
-  CHECK(std::get<UnreadFilm>(other).problem.find("does not begin as one") != std::string::npos);
-  CHECK(std::get<UnreadFilm>(other).foreign);
+  REQUIRE(std::holds_alternative<FilmReadError>(other));
+  CHECK_FALSE(std::get<FilmReadError>(other).missing);
+  CHECK(std::get<FilmReadError>(other).problem.find("does not begin as one") != std::string::npos);
+  CHECK(std::get<FilmReadError>(other).not_a_film);
   write_bytes(folder.file("a.film"), "FATHOMFM");
-  CHECK_FALSE(std::get<UnreadFilm>(read_film(folder.file("a.film"))).foreign);
+  CHECK_FALSE(std::get<FilmReadError>(read_film(folder.file("a.film"))).not_a_film);
   const auto missing = read_film(folder.file("b.film"));
-  CHECK(std::get<UnreadFilm>(missing).missing);
-  CHECK(std::get<UnreadFilm>(read_film(folder.path().string())).missing);
+  CHECK(std::get<FilmReadError>(missing).missing);
+  CHECK(std::get<FilmReadError>(read_film(folder.path().string())).missing);
 }
 
 TEST_CASE("film files: what renders differ in is named") {

@@ -10,8 +10,8 @@
 namespace fathom::runtime::image_io_test {
 namespace {
 
-Picture gradient(int width, int height) {
-  Picture picture{width, height, {}};
+ByteImage gradient(int width, int height) {
+  ByteImage picture{width, height, {}};
   for (int i = 0; i < width * height * 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(i));
   return picture;
 }
@@ -36,7 +36,7 @@ TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
 
 TEST_CASE("image_io: each file has its format's header, and the size", "[runtime]") {
   const tests::TemporaryFolder folder;
-  const Picture picture = gradient(7, 5);
+  const ByteImage picture = gradient(7, 5);
   CHECK(write_image(picture, folder.file("a.png")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.jpg")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.bmp")) == std::nullopt);

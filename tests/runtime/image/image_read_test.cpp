@@ -69,7 +69,7 @@ TEST_CASE("image_read: what is written comes back as exactly as its format says"
 
 TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
   const tests::TemporaryFolder folder;
-  Picture picture{256, 1, {}};
+  ByteImage picture{256, 1, {}};
   for (int i = 0; i < 256; ++i) picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(i));
   for (const char* name : {"a.png", "a.bmp"}) {
     REQUIRE(write_image(picture, folder.file(name)) == std::nullopt);
@@ -92,7 +92,7 @@ std::string bytes_of(std::string_view digits) {
 FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
   std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes_of(digits);
   const auto read = read_image(folder.file(std::string(name)));
-  if (const auto* unread = std::get_if<UnreadImage>(&read)) FAIL(unread->problem);
+  if (const auto* unread = std::get_if<ImageReadError>(&read)) FAIL(unread->problem);
   return std::get<FloatImage>(read);
 }
 
@@ -133,8 +133,8 @@ TEST_CASE("image_read: a png whose data ends before its picture is refused", "[r
   const auto problem_of = [&](std::string_view digits) {
     std::ofstream(folder.file("a.png"), std::ios::binary) << bytes_of(digits);
     const auto read = read_image(folder.file("a.png"));
-    REQUIRE(std::holds_alternative<UnreadImage>(read));
-    return std::get<UnreadImage>(read).problem;
+    REQUIRE(std::holds_alternative<ImageReadError>(read));
+    return std::get<ImageReadError>(read).problem;
   };
   const std::string_view
       half =
@@ -172,7 +172,7 @@ TEST_CASE("image_read: the memory of a grey picture is counted before it is take
        {std::pair{"a.png", png.size() + 3 * (2 + 12)}, {"a.pfm", pfm.size() + 3 * (4 + 12)}}) {
     INFO(name);
     CHECK(std::holds_alternative<FloatImage>(read_image(folder.file(name), {static_cast<double>(needed)})));
-    CHECK(std::holds_alternative<UnreadImage>(read_image(folder.file(name), {static_cast<double>(needed) - 1})));
+    CHECK(std::holds_alternative<ImageReadError>(read_image(folder.file(name), {static_cast<double>(needed) - 1})));
   }
 }
 
@@ -192,10 +192,10 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
   const auto problem = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder.file(name), std::ios::binary) << text;
     const auto read = read_image(folder.file(name));
-    REQUIRE(std::holds_alternative<UnreadImage>(read));
-    CHECK_FALSE(std::get<UnreadImage>(read).missing);
-    CHECK(std::get<UnreadImage>(read).problem.find(name) != std::string::npos);
-    return std::get<UnreadImage>(read).problem;
+    REQUIRE(std::holds_alternative<ImageReadError>(read));
+    CHECK_FALSE(std::get<ImageReadError>(read).missing);
+    CHECK(std::get<ImageReadError>(read).problem.find(name) != std::string::npos);
+    return std::get<ImageReadError>(read).problem;
   };
   for (const char* name : {"a.png", "a.jpg", "a.bmp", "a.exr", "a.pfm", "a.hdr"}) {
     problem(name, "");
@@ -216,12 +216,12 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
   CHECK(problem("c.pfm", "PF\n2000000 2000000\n-1.0\n1234").find("too large") != std::string::npos);
   CHECK(problem("d.pfm", "PF\n-2 2\n-1.0\n1234").find("header") != std::string::npos);
   const auto missing = read_image(folder.file("none.png"));
-  REQUIRE(std::holds_alternative<UnreadImage>(missing));
-  CHECK(std::get<UnreadImage>(missing).missing);
-  CHECK(std::get<UnreadImage>(missing).problem.find("No such file") != std::string::npos);
+  REQUIRE(std::holds_alternative<ImageReadError>(missing));
+  CHECK(std::get<ImageReadError>(missing).missing);
+  CHECK(std::get<ImageReadError>(missing).problem.find("No such file") != std::string::npos);
   std::filesystem::create_directory(folder.file("folder.png"));
-  CHECK(std::get<UnreadImage>(read_image(folder.file("folder.png"))).missing);
-  CHECK(std::get<UnreadImage>(read_image("folder/.")).problem.find("format") != std::string::npos);
+  CHECK(std::get<ImageReadError>(read_image(folder.file("folder.png"))).missing);
+  CHECK(std::get<ImageReadError>(read_image("folder/.")).problem.find("format") != std::string::npos);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 std::string reason(const std::string& path) {
   const auto read = read_environment(path);
-  const auto* why = std::get_if<UnreadImage>(&read);
+  const auto* why = std::get_if<ImageReadError>(&read);
   return why ? why->problem : "";
 }
 

@@ -102,7 +102,7 @@ TEST_CASE("text: the project's texts are one scene as JSON", "[text][released]")
     Source text(entry.path().string(), tests::read_file(entry.path()));
     CAPTURE(entry.path().string());
     Diagnostics diagnostics;
-    const auto kept = read_kept(text, diagnostics, {}, tests::imports_from(entry.path().parent_path()));
+    const auto kept = read_with_formulas(text, diagnostics, {}, tests::imports_from(entry.path().parent_path()));
     REQUIRE(kept);
     CHECK(digest_of(Source("a.json", write_json(kept->file))) == digest_of(text));
     CHECK(text::format_text(text) == text.text());

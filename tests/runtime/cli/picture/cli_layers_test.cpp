@@ -18,7 +18,7 @@ using fathom::tests::Result;
 
 FloatImage read(const Folder& folder, const std::string& name) {
   const auto image = fathom::runtime::read_image(folder.path() / name);
-  if (const auto* unread = std::get_if<fathom::runtime::UnreadImage>(&image)) FAIL(unread->problem);
+  if (const auto* unread = std::get_if<fathom::runtime::ImageReadError>(&image)) FAIL(unread->problem);
   return std::get<FloatImage>(image);
 }
 

@@ -1,4 +1,4 @@
-#include "runtime/cli/plan/planned_picture.h"
+#include "runtime/cli/plan/plan_frames.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 namespace fathom::cli {
 
-std::optional<ExitCode> PlannedPictures::open(const std::vector<std::string>& running,
+std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running,
                                               const std::string& background) {
   auto parsed = parse_planned(plan_.arguments, running, streams_);
   if (const auto* code = std::get_if<ExitCode>(&parsed)) return *code;
@@ -21,9 +21,9 @@ std::optional<ExitCode> PlannedPictures::open(const std::vector<std::string>& ru
   request_.frames.range = plan_.grid.frames;
   if (!background.empty()) {
     auto image = runtime::read_environment(background, read_limits(request_.scene.limits));
-    if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) return fail(streams_, kIo, unread->problem);
-    kept_.background_file = plan_.background_name;
-    kept_.background =
+    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image)) return fail(streams_, kIo, read_error->problem);
+    cache_.background_file = plan_.background_name;
+    cache_.background =
         std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
   }
   if (!plan_.grid.frames) return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<ExitCode> PlannedPictures::open(const std::vector<std::string>& ru
   return std::nullopt;
 }
 
-std::variant<Picture*, ExitCode> PlannedPictures::at(int index, const std::optional<runtime::PixelRect>& area) {
+std::variant<PreparedRender*, ExitCode> PlanFrames::at(int index, const std::optional<runtime::PixelRect>& area) {
   if (index == index_) return picture_.get();
   picture_ = nullptr;  // scenes are large, so only one is kept
   RenderRequest request = request_;
@@ -44,22 +44,22 @@ std::variant<Picture*, ExitCode> PlannedPictures::at(int index, const std::optio
     request.frame = {frame, index, sequence_->frames.count()};
     request.frames.fps = sequence_->fps;
   }
-  auto prepared = prepare_picture(request, input_, kept_, streams_);
+  auto prepared = prepare_render(request, input_, cache_, streams_);
   if (const auto* code = std::get_if<ExitCode>(&prepared)) return fail_at(index, *code);
-  picture_ = std::get<std::unique_ptr<Picture>>(std::move(prepared));
+  picture_ = std::get<std::unique_ptr<PreparedRender>>(std::move(prepared));
   picture_->request.frame.reset();  // progress is reported per unit, not per frame
   if (const auto code = check(*picture_, index)) return *code;
   index_ = index;
   return picture_.get();
 }
 
-ExitCode PlannedPictures::fail_at(int index, ExitCode code) const {
+ExitCode PlanFrames::fail_at(int index, ExitCode code) const {
   if (!sequence_) return code;
   return fail(streams_, code, fmt::format("{} cannot be rendered", sequence_->describe(sequence_->frames.at(index))));
 }
 
 // Checks that this program would render the same as the program that made the plan.
-std::optional<ExitCode> PlannedPictures::check(const Picture& picture, int index) const {
+std::optional<ExitCode> PlanFrames::check(const PreparedRender& picture, int index) const {
   if (plan_.identity.empty()) return std::nullopt;  // the plan is being made
   const runtime::RenderOptions& options = picture.request.options;
   runtime::Identity there = plan_.identity,

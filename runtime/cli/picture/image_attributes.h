@@ -12,7 +12,7 @@
 namespace fathom::cli {
 
 // Returns attributes that are the same for every run and for every part of a render.
-runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings);
+runtime::Attributes image_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings);
 
 // Adds the average number of samples per pixel, and the ranges of samples that at least one pixel has: "0:16",
 // "0:4,8:12". If samples were distributed adaptively, the range is that of the average pixel.

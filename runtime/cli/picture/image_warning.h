@@ -15,6 +15,6 @@ namespace fathom::cli {
 void warn_of_empty_view(const compiler::CompiledScene& scene, compiler::Diagnostics& diagnostics);
 
 // Returns the warning for a complete image. Returns nullopt if the image shows something or has a single pixel.
-std::optional<std::string> picture_warning(const compiler::CompiledScene& scene, const runtime::RenderResult& result);
+std::optional<std::string> image_warning(const compiler::CompiledScene& scene, const runtime::RenderResult& result);
 
 }  // namespace fathom::cli

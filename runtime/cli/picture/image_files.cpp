@@ -1,8 +1,8 @@
-#include "runtime/cli/picture/picture_files.h"
+#include "runtime/cli/picture/image_files.h"
 
 #include <fmt/format.h>
 
-#include "runtime/cli/picture/picture_attributes.h"
+#include "runtime/cli/picture/image_attributes.h"
 #include "runtime/film/film_channels.h"
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_exr.h"
@@ -15,12 +15,12 @@ struct LayerFile {
   runtime::Layer layer;
   Output output;
 };
-std::vector<LayerFile> layer_files(const PictureFiles& pictures, const Output& output) {
+std::vector<LayerFile> layer_files(const ImageFiles& pictures, const Output& output) {
   std::vector<LayerFile> files = {{runtime::Layer::Beauty, output}};
   if (output.layers() || output.standard()) return files;
   const auto add = [&](bool wanted, runtime::Layer layer) {
     if (!wanted) return;
-    files.push_back({layer, {beside(output.path, std::string(runtime::info(layer).name)), output.format}});
+    files.push_back({layer, {with_suffix(output.path, std::string(runtime::info(layer).name)), output.format}});
   };
   add(pictures.albedo, runtime::Layer::Albedo);
   add(pictures.depth, runtime::Layer::Depth);
@@ -29,7 +29,7 @@ std::vector<LayerFile> layer_files(const PictureFiles& pictures, const Output& o
   return files;
 }
 
-std::optional<std::string> write_output(const PictureFiles& pictures, const Output& output,
+std::optional<std::string> write_output(const ImageFiles& pictures, const Output& output,
                                         const runtime::FilmHeader& header, const runtime::PartialRender& render,
                                         std::optional<double> seconds, std::vector<std::string>& lines,
                                         const Streams& streams) {
@@ -54,7 +54,7 @@ std::optional<std::string> write_output(const PictureFiles& pictures, const Outp
     lines.push_back(wrote(output, width, height) + fmt::format(": {} channels", rows.channels.size()));
     return std::nullopt;
   }
-  const runtime::PictureOptions options{tone_in(header.attributes), pictures.deep ? 16 : 8};
+  const runtime::ImageOptions options{tone_in(header.attributes), pictures.deep ? 16 : 8};
   for (const LayerFile& each : layer_files(pictures, output)) {
     const Fill fill = [&](runtime::AtomicFile& file) {
       return runtime::write_layer(runtime::layer_of(film, each.layer), options, output.format->format, file);
@@ -67,7 +67,7 @@ std::optional<std::string> write_output(const PictureFiles& pictures, const Outp
 
 }  // namespace
 
-std::vector<std::string> files_of(const PictureFiles& pictures) {
+std::vector<std::string> files_of(const ImageFiles& pictures) {
   std::vector<std::string> files;
   for (const Output& output : pictures.outputs) {
     if (output.standard()) continue;
@@ -76,7 +76,7 @@ std::vector<std::string> files_of(const PictureFiles& pictures) {
   return files;
 }
 
-std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams& streams) {
+std::optional<ExitCode> check_paths(const ImageFiles& pictures, const Streams& streams) {
   for (const std::string& path : files_of(pictures)) {
     if (const auto problem = runtime::check_file_path(path)) return fail(streams, kIo, *problem);
   }
@@ -84,10 +84,10 @@ std::optional<ExitCode> check_paths(const PictureFiles& pictures, const Streams&
 }
 
 // Among the displayable formats only some have 16 bits.
-std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& streams) {
+std::optional<ExitCode> check_bits(const ImageFiles& pictures, const Streams& streams) {
   if (!pictures.deep) return std::nullopt;
   for (const Output& output : pictures.outputs) {
-    if (output.film() || !output.format->shown || output.format->deep) continue;
+    if (output.film() || !output.format->for_display || output.format->deep) continue;
     return fail(streams, kUsage,
                 fmt::format("--bits 16: `{}` can have only 8 bits per channel",
                             output.standard() ? output.format->ending : output.path),
@@ -96,14 +96,14 @@ std::optional<ExitCode> check_bits(const PictureFiles& pictures, const Streams& 
   return std::nullopt;
 }
 
-std::string lost_text(std::string_view what) {
+std::string overflow_text(std::string_view what) {
   return fmt::format(
       "{} lost: a pixel's sums of light, depths and places end at {:.2g}; scale the lights down where it is light, "
       "else the scene",
-      what, runtime::kFullPixel);
+      what, runtime::kMaxPixelSum);
 }
 
-std::optional<std::string> write_pictures(const PictureFiles& pictures, const runtime::FilmHeader& header,
+std::optional<std::string> write_image_files(const ImageFiles& pictures, const runtime::FilmHeader& header,
                                           const runtime::PartialRender& render, std::optional<double> seconds,
                                           std::vector<std::string>& lines, const Streams& streams) {
   for (const Output& output : pictures.outputs) {

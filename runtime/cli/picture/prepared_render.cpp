@@ -1,4 +1,4 @@
-#include "runtime/cli/picture/picture.h"
+#include "runtime/cli/picture/prepared_render.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "runtime/cli/input/memory.h"
 #include "runtime/cli/input/verbosity.h"
-#include "runtime/cli/options/held_messages.h"
+#include "runtime/cli/options/buffered_messages.h"
 #include "runtime/cli/request/render_memory.h"
 #include "runtime/render.h"
 #include "runtime/sampling/shutter.h"
@@ -19,20 +19,20 @@ using MaybeScene = std::variant<compiler::CompiledScene, ExitCode>;
 
 // Reads the environment map that the scene's background names.
 std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
-                                        KeptWork& kept, runtime::RenderOptions& options, const Streams& streams) {
+                                        RenderCache& cache, runtime::RenderOptions& options, const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
   const std::string& file = background.image.file;
-  if (!kept.background || kept.background_file != file) {
+  if (!cache.background || cache.background_file != file) {
     auto image = runtime::read_environment(file, read_limits(arguments.limits));
-    if (const auto* unread = std::get_if<runtime::UnreadImage>(&image)) {
-      return fail_about(arguments, unread->missing ? kIo : kBadScene, "the scene's background: " + unread->problem,
+    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image)) {
+      return fail_about(arguments, read_error->missing ? kIo : kBadScene, "the scene's background: " + read_error->problem,
                         {}, streams);
     }
-    kept.background_file = file;
-    kept.background =
+    cache.background_file = file;
+    cache.background =
         std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
   }
-  options.environment = kept.background;
+  options.environment = cache.background;
   return std::nullopt;
 }
 
@@ -62,14 +62,14 @@ std::optional<ExitCode> check_motion(const RenderRequest& request, const compile
 }
 
 // Compiles the picture's scene at another time.
-MaybeScene compile_moment(const Picture& picture, const SceneInput& input, double time, const Streams& streams) {
+MaybeScene compile_moment(const PreparedRender& picture, const SceneInput& input, double time, const Streams& streams) {
   SceneArguments arguments = picture.request.scene;
   arguments.definitions.emplace_back(compiler::kTimeParameter, time);
   compiler::CompileOptions options;
   options.stage = true;
   options.origin = picture.scene.origin;
   options.file_at_hand = picture.scene.background.image.file;
-  HeldMessages held(streams);
+  BufferedMessages held(streams);
   MaybeScene compiled = compile_scene(input, arguments, held.streams(), options);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) {
     held.release();
@@ -82,7 +82,7 @@ MaybeScene compile_moment(const Picture& picture, const SceneInput& input, doubl
 }
 
 // Compiles the scene at the moments of the open shutter. `seed` is the seed shared by all frames.
-std::optional<ExitCode> open_shutter(Picture& picture, const SceneInput& input, double time, std::uint64_t seed,
+std::optional<ExitCode> open_shutter(PreparedRender& picture, const SceneInput& input, double time, std::uint64_t seed,
                                      const Streams& streams) {
   RenderRequest& request = picture.request;
   const double open = picture.scene.camera.shutter / request.frames.fps.value_or(picture.scene.film.fps);
@@ -111,14 +111,14 @@ void say_what_is_always_so(const RenderRequest& request, const Streams& streams)
 }
 
 // Applies the command line's settings to the scene, and prepares everything else that the picture needs.
-std::optional<ExitCode> complete(Picture& picture, const SceneInput& input, KeptWork& kept, const Streams& streams) {
+std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& input, RenderCache& cache, const Streams& streams) {
   RenderRequest& request = picture.request;
   compiler::CompiledScene& scene = picture.scene;
   if (const auto code = override_scene(request, scene, streams)) return code;
   if (const auto code = check_memory(request, scene, streams)) return code;
   fit_regions(request, scene);
-  if (const auto code = read_background(scene.background, request.scene, kept, request.options, streams)) return code;
-  request.options.region_store = kept.regions;
+  if (const auto code = read_background(scene.background, request.scene, cache, request.options, streams)) return code;
+  request.options.region_store = cache.regions;
   const std::uint64_t seed = scene.settings.seed;
   if (request.frame && !request.frames.fixed_noise) {
     request.options.seed = runtime::frame_seed(seed, request.frame->number);
@@ -131,23 +131,23 @@ std::optional<ExitCode> complete(Picture& picture, const SceneInput& input, Kept
 
 }  // namespace
 
-std::variant<std::unique_ptr<Picture>, ExitCode> prepare_picture(const RenderRequest& request,
-                                                                 const SceneInput& input, KeptWork& kept,
+std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,
+                                                                 const SceneInput& input, RenderCache& cache,
                                                                  const Streams& streams) {
   Verbosity verbosity(request.verbosity, streams);
   compiler::CompileOptions options = verbosity.watch_compiler();
   options.lint_picture = true;
   options.stage = true;
-  if (kept.background) options.file_at_hand = kept.background_file;
-  HeldMessages held(streams);
+  if (cache.background) options.file_at_hand = cache.background_file;
+  BufferedMessages held(streams);
   MaybeScene compiled = compile_scene(input, request.scene, held.streams(), options);
-  held.release_news(kept.messages);
+  held.release_if_new(cache.messages);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   auto picture =
-      std::make_unique<Picture>(Picture{request, std::get<compiler::CompiledScene>(std::move(compiled)), {}});
-  if (const auto code = complete(*picture, input, kept, streams)) return *code;
+      std::make_unique<PreparedRender>(PreparedRender{request, std::get<compiler::CompiledScene>(std::move(compiled)), {}});
+  if (const auto code = complete(*picture, input, cache, streams)) return *code;
   verbosity.describe(picture->scene, runtime::resolve(picture->scene, picture->request.options));
-  if (!std::exchange(kept.begun, true)) say_what_is_always_so(request, streams);
+  if (!std::exchange(cache.begun, true)) say_what_is_always_so(request, streams);
   return picture;
 }
 

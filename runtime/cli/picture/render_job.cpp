@@ -1,4 +1,4 @@
-#include "runtime/cli/picture/picture_job.h"
+#include "runtime/cli/picture/render_job.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "runtime/cli/picture/closing_lines.h"
 #include "runtime/cli/picture/cost_map.h"
 #include "runtime/cli/picture/invalid_rays.h"
-#include "runtime/cli/picture/picture_warning.h"
+#include "runtime/cli/picture/image_warning.h"
 #include "runtime/cli/picture/render_identity.h"
 #include "runtime/denoise/denoise.h"
 
@@ -52,7 +52,7 @@ std::string samples_in(const runtime::Film& film) {
 
 }  // namespace
 
-PictureFiles pictures_of(const RenderRequest& request) {
+ImageFiles image_files_of(const RenderRequest& request) {
   return {request.outputs, request.albedo, request.depth, request.normal, request.denoise, request.bits != 0};
 }
 
@@ -64,7 +64,7 @@ std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
                                    request.checkpoint_interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
 }
 
-PictureJob::PictureJob(Picture& picture, const Streams& streams, Watching* watching,
+RenderJob::RenderJob(PreparedRender& picture, const Streams& streams, WatchState* watching,
                        std::optional<Interruption>& interruption)
     : request_(picture.request),
       scene_(picture.scene),
@@ -75,12 +75,12 @@ PictureJob::PictureJob(Picture& picture, const Streams& streams, Watching* watch
       checkpoint_(checkpoint_of(request_)),
       line_(streams, frame_text(request_)) {}
 
-ExitCode PictureJob::run() {
+ExitCode RenderJob::run() {
   if (const auto code = begin()) return *code;
   // Under --watch a stop signal ends the program at once.
   if (!watching_ && !interruption_) interruption_.emplace();
   runtime::RenderResult result = render();
-  line_.wipe();
+  line_.erase();
   if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
   const ExitCode code = end(result);
   using End = runtime::RenderEnd;
@@ -89,16 +89,16 @@ ExitCode PictureJob::run() {
   return code;
 }
 
-std::optional<ExitCode> PictureJob::begin() {
+std::optional<ExitCode> RenderJob::begin() {
   if (!checkpoint_) return std::nullopt;
   if (request_.resume)
     return checkpoint_->resume(header_, runtime::resolve(scene_, request_.options), request_.options, streams_,
                                request_.frame || request_.unit);
-  return checkpoint_->begin_afresh(header_, runtime::resolve(scene_, request_.options), streams_);
+  return checkpoint_->start_new(header_, runtime::resolve(scene_, request_.options), streams_);
 }
 
 // Only the thread that calls on_tick prints during the render.
-runtime::RenderResult PictureJob::render() {
+runtime::RenderResult RenderJob::render() {
   runtime::RenderOptions options = request_.options;
   options.cancel = watching_ ? &watching_->changed : &interruption_->stop();
   std::mutex mutex;
@@ -108,7 +108,7 @@ runtime::RenderResult PictureJob::render() {
     latest = progress;
   };
   const auto start = std::chrono::steady_clock::now();
-  options.on_tick = [&](const runtime::RenderOptions::Look& look) {
+  options.on_tick = [&](const runtime::RenderOptions::SnapshotReader& snapshot) {
     std::optional<runtime::Progress> progress;
     {
       const std::lock_guard lock(mutex);
@@ -117,25 +117,25 @@ runtime::RenderResult PictureJob::render() {
     if (progress && !request_.quiet) line_.update(*progress);
     if (watching_ && watching_->files.changed()) watching_->changed = true;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (checkpoint_) checkpoint_->tick(header_, look, seconds, streams_);
-    if (interruption_ && interruption_->picture_wanted()) write_so_far(look);
+    if (checkpoint_) checkpoint_->tick(header_, snapshot, seconds, streams_);
+    if (interruption_ && interruption_->image_requested()) write_so_far(snapshot);
   };
   return runtime::render(scene_, options);
 }
 
 // Handles SIGUSR1. A failed write is only a warning, because the render goes on. Render threads wait while the images
 // are written, but not for the denoiser.
-void PictureJob::write_so_far(const runtime::RenderOptions::Look& look) {
+void RenderJob::write_so_far(const runtime::RenderOptions::SnapshotReader& snapshot) {
   std::optional<std::string> problem;
   std::vector<std::string> lines;
   runtime::PartialRender copy;
-  PictureFiles pictures = pictures_of(request_);
+  ImageFiles pictures = image_files_of(request_);
   std::erase_if(pictures.outputs, [](const Output& output) { return output.standard(); });
   if (pictures.outputs.empty()) return warn(streams_, "standard output gets its picture when the render ends");
   const auto write = [&](const runtime::PartialRender& render) {
-    problem = write_pictures(pictures, header_, render, std::nullopt, lines, streams_);
+    problem = write_image_files(pictures, header_, render, std::nullopt, lines, streams_);
   };
-  look([&](const runtime::PartialRender& render) {
+  snapshot([&](const runtime::PartialRender& render) {
     if (render.film.samples() == 0) {
       problem = kNoPictureYet;
     } else if (request_.denoise) {
@@ -148,19 +148,19 @@ void PictureJob::write_so_far(const runtime::RenderOptions::Look& look) {
     runtime::denoise(copy.film, 1);
     write(copy);
   }
-  line_.wipe();
+  line_.erase();
   if (problem) warn(streams_, *problem);
   for (const std::string& line : lines) note(streams_, line + ", so far");
   streams_.err.flush();
 }
 
 // Writes the checkpoint before the images, because the images can be made from the checkpoint.
-ExitCode PictureJob::end(runtime::RenderResult& result) {
+ExitCode RenderJob::end(runtime::RenderResult& result) {
   using End = runtime::RenderEnd;
   const End ended = result.stats.end;
-  warn_of_lost(result.stats);
+  warn_of_overflow(result.stats);
   warn_of_invalid(result.stats);
-  warn_of_picture(result);
+  warn_of_image(result);
   const bool undone = ended == End::Cancelled || ended == End::TimeLimit;
   const bool keep = checkpoint_ && (undone || checkpoint_->named());
   if (keep) checkpoint_->write(header_, result, streams_);
@@ -176,46 +176,46 @@ ExitCode PictureJob::end(runtime::RenderResult& result) {
   }
   if (undone) return end_undone(result);
   if (checkpoint_ && !checkpoint_->named()) checkpoint_->remove(streams_);
-  return keep && checkpoint_->problem() ? fail_to_keep() : kDone;
+  return keep && checkpoint_->problem() ? fail_checkpoint() : kDone;
 }
 
-ExitCode PictureJob::end_undone(const runtime::RenderResult& result) {
+ExitCode RenderJob::end_undone(const runtime::RenderResult& result) {
   const bool limit = result.stats.end == runtime::RenderEnd::TimeLimit;
   note(streams_, (limit ? "the time limit ended the render: " : "interrupted: ") + samples_in(result.film));
-  if (checkpoint_ && checkpoint_->problem()) return fail_to_keep();
+  if (checkpoint_ && checkpoint_->problem()) return fail_checkpoint();
   if (checkpoint_) note(streams_, fmt::format("what is done is in {}; --resume goes on", checkpoint_->path()));
   if (!checkpoint_ && !watching_) note(streams_, "what is done is not kept: --checkpoint FILE would keep it");
   return limit ? kDone : kInterrupted;
 }
 
-ExitCode PictureJob::fail_to_keep() {
+ExitCode RenderJob::fail_checkpoint() {
   Help help;
   if (checkpoint_->holds_state()) help.push_back(earlier_state());
   return fail(streams_, kIo, fmt::format("what was rendered is not kept: {}", *checkpoint_->problem()), help);
 }
 
-std::string PictureJob::earlier_state() const {
+std::string RenderJob::earlier_state() const {
   return fmt::format("an earlier state of it is in {}; --resume goes on from that", checkpoint_->path());
 }
 
 // Warns of rays that were lost because the field is NaN.
-void PictureJob::warn_of_invalid(const runtime::Stats& stats) {
+void RenderJob::warn_of_invalid(const runtime::Stats& stats) {
   const std::optional<glm::dvec3>& at = stats.march.invalid_at;
   if (at) warn(streams_, invalid_text(scene_, stats.march.invalid, stats.march.rays, *at));
 }
 
 // Warns of an image that shows nothing. Applies only to whole images with all their samples, since parts may well be
 // empty.
-void PictureJob::warn_of_picture(const runtime::RenderResult& result) {
+void RenderJob::warn_of_image(const runtime::RenderResult& result) {
   using End = runtime::RenderEnd;
   const runtime::Settings& used = result.settings;
   const bool whole = !request_.crop && used.samples.size() == static_cast<std::uint32_t>(used.spp);
   if (!whole || (result.stats.end != End::Done && result.stats.end != End::Noise)) return;
-  if (const auto text = picture_warning(scene_, result)) warn(streams_, *text);
+  if (const auto text = image_warning(scene_, result)) warn(streams_, *text);
 }
 
-void PictureJob::warn_of_lost(const runtime::Stats& stats) {
-  if (stats.saturated > 0) warn(streams_, lost_text(count_of(stats.saturated, "sample")));
+void RenderJob::warn_of_overflow(const runtime::Stats& stats) {
+  if (stats.saturated > 0) warn(streams_, overflow_text(count_of(stats.saturated, "sample")));
   // If most lit samples are brighter, light this faint is black in every image anyway.
   if (stats.faint_samples == 0 || 2 * stats.faint_samples < stats.lit_samples) return;
   warn(streams_, fmt::format("{} of {} with light are too faint for the film, which counts in steps of {:.2g}: "
@@ -224,12 +224,12 @@ void PictureJob::warn_of_lost(const runtime::Stats& stats) {
 }
 
 // Writes all files, or all except the images, and prints the closing lines. The peak memory in them includes writing.
-std::optional<std::string> PictureJob::write_all(runtime::RenderResult& result, bool pictures) {
+std::optional<std::string> RenderJob::write_all(runtime::RenderResult& result, bool pictures) {
   std::vector<std::string> lines;
   std::optional<double> seconds;
   std::optional<std::string> problem;
   if (request_.options.profile) seconds = result.stats.seconds;
-  if (pictures) problem = write_pictures(pictures_of(request_), header_, result, seconds, lines, streams_);
+  if (pictures) problem = write_image_files(image_files_of(request_), header_, result, seconds, lines, streams_);
   if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
   result.stats.peak_memory = runtime::peak_memory();
   if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
@@ -237,7 +237,7 @@ std::optional<std::string> PictureJob::write_all(runtime::RenderResult& result, 
   return problem;
 }
 
-void PictureJob::print_closing(const runtime::RenderResult& result, const std::vector<std::string>& lines) {
+void RenderJob::print_closing(const runtime::RenderResult& result, const std::vector<std::string>& lines) {
   std::ostream& err = streams_.err;
   const bool all = request_.verbosity > 0 || request_.options.profile;
   if (all) err << runtime::to_table(result.stats);
@@ -250,7 +250,7 @@ void PictureJob::print_closing(const runtime::RenderResult& result, const std::v
 }
 
 // Reports a write error. The samples are not lost with the image if the checkpoint holds them.
-ExitCode PictureJob::fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
+ExitCode RenderJob::fail_to_write(const std::string& problem, const runtime::RenderResult& result, bool kept) {
   Help help;
   if (checkpoint_ && (kept ? !checkpoint_->problem() : checkpoint_->write(header_, result, streams_))) {
     help.push_back(fmt::format("what was rendered is in {}; --resume writes the pictures", checkpoint_->path()));

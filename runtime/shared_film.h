@@ -14,29 +14,29 @@
 
 namespace fathom::runtime {
 
-class SharedPicture {
+class SharedFilm {
  public:
   using Clock = std::chrono::steady_clock;
 
   // `samples` is the number of samples of the whole render. seconds() counts from `start`.
-  SharedPicture(PartialRender& render, std::uint64_t samples, const RenderOptions& options, Clock::time_point start);
+  SharedFilm(PartialRender& render, std::uint64_t samples, const RenderOptions& options, Clock::time_point start);
 
   // Adds a finished unit to a stage of the film: `film` holds the unit's sums over `samples` samples, which took
   // `rays` rays. Returns false if a sum was clamped.
   bool add(const Film& film, const SampleBlock& unit, std::size_t stage, std::uint64_t samples, std::uint64_t rays);
 
   // Calls `use` with the render so far. Threads that call add() wait until `use` returns.
-  void look(const std::function<void(const PartialRender&)>& use);
+  void read(const std::function<void(const PartialRender&)>& use);
 
   // Calls `make`, which may change the render: no other thread adds to the render or reads it meanwhile.
-  void change(const std::function<void()>& make);
+  void modify(const std::function<void()>& make);
 
-  // Sets the number of samples left, once the render itself has decided the number. Call within change().
-  void expect(std::uint64_t left);
+  // Sets the number of samples left, once the render itself has decided the number. Call within modify().
+  void set_remaining(std::uint64_t left);
 
   // True if the render has to stop; end() is then the reason. Call before beginning more work. `first` says that the
   // work is the first samples of pixels: no time limit holds for these, because there is no image without them.
-  bool stopped(bool first = false);
+  bool should_stop(bool first = false);
   RenderEnd end() const { return end_; }
   double seconds() const;
 

@@ -1,9 +1,9 @@
-#include "runtime/shared_picture.h"
+#include "runtime/shared_film.h"
 
 #include "runtime/film/film.h"
 
 namespace fathom::runtime {
-SharedPicture::SharedPicture(PartialRender& render, std::uint64_t samples, const RenderOptions& options,
+SharedFilm::SharedFilm(PartialRender& render, std::uint64_t samples, const RenderOptions& options,
                              Clock::time_point start)
     : render_(render),
       options_(options),
@@ -12,7 +12,7 @@ SharedPicture::SharedPicture(PartialRender& render, std::uint64_t samples, const
       start_(start),
       done_(resumed_) {}
 
-bool SharedPicture::add(const Film& film, const SampleBlock& unit, std::size_t stage, std::uint64_t samples,
+bool SharedFilm::add(const Film& film, const SampleBlock& unit, std::size_t stage, std::uint64_t samples,
                         std::uint64_t rays) {
   const std::lock_guard lock(mutex_);
   const bool room = render_.film.merge(film, stage);
@@ -23,29 +23,29 @@ bool SharedPicture::add(const Film& film, const SampleBlock& unit, std::size_t s
   return room;
 }
 
-void SharedPicture::expect(std::uint64_t left) {
+void SharedFilm::set_remaining(std::uint64_t left) {
   samples_ = static_cast<double>(done_ + left);
   report();
 }
 
-void SharedPicture::report() const {
+void SharedFilm::report() const {
   if (!options_.on_progress) return;
   const auto share = [&](std::uint64_t count) { return static_cast<double>(count) / samples_; };
   options_.on_progress({share(done_), share(resumed_), rays_, seconds()});
 }
 
-void SharedPicture::look(const std::function<void(const PartialRender&)>& use) {
+void SharedFilm::read(const std::function<void(const PartialRender&)>& use) {
   const std::lock_guard lock(mutex_);
-  for (Coverage& covered : render_.covered) covered.tidy();
+  for (Coverage& covered : render_.covered) covered.canonicalise();
   use(render_);
 }
 
-void SharedPicture::change(const std::function<void()>& make) {
+void SharedFilm::modify(const std::function<void()>& make) {
   const std::lock_guard lock(mutex_);
   make();
 }
 
-bool SharedPicture::stopped(bool first) {
+bool SharedFilm::should_stop(bool first) {
   if (options_.cancel && options_.cancel->load(std::memory_order_relaxed)) {
     end_ = RenderEnd::Cancelled;
   } else if (!first && options_.time_limit && seconds() >= *options_.time_limit) {
@@ -54,6 +54,6 @@ bool SharedPicture::stopped(bool first) {
   return end_ == RenderEnd::Cancelled || (end_ == RenderEnd::TimeLimit && !first);
 }
 
-double SharedPicture::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+double SharedFilm::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
 }  // namespace fathom::runtime

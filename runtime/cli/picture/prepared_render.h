@@ -14,14 +14,14 @@
 
 namespace fathom::cli {
 
-struct Picture {
+struct PreparedRender {
   RenderRequest request;  // request.options are the options of the render
   compiler::CompiledScene scene;
   std::vector<compiler::CompiledScene> moments;  // the scene during the open shutter; request.options point to them
 };
 
 // Work that the next picture of a scene reuses where the result would be the same.
-struct KeptWork {
+struct RenderCache {
   std::shared_ptr<runtime::RegionStore> regions = std::make_shared<runtime::RegionStore>();
   std::string background_file;
   std::shared_ptr<const runtime::EnvironmentImage> background;  // image in background_file
@@ -30,8 +30,8 @@ struct KeptWork {
 };
 
 // Returns the picture, or the exit code after a message.
-std::variant<std::unique_ptr<Picture>, ExitCode> prepare_picture(const RenderRequest& request,
-                                                                 const SceneInput& input, KeptWork& kept,
+std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,
+                                                                 const SceneInput& input, RenderCache& cache,
                                                                  const Streams& streams);
 
 }  // namespace fathom::cli

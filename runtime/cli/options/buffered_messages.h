@@ -11,9 +11,9 @@
 
 namespace fathom::cli {
 
-class HeldMessages {
+class BufferedMessages {
  public:
-  explicit HeldMessages(const Streams& streams)
+  explicit BufferedMessages(const Streams& streams)
       : to_(streams.err), streams_{streams.in,    streams.out,          text_,           streams.terminal,
                                    streams.color, streams.out_terminal, streams.columns, streams.options,
                                    streams.quiet, streams.verbosity} {}
@@ -22,7 +22,7 @@ class HeldMessages {
 
   void release() { to_ << text_.str(); }
   // Prints the messages unless they equal `last`, and stores them in `last`.
-  void release_news(std::string& last) {
+  void release_if_new(std::string& last) {
     if (text_.str() != last) release();
     last = text_.str();
   }

@@ -1,4 +1,4 @@
-#include "runtime/cli/picture/picture_attributes.h"
+#include "runtime/cli/picture/image_attributes.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ runtime::Matrix4 matrix_of(const Column (&columns)[4]) {
 
 }  // namespace
 
-runtime::Attributes picture_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
+runtime::Attributes image_attributes(const compiler::CompiledScene& scene, const runtime::Settings& settings) {
   const runtime::Camera camera(scene.camera, settings.width, settings.height);
   const glm::dvec3 eye = camera.position() + scene.origin;
   const Column x = column_along(camera.right(), eye), y = column_along(camera.up(), eye),

@@ -1,4 +1,4 @@
-#include "runtime/cli/picture/picture_warning.h"
+#include "runtime/cli/picture/image_warning.h"
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ struct Summary {
 Summary summarize(const compiler::CompiledScene& scene, const runtime::Film& film) {
   Summary summary;
   const runtime::PixelRect area = film.area();
-  const runtime::Shown shown(runtime::layer_of(film, runtime::Layer::Beauty), {scene.film.exposure, scene.film.tone});
+  const runtime::DisplayImage shown(runtime::layer_of(film, runtime::Layer::Beauty), {scene.film.exposure, scene.film.tone});
   std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(film.width()));
   for (int y = area.y0; y < area.y1; ++y) {
     shown.row(y - area.y0, std::span<std::uint8_t>(row));
@@ -104,7 +104,7 @@ void warn_of_empty_view(const compiler::CompiledScene& scene, compiler::Diagnost
                       {kFrameRemedy});
 }
 
-std::optional<std::string> picture_warning(const compiler::CompiledScene& scene,
+std::optional<std::string> image_warning(const compiler::CompiledScene& scene,
                                            const runtime::RenderResult& result) {
   if (result.film.area().pixels() < 2) return std::nullopt;
   const Summary seen = summarize(scene, result.film);
