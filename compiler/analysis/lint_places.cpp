@@ -69,7 +69,7 @@ class PlaceLinter {
 
   void check(NodeId id, const Box& box, const Affine& place) {
     const Box there = image(place, box);
-    const double thick = thickness(field_.graph(), id, box) * stretch(place).least;
+    const double thick = thickness(field_.graph(), id, box) * singular_values(place).least;
     const double away = std::max(largest_part(there.lo), largest_part(there.hi));
     const Span span = field_.graph().origin(id).span;
     if (thick * kMost >= away || !said_.insert(span.begin).second) return;

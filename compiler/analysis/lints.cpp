@@ -308,7 +308,7 @@ class Linter {
       }
       if (!keeps_thinness(kind(id))) continue;
       double factor = scale[id];
-      if (kind(id) == Kind::Transform) factor /= stretch(Affine::from_params(graph_.params(id))).least;
+      if (kind(id) == Kind::Transform) factor /= singular_values(Affine::from_params(graph_.params(id))).least;
       for (const NodeId child : field_.children(id)) {
         scale[child] = std::max(scale[child], factor);
         away[child] = std::min(away[child], away[id]);

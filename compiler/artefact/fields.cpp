@@ -291,7 +291,7 @@ void fields(Archive& a, CompiledField& f) {
   field(a, "contents_lo", f.contents.lo, -kEndless, kEndless);
   field(a, "contents_hi", f.contents.hi, -kEndless, kEndless);
   field(a, "lipschitz", f.lipschitz, kTiny, kAny);
-  field(a, "magnitude", f.magnitude, 0, kAny);
+  field(a, "cancellation", f.cancellation, 0, kAny);
   field(a, "certified", f.certified);
 }
 

@@ -161,7 +161,7 @@ class ListingReader {
     const Box all = Box::everything();
     const vm::SlopeBound slope = vm::evaluate_slope(field.distance, all.lo, all.hi, workspace);
     if (slope.lipschitz > 0 && std::isfinite(slope.lipschitz)) field.lipschitz = slope.lipschitz;
-    if (std::isfinite(slope.float_error)) field.magnitude = slope.float_error / vm::kFloatError;
+    if (std::isfinite(slope.float_error)) field.cancellation = slope.float_error / vm::kFloatError;
   }
 
   // Names as many surfaces as the tags of a program alone need.

@@ -21,7 +21,7 @@ TextMaker text_maker(const Limits& limits) {
   return [&limits](const Source& scene, Diagnostics& diagnostics) -> std::optional<std::string> {
     Source source = scene;
     const std::optional<ReadScene> read = read_scene(source, diagnostics, limits);
-    const std::optional<Elaborated> checked = read ? elaborate(read->file, diagnostics, {}, limits) : std::nullopt;
+    const std::optional<ElaboratedScene> checked = read ? elaborate(read->file, diagnostics, {}, limits) : std::nullopt;
     if (checked) derive(checked->scene, checked->type_spans, limits, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
     return text::print_text(read->file, source);

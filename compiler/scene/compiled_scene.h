@@ -144,7 +144,7 @@ struct CompiledField {
   Box bound;              // the field is positive outside
   Box contents;           // around all bounded parts of the field; empty if it has none
   double lipschitz = 1;   // |f(p) - f(q)| <= lipschitz * |p - q|
-  double magnitude = 0;   // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
+  double cancellation = 0;   // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   bool certified = true;  // `lipschitz` is proved; false: an estimate (a Mandelbulb is in the scene)
 };
 

@@ -112,7 +112,7 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   field.lipschitz = compiled.lipschitz;
   field.max_informative_length = max_informative_length(compiled, extent);
   field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
-  field.magnitude = static_cast<float>(compiled.magnitude);
+  field.cancellation = static_cast<float>(compiled.cancellation);
   field.band = static_cast<float>(kBand * extent);
   // Minimum share of convex shapes in the program's cost. Computing the convexity radius pays off when the radius
   // usually exceeds the distance.
@@ -133,7 +133,7 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
                  RegionStore* store) {
   RegionOptions chosen = options;
   chosen.room = room_of(field, compiled);
-  chosen.magnitude = field.magnitude;
+  chosen.cancellation = field.cancellation;
   const compiler::Box& contents = contents_of(field, compiled);
   field.regions =
       store ? store->build(compiled.surface, contents, chosen) : Regions::build(compiled.surface, contents, chosen);

@@ -167,7 +167,7 @@ void RegionBuilder::close_outside() {
   vm::Specialiser specialiser;
   vm::Workspace workspace;
   specialiser.look(r.whole_part_, boxes.view(), workspace);
-  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.magnitude));
+  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.cancellation));
   for (std::size_t i = 0; i < r.outside_.size(); ++i) {
     vm::Part part;
     specialiser.part(i, part);

@@ -119,7 +119,7 @@ BoxArrays RegionSplitter::children_of(const CellIndex& at, int level) {
       largest = std::max({largest, -boxes.lo[axis][i], boxes.hi[axis][i]});
     }
   }
-  error_ = kCellError * (largest + rules_.options.magnitude);
+  error_ = kCellError * (largest + rules_.options.cancellation);
   return boxes;
 }
 

@@ -14,7 +14,7 @@ bool same_box(const compiler::Box& a, const compiler::Box& b) { return a.lo == b
 // True if all options that affect the regions are equal. The number of threads does not affect them.
 bool same_options(const RegionOptions& a, const RegionOptions& b) {
   return a.memory == b.memory && a.evaluations == b.evaluations && a.always == b.always && a.room == b.room &&
-         a.magnitude == b.magnitude;
+         a.cancellation == b.cancellation;
 }
 
 }  // namespace

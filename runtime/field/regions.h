@@ -45,7 +45,7 @@ struct RegionOptions {
   double evaluations = std::numeric_limits<double>::infinity();
   bool always = false;  // build regions of scenes that are as fast without, too
   int room = 0;         // the root is 2^room times as long as the scene's bounded parts
-  float magnitude = 0;  // size of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
+  float cancellation = 0;  // size of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   // Called before each cell is split, by any thread. Once the function returns true, there will be no regions.
   std::function<bool()> interrupted = {};
 };

@@ -12,7 +12,7 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   rules.lipschitz = static_cast<S>(field.lipschitz);
   rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
   rules.band = static_cast<S>(field.band);
-  rules.magnitude = static_cast<S>(field.magnitude);
+  rules.cancellation = static_cast<S>(field.cancellation);
   // A double keeps 29 more bits, and the rounding of constants to float does not affect it.
   rules.unit =
       kSingle ? static_cast<S>(kDistanceError) : static_cast<S>(static_cast<double>(kDistanceError) * 0x1p-29);

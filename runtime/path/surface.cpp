@@ -41,7 +41,7 @@ FacingNormal facing_normal(glm::vec3 gradient, const Hit& hit) {
 
 // How far from the hit nothing comes in the way of rays that leave a convex solid.
 float clear_distance(float convex, float size, float offset, const Field& field) {
-  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.magnitude);
+  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.cancellation);
   return std::max(0.0f, kTrusted * (convex - 2 * error) * field.inv_lipschitz - offset);
 }
 
@@ -67,7 +67,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   for (std::size_t i = 0; i < hits.size(); ++i) {
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
-    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.magnitude);
+    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
     const float most = kMostOffset * field.band;
     if (least > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.

@@ -120,7 +120,7 @@ void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Rando
   runtime::RegionOptions options;
   options.always = true;
   options.memory = 1u << 20;
-  options.magnitude = static_cast<float>(known[scene.root].magnitude);
+  options.cancellation = static_cast<float>(known[scene.root].cancellation);
   const auto regions = runtime::Regions::build(program, contents, options);
   if (!regions) return;
   std::vector<float> x, y, z;

@@ -43,7 +43,7 @@ enum class Fact : std::uint16_t {
   Ball = 1 << 4,
   Both = Formula | Ball,
   // Shape, Outline: features may be far from the origin even if the surface passes the origin, and the float error
-  // grows with the largest immediate. The node table gives these shapes a magnitude (compiler/graph/knowledge.h).
+  // grows with the largest immediate. The node table gives these shapes a cancellation (compiler/graph/node_facts.h).
   Far = 1 << 5,
   // Shape: the last immediate is a flag, not a size.
   LastIsFlag = 1 << 6,

@@ -91,10 +91,10 @@ HWY_INLINE Enclosure noise(const Enclosure& x, const Enclosure& y, const Enclosu
 // Bounds of an affine map M. most: bound on the largest singular value, the root of the largest row sum of |M^T M|
 // (Gershgorin), which is 1 for a rotation. terms: bound on the size of the products of a row, the root of the sum of
 // squares of M.
-struct Stretch {
+struct OperatorNorm {
   double most, terms;
 };
-HWY_INLINE Stretch stretch_of(const Batch* k) {
+HWY_INLINE OperatorNorm operator_norm(const Batch* k) {
   double m[12];
   for (int i = 0; i < 12; ++i) m[i] = hn::GetLane(k[i].v);
   double most = 0, trace = 0;
@@ -190,8 +190,8 @@ struct PointTraits<Enclosure> {
   template <class Op>
   static HWY_INLINE Ball image(const Ball& ball, const Batch* k) {
     constexpr bool kTranslate = Op::kOpcode == Opcode::Translate;
-    Stretch stretch{1, kTranslate ? 0 : 1};
-    if constexpr (Op::kOpcode == Opcode::Affine) stretch = stretch_of(k);
+    OperatorNorm stretch{1, kTranslate ? 0 : 1};
+    if constexpr (Op::kOpcode == Opcode::Affine) stretch = operator_norm(k);
     const Vec3<Batch> centre = Op::apply(ball.centre, k);
     const Batch radius = ball.radius * Batch::broadcast(stretch.most * (1 + 0x1p-20));
     const Batch terms = (taxicab(ball.centre) + ball.radius) * Batch::broadcast(stretch.terms * (1 + 0x1p-20));

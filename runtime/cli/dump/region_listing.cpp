@@ -6,7 +6,7 @@
 #include <cmath>
 #include <variant>
 
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "compiler/source/limits.h"
 #include "runtime/field/field.h"
 #include "runtime/render.h"

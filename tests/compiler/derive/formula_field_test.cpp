@@ -21,7 +21,7 @@ namespace {
 
 using compiler::Box;
 using compiler::Kind;
-using compiler::Knowledge;
+using compiler::NodeFacts;
 using compiler::Scene;
 using glm::dvec3;
 
@@ -35,9 +35,9 @@ Scene scene_of(const std::string& object) {
   return graph;
 }
 
-Knowledge known(const Scene& scene) { return compiler::analyse(scene.graph)[scene.root]; }
+NodeFacts known(const Scene& scene) { return compiler::analyse(scene.graph)[scene.root]; }
 
-Knowledge of_formula(const std::string& formula) {
+NodeFacts of_formula(const std::string& formula) {
   return known(scene_of(R"({"type": "expression", "half_size": [2, 2, 2], "formula": ")" + formula + R"("})"));
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("the constants of formulas are close to the slopes that occur", "[form
   };
   for (const auto& [formula, slope] : cases) {
     INFO(formula);
-    const Knowledge k = of_formula(formula);
+    const NodeFacts k = of_formula(formula);
     CHECK(k.certified);
     CHECK(k.lipschitz >= slope * (1 - 1e-12));
     CHECK(k.lipschitz <= slope * 1.2);
@@ -71,7 +71,7 @@ TEST_CASE("the constants of formulas are close to the slopes that occur", "[form
 TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
   for (const char* formula : {"floor(3*x) - y", "1/x", "sqrt(x)", "tan(x)", "x + sign(y)"}) {
     INFO(formula);
-    const Knowledge k = of_formula(formula);
+    const NodeFacts k = of_formula(formula);
     CHECK(!k.certified);
     CHECK(k.outside == compiler::Exactness::Estimate);
     CHECK(std::isfinite(k.lipschitz));
@@ -120,7 +120,7 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
        {"0.5*x", "0.9*y", "0.3*sin(5*x)", "-0.2", "0.1*x*y", "0.05*x^2 - 0.5", "0.4*x + 0.4*y", "-0.4*abs(x)"}) {
     INFO(formula);
     const Scene scene = displaced_ball(formula);
-    const Knowledge k = known(scene);
+    const NodeFacts k = known(scene);
     INFO(compiler::describe(k));
     CHECK(k.certified);
     CHECK(k.box.finite());
@@ -137,7 +137,7 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
 }
 
 TEST_CASE("a ball that grows faster than the way walked has no end, and a constant all the same", "[formula_field]") {
-  const Knowledge k = known(displaced_ball("-2*x"));
+  const NodeFacts k = known(displaced_ball("-2*x"));
   CHECK(k.certified);
   CHECK(!k.box.finite());
   CHECK(k.lipschitz == Approx(3));

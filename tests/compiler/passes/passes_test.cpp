@@ -190,7 +190,7 @@ TEST_CASE("a part's own material survives within a painted whole", "[lower]") {
 TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
   for (int seed = 0; seed < few(600); ++seed) {
     const Scene scene = scene_of(seed, false);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     Random random(seed);
     INFO("seed " << seed << ", " << compiler::describe(known) << '\n' << print(scene));
     CHECK(known.certified);

@@ -1,5 +1,5 @@
 // Float errors of shapes and alterations of any proportion, compared with the compiler's bound. Near the surface the
-// error is at most kFloatError * (max(1, |p|, |d|) + magnitude) (compiler/graph/knowledge.h).
+// error is at most kFloatError * (max(1, |p|, |d|) + cancellation) (compiler/graph/node_facts.h).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -31,7 +31,7 @@ using glm::dvec3;
 std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
   const compiler::NodeSpec& row = compiler::spec(kind);
   std::vector<double> params = random_params(kind, random);
-  const auto stretch = [&](double& length) {
+  const auto singular_values = [&](double& length) {
     if (random.chance(0.5)) length = static_cast<float>(length * std::pow(10.0, random.uniform(0, 4)));
   };
   if (kind == Kind::Quad) {  // its corners must stay in a plane
@@ -45,7 +45,7 @@ std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
     const std::size_t end = points ? params.size() : next + static_cast<std::size_t>(compiler::width(spec.type));
     const bool length = spec.type != ParamType::Integer && spec.name != "angle" && spec.name != "normal";
     for (; next < end; ++next) {
-      if (length) stretch(params[next]);
+      if (length) singular_values(params[next]);
     }
   }
   if (row.check && row.check(params)) return std::nullopt;
@@ -58,8 +58,8 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
   auto result = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1'000'000));
   const auto* program = std::get_if<vm::VerifiedProgram>(&result);
   if (program == nullptr) return 0;
-  const double magnitude = compiler::analyse(scene.graph)[scene.root].magnitude;
-  CHECK(std::isfinite(magnitude));
+  const double cancellation = compiler::analyse(scene.graph)[scene.root].cancellation;
+  CHECK(std::isfinite(cancellation));
   vm::Workspace workspace;
   double largest = 0;
   for (int i = 0; i < points; ++i) {
@@ -77,7 +77,7 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
     float narrow;
     vm::evaluate_distance(*program, {&x, &y, &z}, 1, &narrow, workspace);
     const double wide = vm::evaluate_distance(*program, p, workspace);
-    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(wide)}) + magnitude);
+    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(wide)}) + cancellation);
     largest = std::max(largest, std::abs(static_cast<double>(narrow) - wide) / allowed);
   }
   return largest;
@@ -85,7 +85,7 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
 
 }  // namespace
 
-// Regression: the magnitude of fat rings, needle triangles and long stars ignored the far corners that their code
+// Regression: the cancellation of fat rings, needle triangles and long stars ignored the far corners that their code
 // computes from.
 TEST_CASE("float errors of shapes of any proportion are within the bound", "[bounds]") {
   for (const Sort sort : {Sort::Solid, Sort::Outline}) {
@@ -104,7 +104,7 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
   }
 }
 
-// Regression: these nodes move a child in from far away, but their magnitude did not include the distance.
+// Regression: these nodes move a child in from far away, but their cancellation did not include the distance.
 TEST_CASE("float errors of what brings a child from far off are within the bound", "[bounds]") {
   Random random(1);
   for (const double far : {1.0, 1e3, 1e6}) {
@@ -142,7 +142,7 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
     scene.root = maker.make(kind, params, child);
     auto verified = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1000));
     const vm::VerifiedProgram& program = std::get<vm::VerifiedProgram>(verified);
-    const double magnitude = maker.known(scene.root).magnitude;
+    const double cancellation = maker.known(scene.root).cancellation;
     vm::Workspace workspace;
     Random random(1);
     for (int i = 0; i < 4000; ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
       vm::evaluate_distance(program, {&px, &py, &pz}, 1, &narrow, workspace);
       INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << wide << ' ' << narrow);
       const double size = std::max({1.0, std::hypot(x, y, z), std::abs(wide)});
-      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + magnitude));
+      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + cancellation));
     }
   }
 }

@@ -31,7 +31,7 @@ using glm::dvec3;
 
 struct Made {
   compiler::Scene scene;
-  compiler::Knowledge known;
+  compiler::NodeFacts known;
 };
 
 Made over_outline(Kind above, double parameter, Kind kind, const std::vector<double>& params) {
@@ -47,7 +47,7 @@ Made over_outline(Kind above, double parameter, Kind kind, const std::vector<dou
 dvec3 point_near_outline(Random& random) { return random.in_box(random.chance(0.8) ? 2 : 8); }
 
 // Compares a value with the true distance: equal if the field is exact there, else nearer to zero with the same sign.
-void check(double value, double truth, const compiler::Knowledge& known) {
+void check(double value, double truth, const compiler::NodeFacts& known) {
   if ((truth < 0 ? known.inside : known.outside) == Exactness::Exact) {
     CHECK(std::abs(value - truth) <= 1e-12 * std::max(1.0, std::abs(truth)));
   } else {
@@ -181,7 +181,7 @@ class TurnedBoundary {
 };
 
 // Checks an outline that is revolved with an edge or a part on the axis or beyond it.
-compiler::Knowledge check_on_axis(Kind kind, const std::vector<double>& params, double offset, Random& random) {
+compiler::NodeFacts check_on_axis(Kind kind, const std::vector<double>& params, double offset, Random& random) {
   vm::Workspace workspace;
   const Made made = over_outline(Kind::Revolve, offset, kind, params);
   const TurnedBoundary truth(kind, params, offset);
@@ -209,7 +209,7 @@ TEST_CASE("an outline with an edge on the axis turns into a solid without a seam
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
     const compiler::Box box = compiler::spec(kind).bound(params);
     const double offset = random.chance(0.5) ? -box.lo.x : -box.lo.x - random.uniform(0, 1) * (box.hi.x - box.lo.x);
-    const compiler::Knowledge known = check_on_axis(kind, params, offset, random);
+    const compiler::NodeFacts known = check_on_axis(kind, params, offset, random);
     exact += known.inside == Exactness::Exact;
     ++all;
   });
@@ -231,7 +231,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
     for (const double offset : {0.0, 0.25, -0.25}) {
       INFO(points.size() / 2 << " corners, offset " << offset);
       for (int i = 0; i < few(20); ++i) {
-        const compiler::Knowledge known = check_on_axis(Kind::Polygon, points, offset, random);
+        const compiler::NodeFacts known = check_on_axis(Kind::Polygon, points, offset, random);
         REQUIRE(known.outside == Exactness::Exact);
         REQUIRE(known.inside == Exactness::Exact);
       }

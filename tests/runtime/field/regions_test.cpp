@@ -166,14 +166,14 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
     test::GraphOptions options;
     options.depth = 5;
     const compiler::Scene scene = test::random_scene(random, options);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     const auto fused = vm::verify(compiler::fuse(test::plain_lowering(scene).program()));
     const auto& program = std::get<vm::VerifiedProgram>(fused);
     const bool bounded = known.box.finite() && !known.box.empty();
     const compiler::Box box = bounded ? known.box : compiler::Box::centred(glm::dvec3(3));
     if (!(known.lipschitz > 0) || box.hi.x - box.lo.x > 1e3) continue;
     const auto regions = Regions::build(
-        program, box, {.always = true, .room = bounded ? 0 : 3, .magnitude = static_cast<float>(known.magnitude)});
+        program, box, {.always = true, .room = bounded ? 0 : 3, .cancellation = static_cast<float>(known.cancellation)});
     if (!regions) continue;
     ++built;
     for (const double reach : {1.05, 8.0}) {  // some points lie outside

@@ -144,7 +144,7 @@ class Truth {
   bool loses(const RayHit& ray_hit, RealScratch& scratch) const {
     constexpr int kPlaces = 200;
     const double end = ray_hit.status == Status::Hit ? ray_hit.t - 1e-3 : end_;
-    const double tall = 4 * kDistanceErrorInDouble * (4 + static_cast<double>(field_.magnitude));
+    const double tall = 4 * kDistanceErrorInDouble * (4 + static_cast<double>(field_.cancellation));
     int level = 0;
     for (int i = 1; i < kPlaces; ++i) {
       const double t = begin_ + (end - begin_) * i / kPlaces, g = ray_hit.side * at(t, scratch);

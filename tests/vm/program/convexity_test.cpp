@@ -72,7 +72,7 @@ TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
     GraphOptions options;
     options.depth = 3;
     const compiler::Scene scene = random_scene(random, options);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     if (!known.certified || !std::isfinite(known.lipschitz)) continue;
     const vm::VerifiedProgram program = plain_lowering(scene);
     for (int i = 0; i < 200; ++i) {

@@ -1,4 +1,4 @@
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ std::string describe(const Box& box) {
   return side(box.lo.x, box.hi.x) + "x" + side(box.lo.y, box.hi.y) + "x" + side(box.lo.z, box.hi.z);
 }
 
-std::string describe(const Knowledge& k) {
+std::string describe(const NodeFacts& k) {
   return fmt::format("bound {}, {} outside, Lipschitz <= {:.4g} ({})", describe(k.box), name(k.outside), k.lipschitz,
                      k.certified ? "proved" : "estimate");
 }
