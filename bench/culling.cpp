@@ -116,7 +116,7 @@ class Scene {
         "{} programs of {} skeletons",
         static_cast<double>(a.evaluations) / static_cast<double>(a.rays),
         static_cast<double>(a.instructions) / static_cast<double>(a.evaluations), summary.seconds,
-        static_cast<double>(summary.bytes) * 1e-6, summary.far, summary.programs, summary.skeletons);
+        static_cast<double>(summary.bytes) * 1e-6, summary.far, summary.programs, summary.program_templates);
   }
 
   compiler::CompiledScene scene_;

@@ -35,11 +35,11 @@ void unit_vector(Archive& a, std::string_view name, glm::dvec3& v) {
 }
 
 void signed_whole(Archive& a, std::string_view name, int& number, int least, int most) {
-  double wide = number;
-  field(a, name, wide, least, most);
-  const bool negative_zero = wide == 0 && std::signbit(wide);
-  if (wide != std::trunc(wide) || negative_zero) a.fail(fmt::format("{} is not a whole number", wide));
-  number = static_cast<int>(wide);
+  double doubles = number;
+  field(a, name, doubles, least, most);
+  const bool negative_zero = doubles == 0 && std::signbit(doubles);
+  if (doubles != std::trunc(doubles) || negative_zero) a.fail(fmt::format("{} is not a whole number", doubles));
+  number = static_cast<int>(doubles);
 }
 
 struct Interval {

@@ -78,7 +78,7 @@ bool RegionBuilder::split_root() {
   for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.most_work /= 2) {
     if (plan_.instructions > budget_.most_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
-    regions_->pool_ = {}, regions_->skeletons_ = {};
+    regions_->pool_ = {}, regions_->templates_ = {};
     regions_->summary_ = {};
     budget_.bytes = regions_->constants_->bytes();
     budget_.work = 0, budget_.pending_bytes = 0;
@@ -139,7 +139,7 @@ std::uint32_t RegionBuilder::append(RegionPiece& piece) {
   Regions& r = *regions_;
   const auto first = static_cast<std::uint32_t>(r.nodes_.size());
   const auto pool = static_cast<std::uint32_t>(r.pool_.size());
-  for (const std::uint32_t at : piece.programs) r.skeletons_.adopt(piece.skeletons, piece.pool.data(), at);
+  for (const std::uint32_t at : piece.programs) r.templates_.renumber(piece.program_templates, piece.pool.data(), at);
   for (Node node : piece.nodes) {
     if (node.kind() == Kind::Inner) node.ref += first;
     if (node.kind() == Kind::Program) node.ref += pool;
@@ -166,12 +166,12 @@ void RegionBuilder::close_outside() {
   }
   vm::Specialiser specialiser;
   vm::Workspace workspace;
-  specialiser.look(r.whole_part_, boxes.view(), workspace);
-  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.cancellation));
+  specialiser.enclose_choices(r.whole_part_, boxes.view(), workspace);
+  specialiser.resolve(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.cancellation));
   for (std::size_t i = 0; i < r.outside_.size(); ++i) {
-    vm::Part part;
-    specialiser.part(i, part);
-    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), r.far_.most);
+    vm::PrunedProgram part;
+    specialiser.prune(i, part);
+    r.outside_[i] = make_node(Kind::Program, r.templates_.pack(part, *r.constants_, r.pool_), r.far_.most);
   }
 }
 
@@ -216,9 +216,9 @@ void RegionBuilder::make_grid() {
 void RegionBuilder::count_bytes() {
   Regions& r = *regions_;
   r.summary_.levels = r.tree_.levels;
-  r.summary_.skeletons = r.skeletons_.size();
+  r.summary_.program_templates = r.templates_.size();
   r.constants_->forget_rows();
-  r.summary_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
+  r.summary_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.templates_.bytes() +
                    r.constants_->bytes();
   constexpr std::size_t kCache = 1u << 20;
   r.tree_.beyond_cache = r.summary_.bytes > kCache;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/prune/expression.h"
-#include "vm/prune/part.h"
+#include "vm/prune/def_use_graph.h"
+#include "vm/prune/pruned_program.h"
 
 namespace fathom::runtime {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kFlattest = 1.0 / 1024;
 // FarLevels::most, the maximum distance outside the contents, in edges of the root.
 constexpr float kHighest = 0.1f;
 
-// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/skeleton.h
+// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/template.h
 // relies on that.
 bool is_unfolded(const vm::Code& code) {
   for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
@@ -68,7 +68,7 @@ std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::
   const glm::dvec3 middle = (contents.lo + contents.hi) / 2.0, extents = contents.hi - contents.lo;
   const double edge = std::max({extents.x, extents.y, extents.z});
   if (!(edge > 0) || (!always && cost_of(program) < kLeastCost)) return std::nullopt;
-  vm::Expression expression;
+  vm::DefUseGraph expression;
   if (!expression.read(program) || is_unfolded(program)) return std::nullopt;
   RegionPlan plan{};
   plan.choices = std::max<std::size_t>(1, expression.choices().size());

@@ -31,7 +31,7 @@ void RegionSplitter::run(const RegionCell& cell, RegionPiece& piece) {
   split(cell.part, cell.at, cell.level, cell.limit, cell.unshortened, 0);
 }
 
-void RegionSplitter::split(const vm::Part& part, const CellIndex& at, int level, float limit, int unshortened_levels,
+void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels,
                            std::uint32_t first) {
   budget_.work += part.sources.size();
   if (budget_.is_spent()) return;
@@ -42,7 +42,7 @@ void RegionSplitter::split(const vm::Part& part, const CellIndex& at, int level,
   const int below = level + 1;
   const std::size_t bytes_before = bytes_of(*piece_);
   const BoxArrays boxes = children_of(at, below);
-  specialiser_.look(part, boxes.view(), workspace_);
+  specialiser_.enclose_choices(part, boxes.view(), workspace_);
   const Limits limits = limits_of(boxes, limit);
   Children done = make_far(limits, first);
   Parts& parts = parts_[static_cast<std::size_t>(below)];
@@ -56,7 +56,7 @@ void RegionSplitter::split(const vm::Part& part, const CellIndex& at, int level,
   }
 }
 
-void RegionSplitter::place_child(vm::Part& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
+void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
                            std::uint32_t node) {
   const int unshortened = shorter < kShorterPart || level <= rules_.options.room ? 0 : unshortened_levels + 1;
   if (unshortened > kMostIdle) return make_leaf(child, limit, node);
@@ -97,11 +97,11 @@ void RegionSplitter::make_parts(const Limits& limits, int level, std::uint32_t f
   Children seen = done;
   for (std::size_t begin = 0; begin < seen.size(); ++begin) {
     if (seen[begin]) continue;
-    specialiser_.decide(-std::numeric_limits<float>::infinity(), limits[begin], error_);
+    specialiser_.resolve(-std::numeric_limits<float>::infinity(), limits[begin], error_);
     for (std::size_t i = begin; i < seen.size(); ++i) {
       if (seen[i] || limits[i] != limits[begin]) continue;
       seen[i] = true;
-      specialiser_.part(i, parts[i]);
+      specialiser_.prune(i, parts[i]);
       done[i] = specialiser_.choices_left(i) <= leaf_choices_ || level >= levels_;
       if (done[i]) make_leaf(parts[i], limits[i], first + static_cast<std::uint32_t>(i));
     }
@@ -125,11 +125,11 @@ BoxArrays RegionSplitter::children_of(const CellIndex& at, int level) {
 
 std::size_t RegionSplitter::bytes_of(const RegionPiece& piece) {
   return (piece.pool.size() + piece.programs.size() + piece.slots.size()) * sizeof(std::uint32_t) +
-         piece.skeletons.bytes();
+         piece.program_templates.bytes();
 }
 
-void RegionSplitter::make_leaf(const vm::Part& part, float limit, std::uint32_t node) {
-  const std::uint32_t at = piece_->skeletons.pack(part, rules_.constants, piece_->pool);
+void RegionSplitter::make_leaf(const vm::PrunedProgram& part, float limit, std::uint32_t node) {
+  const std::uint32_t at = piece_->program_templates.pack(part, rules_.constants, piece_->pool);
   piece_->nodes[node] = make_node(Kind::Program, intern(at), limit);
   ++piece_->summary.programs;
 }

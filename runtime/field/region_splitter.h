@@ -12,7 +12,7 @@
 #include "runtime/field/region_budget.h"
 #include "runtime/field/region_find.h"
 #include "runtime/field/regions.h"
-#include "vm/prune/skeleton.h"
+#include "vm/prune/program_template.h"
 #include "vm/prune/specialise.h"
 
 namespace fathom::runtime {
@@ -40,14 +40,14 @@ struct RegionCell {
   int level;
   float limit;
   int unshortened;  // number of levels in a row at which its part did not get shorter
-  vm::Part part;
+  vm::PrunedProgram part;
   std::uint32_t node;  // index of its node
 };
 
 // The result of one thread for a cell. nodes[0..8) are the cell's children, and indices are those of the piece.
 struct RegionPiece {
   std::vector<Regions::Node> nodes;
-  vm::Skeletons skeletons;
+  vm::ProgramTemplates program_templates;
   std::vector<std::uint32_t> pool;
   std::vector<std::uint32_t> programs;  // where the programs begin in the pool, in ascending order
   std::vector<std::uint32_t> slots;     // hash table of the programs: index + 1, or 0
@@ -77,13 +77,13 @@ class RegionSplitter {
   using Kind = Regions::Kind;
   using CellIndex = std::array<std::uint32_t, 3>;  // position of a cell, in cells of its level
   using Children = std::array<bool, 8>;        // true for a child that is already a leaf
-  using Parts = std::array<vm::Part, 8>;
+  using Parts = std::array<vm::PrunedProgram, 8>;
   using Limits = std::array<float, 8>;
 
   // Makes the eight children of a cell, at nodes[first] and on, and splits the children that are not leaves.
-  void split(const vm::Part& part, const CellIndex& at, int level, float limit, int unshortened_levels, std::uint32_t first);
+  void split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels, std::uint32_t first);
   // Makes the child a leaf, leaves it for other threads, or splits it.
-  void place_child(vm::Part& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
+  void place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
              std::uint32_t node);
   // Returns the limit up to which each child's values matter.
   Limits limits_of(const BoxArrays& boxes, float limit) const;
@@ -95,7 +95,7 @@ class RegionSplitter {
   BoxArrays children_of(const CellIndex& at, int level);
   // Returns the bytes of a piece's leaves, without the nodes.
   static std::size_t bytes_of(const RegionPiece& piece);
-  void make_leaf(const vm::Part& part, float limit, std::uint32_t node);
+  void make_leaf(const vm::PrunedProgram& part, float limit, std::uint32_t node);
   // Returns the place of the program packed last, or of an equal program before it, which then replaces it.
   std::uint32_t intern(std::uint32_t start);
   std::span<const std::uint32_t> program(std::size_t number) const;

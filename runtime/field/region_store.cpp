@@ -6,7 +6,7 @@ namespace fathom::runtime {
 namespace {
 
 bool same_program(const vm::Program& a, const vm::Program& b) {
-  return a.words == b.words && a.wide == b.wide && a.locals == b.locals;
+  return a.words == b.words && a.doubles == b.doubles && a.locals == b.locals;
 }
 
 bool same_box(const compiler::Box& a, const compiler::Box& b) { return a.lo == b.lo && a.hi == b.hi; }

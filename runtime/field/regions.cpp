@@ -43,28 +43,28 @@ void Regions::evaluate(vm::Points points, std::size_t count, float* distance, Re
   s.counters.specialised += found.near;
   sort(points, found.near, s);
   for (const std::uint32_t number : s.active) {
-    const vm::Skeleton& skeleton = skeletons_[number];
-    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
-    for (const vm::SkeletonJob& job : jobs) s.instructions[job.point] = skeleton.instructions;
-    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, distance, workspace);
+    const vm::ProgramTemplate& program_template = templates_[number];
+    std::vector<vm::TemplateJob>& jobs = s.jobs[number];
+    for (const vm::TemplateJob& job : jobs) s.instructions[job.point] = program_template.instructions;
+    vm::evaluate_template(program_template, *constants_, pool_.data(), jobs, distance, workspace);
     jobs.clear();
   }
   s.active.clear();
   far_.apply(points, count, distance);
 }
 
-// Sorts the first `near` points by the skeletons of their programs.
+// Sorts the first `near` points by the templates of their programs.
 void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const {
-  s.jobs.resize(skeletons_.size());
+  s.jobs.resize(templates_.size());
   if (tree_.beyond_cache) {
     for (std::size_t j = 0; j < near; ++j) __builtin_prefetch(pool_.data() + Node{0, s.ref[j]}.payload());
   }
   for (std::size_t j = 0; j < near; ++j) {
     const std::uint32_t i = s.point[j], at = Node{0, s.ref[j]}.payload(), number = pool_[at];
-    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
+    std::vector<vm::TemplateJob>& jobs = s.jobs[number];
     if (jobs.empty()) s.active.push_back(number);
     jobs.push_back({points.x[i], points.y[i], points.z[i], s.limit[j], at, i});
-    if (tree_.beyond_cache) skeletons_.prefetch(*constants_, pool_.data(), at);
+    if (tree_.beyond_cache) templates_.prefetch(*constants_, pool_.data(), at);
   }
 }
 
@@ -92,17 +92,17 @@ std::size_t Regions::evaluate_outside(vm::Points points, std::size_t near, float
   return left;
 }
 
-void Regions::part_of(const Node& node, vm::Part& part) const {
+void Regions::part_of(const Node& node, vm::PrunedProgram& part) const {
   part = {};
   if (node.kind() != Kind::Program) return;
   if (node.payload() == kWhole) {
     part = whole_part_;
   } else {
-    skeletons_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
+    templates_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
   }
 }
 
-const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
+const vm::PrunedProgram& Regions::part_of(const Node& node, RealScratch& scratch) const {
   if (node.kind() == Kind::Program && node.payload() == kWhole) return whole_part_;
   if (scratch.of != this || scratch.ref != node.ref) {
     part_of(node, scratch.part);
@@ -116,7 +116,7 @@ double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& inst
   const RegionLookup found = find(f.x, f.y, f.z);
   const double limit = static_cast<double>(found.node.value);
   if (found.node.kind() == Kind::Far) return far_(limit, f.x, f.y, f.z);
-  const vm::Part& part = part_of(found.node, scratch);
+  const vm::PrunedProgram& part = part_of(found.node, scratch);
   instructions += part.sources.size();
   return far_(std::min(vm::evaluate_distance(part, p, scratch.workspace), limit), f.x, f.y, f.z);
 }
@@ -169,7 +169,7 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];
   }
-  vm::Part part;
+  vm::PrunedProgram part;
   part_of({0, same[0].first}, part);
   vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), {x.data(), y.data(), z.data()}, same.size(),
                        {d.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()}, workspace);
@@ -184,7 +184,7 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
 vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspace) const {
   const glm::vec3 f(p);
   const Node node = find(f.x, f.y, f.z).node;
-  vm::Part part;
+  vm::PrunedProgram part;
   part_of(node, part);
   return vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), p, workspace);
 }
@@ -192,7 +192,7 @@ vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspac
 // Returns the program of the point's leaf, or the whole program if the leaf has none.
 vm::Code Regions::code_at(glm::dvec3 p, RealScratch& scratch) const {
   const glm::vec3 f(p);
-  const vm::Part& part = part_of(find(f.x, f.y, f.z).node, scratch);
+  const vm::PrunedProgram& part = part_of(find(f.x, f.y, f.z).node, scratch);
   return part.words.empty() ? whole_ : vm::Code(part);
 }
 

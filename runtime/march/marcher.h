@@ -28,7 +28,7 @@ class Marcher {
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  // Maximum number of rays under way, up to kMostRays: high with regions, so that many points need one skeleton.
+  // Maximum number of rays under way, up to kMostRays: high with regions, so that many points need one template.
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
   int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }

@@ -9,7 +9,7 @@
 // Illinois method: an end that stays twice running has its value halved, which pulls the secant towards that end
 // (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
 //
-// If the field is known to be convex around a sample (vm/number/convex-inl.h), the line through this sample and the
+// If the field is known to be convex around a sample (vm/number/convexity-inl.h), the line through this sample and the
 // one before is a lower bound of the field further on. A step to the zero of the line is safe, however long, and a
 // step that crosses the surface there passes over nothing. A rising line is safe up to where another object may come
 // near.

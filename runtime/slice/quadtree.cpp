@@ -35,13 +35,13 @@ class QuadtreeWorker {
   }
 
   // Evaluates the sixteen tiles of a level that start at `first`, as far as the image goes, or only tile `only`.
-  void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
+  void run(const vm::PrunedProgram& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
     const int edge = kEdges[level];
     set_boxes(first, edge);
     vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
-    specialiser.look(part, boxes(), workspace_);
+    specialiser.enclose_choices(part, boxes(), workspace_);
     const float infinity = std::numeric_limits<float>::infinity();
-    specialiser.decide(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+    specialiser.resolve(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       const Tile tile = tile_of(first, edge, i);
       if (tile.x >= slice_.width || tile.y >= slice_.height || (only < vm::kEnclosedBoxes && i != only)) continue;
@@ -49,7 +49,7 @@ class QuadtreeWorker {
         fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
         continue;
       }
-      const vm::Part& child = cut(part, specialiser, i, level);
+      const vm::PrunedProgram& child = cut(part, specialiser, i, level);
       if (level + 1 < kLevels) {
         run(child, tile, level + 1);
       } else {
@@ -60,11 +60,11 @@ class QuadtreeWorker {
 
  private:
   // Returns the part of `part` that matters in box i, or `part` itself if a smaller part costs more than it saves.
-  const vm::Part& cut(const vm::Part& part, vm::Specialiser& specialiser, std::size_t i, int level) {
+  const vm::PrunedProgram& cut(const vm::PrunedProgram& part, vm::Specialiser& specialiser, std::size_t i, int level) {
     constexpr std::uint32_t kCheap = 16;  // choices
     if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
-    vm::Part& child = parts_[static_cast<std::size_t>(level)];
-    specialiser.part(i, child);
+    vm::PrunedProgram& child = parts_[static_cast<std::size_t>(level)];
+    specialiser.prune(i, child);
     return child;
   }
   static Tile tile_of(Tile first, int edge, std::size_t i) {
@@ -96,7 +96,7 @@ class QuadtreeWorker {
     for (int y = tile.y; y < y1; ++y) std::fill(row(y) + tile.x, row(y) + x1, value);
   }
 
-  void evaluate(const vm::Part& part, Tile tile) {
+  void evaluate(const vm::PrunedProgram& part, Tile tile) {
     constexpr int kFinestEdge = kEdges[kLevels - 1];
     const int x1 = std::min(tile.x + kFinestEdge, slice_.width), y1 = std::min(tile.y + kFinestEdge, slice_.height);
     alignas(64) std::array<std::array<float, kFinestEdge * kFinestEdge>, 3> points;
@@ -127,7 +127,7 @@ class QuadtreeWorker {
   std::array<bool, 3> by_column_{};
   vm::Workspace workspace_;
   std::array<vm::Specialiser, kLevels> specialisers_;
-  std::array<vm::Part, kLevels> parts_;
+  std::array<vm::PrunedProgram, kLevels> parts_;
   alignas(64) float lo_[3][vm::kEnclosedBoxes], hi_[3][vm::kEnclosedBoxes];
 };
 
@@ -135,9 +135,9 @@ class QuadtreeWorker {
 
 bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
                           std::vector<float>& field) {
-  vm::Expression expression;
+  vm::DefUseGraph expression;
   if (!expression.read(distance) || expression.choices().size() < kLeastChoices) return false;
-  const vm::Part part = vm::whole(distance);
+  const vm::PrunedProgram part = vm::whole(distance);
   const int step = kEdges[0] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   // Several threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing

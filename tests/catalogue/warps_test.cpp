@@ -144,14 +144,14 @@ Truth search(const Case& c, const Line& line) {
   const double middle = -glm::dot(line.origin, line.direction) / glm::dot(line.direction, line.direction);
   const double square = c.radius * c.radius - glm::dot(line.at(middle), line.at(middle));
   if (square <= 0) return {Outcome::Miss, 0};
-  struct Part {
+  struct PrunedProgram {
     double a, fa, b, fb;
   };
   const double begin = middle - std::sqrt(square), end = middle + std::sqrt(square);
-  std::vector<Part> parts = {{begin, c.field(line.at(begin)), end, c.field(line.at(end))}};
+  std::vector<PrunedProgram> parts = {{begin, c.field(line.at(begin)), end, c.field(line.at(end))}};
   bool near_miss = false;
   while (!parts.empty()) {
-    const Part p = parts.back();
+    const PrunedProgram p = parts.back();
     parts.pop_back();
     if (p.fa <= 0) return {Outcome::Hit, p.a};
     if (p.fb > 0 && p.fa + p.fb > c.lipschitz * (p.b - p.a)) continue;

@@ -11,7 +11,7 @@
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/draw_small.h"
-#include "vm/prune/expression.h"
+#include "vm/prune/def_use_graph.h"
 
 namespace fathom::fuzz {
 namespace {
@@ -74,7 +74,7 @@ void check_stored(const compiler::CompiledScene& scene) {
   for (const compiler::NamedProgram& row : compiler::programs_of(scene)) {
     if (row.program->cost() > kMostCost) continue;
     check_evaluation(*row.program, random, 4);
-    vm::Expression().read(*row.program);
+    vm::DefUseGraph().read(*row.program);
   }
   test::draw_small(scene);
 }

@@ -125,10 +125,10 @@ TEST_CASE("origin: float errors of a scene brought back from far are within the 
       if (!std::isfinite(x + y + z)) continue;
       float narrow;
       vm::evaluate_distance(program, {&x, &y, &z}, 1, &narrow, workspace);
-      const double wide = vm::evaluate_distance(program, dvec3(x, y, z), workspace);
-      const double size = std::max({1.0, glm::length(dvec3(x, y, z)), std::abs(wide)});
-      INFO("at " << x << ' ' << y << ' ' << z << ": " << wide << ' ' << narrow);
-      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + cancellation));
+      const double doubles = vm::evaluate_distance(program, dvec3(x, y, z), workspace);
+      const double size = std::max({1.0, glm::length(dvec3(x, y, z)), std::abs(doubles)});
+      INFO("at " << x << ' ' << y << ' ' << z << ": " << doubles << ' ' << narrow);
+      CHECK(std::abs(static_cast<double>(narrow) - doubles) <= vm::kFloatError * (size + cancellation));
     }
   }
   INFO(fine << " of 400 are as exact as near zero");

@@ -17,7 +17,7 @@
 #include "tests/support/golden.h"
 #include "tests/support/sealed_file.h"
 #include "vm/interpret/evaluate.h"
-#include "vm/prune/expression.h"
+#include "vm/prune/def_use_graph.h"
 
 namespace fathom::test::artefact_test {
 namespace {
@@ -188,7 +188,7 @@ TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]
     }
     for (const compiler::NamedProgram& row : compiler::programs_of(good->scene)) {
       if (row.program->cost() < 100000) vm::evaluate_surface(*row.program, glm::dvec3(0.1, 0.2, 0.3), workspace);
-      vm::Expression().read(*row.program);
+      vm::DefUseGraph().read(*row.program);
     }
     if (accepted % 16 == 0) draw_small(good->scene);
   };

@@ -76,9 +76,9 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
     p = dvec3(x, y, z);
     float narrow;
     vm::evaluate_distance(*program, {&x, &y, &z}, 1, &narrow, workspace);
-    const double wide = vm::evaluate_distance(*program, p, workspace);
-    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(wide)}) + cancellation);
-    largest = std::max(largest, std::abs(static_cast<double>(narrow) - wide) / allowed);
+    const double doubles = vm::evaluate_distance(*program, p, workspace);
+    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(doubles)}) + cancellation);
+    largest = std::max(largest, std::abs(static_cast<double>(narrow) - doubles) / allowed);
   }
   return largest;
 }
@@ -151,12 +151,12 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
       const double scale = kind == Kind::Taper ? std::clamp(0.65 + 350 * y, 0.3, 1.0) : 1;
       const double x = (std::cos(angle) - std::sin(angle)) * scale, z = (std::sin(angle) + std::cos(angle)) * scale;
       const float px = static_cast<float>(x), py = static_cast<float>(y), pz = static_cast<float>(z);
-      const double wide = vm::evaluate_distance(program, dvec3(px, py, pz), workspace);
+      const double doubles = vm::evaluate_distance(program, dvec3(px, py, pz), workspace);
       float narrow;
       vm::evaluate_distance(program, {&px, &py, &pz}, 1, &narrow, workspace);
-      INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << wide << ' ' << narrow);
-      const double size = std::max({1.0, std::hypot(x, y, z), std::abs(wide)});
-      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + cancellation));
+      INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << doubles << ' ' << narrow);
+      const double size = std::max({1.0, std::hypot(x, y, z), std::abs(doubles)});
+      CHECK(std::abs(static_cast<double>(narrow) - doubles) <= vm::kFloatError * (size + cancellation));
     }
   }
 }

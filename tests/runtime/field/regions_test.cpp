@@ -238,7 +238,7 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
       std::vector<std::uint32_t> bits;
       for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value + 0.0f));
       const Regions::Summary& summary = field.regions->summary();
-      for (const std::size_t n : {summary.far, summary.programs, summary.skeletons, summary.bytes}) {
+      for (const std::size_t n : {summary.far, summary.programs, summary.program_templates, summary.bytes}) {
         bits.push_back(static_cast<std::uint32_t>(n));
       }
       if (expected.empty()) expected = bits;

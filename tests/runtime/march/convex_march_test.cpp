@@ -37,7 +37,7 @@ std::string scene(std::uint64_t seed) {
                        random.uniform(-2, 2), random.uniform(0, 1.5), random.uniform(-2, 2), random.below(90),
                        random.below(90));
   };
-  static const char* kJoined[] = {"{0}",
+  static const char* kFusedMin[] = {"{0}",
                                   "{{\"type\": \"subtraction\", \"of\": [{0}, {1}]}}",
                                   "{{\"type\": \"intersection\", \"of\": [{0}, {1}]}}",
                                   "{{\"type\": \"smooth_union\", \"k\": 0.2, \"of\": [{0}, {1}]}}",
@@ -48,7 +48,7 @@ std::string scene(std::uint64_t seed) {
                                   "{{\"type\": \"union\", \"of\": [{0}, {1}], \"scale\": 0.7}}"};
   std::string objects = "{\"type\": \"plane\", \"normal\": [0, 1, 0], \"offset\": 0}";
   for (int i = 0; i < 8; ++i)
-    objects += ",\n" + fmt::format(fmt::runtime(kJoined[random.below(9)]), shape(), shape());
+    objects += ",\n" + fmt::format(fmt::runtime(kFusedMin[random.below(9)]), shape(), shape());
   return "{\"version\": 1, \"camera\": {\"position\": [4, 3, 5], \"target\": [0, 0.5, 0]}, \"objects\": [" + objects +
          "]}";
 }

@@ -200,7 +200,7 @@ CompiledScene room(const Spaces& spaces, const std::string& right = "right") {
 
 const Spaces kOwn = {R"(, "space": "object")", R"(, "space": "object")", R"(, "space": "object")",
                      R"(, "space": "object")"};
-const Spaces kMoved = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.5, 0.5, 0])",
+const Spaces kFusedTranslate = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.5, 0.5, 0])",
                        R"(, "translate": [1.25, 0.5, 0])", R"(, "translate": [1, 1.75, 0.5])"};
 const Spaces kStill = {"", "", "", ""};
 
@@ -217,7 +217,7 @@ double apart(const Film& a, const Film& b) {
 TEST_CASE("object space: hits, blends and lamps show the patterns of the moved bodies", "[object_space][render]") {
   RenderOptions options;
   options.width = 48, options.height = 32, options.spp = 4, options.threads = 2;
-  const Film moved = render(room(kMoved), options).film, still = render(room(kStill), options).film;
+  const Film moved = render(room(kFusedTranslate), options).film, still = render(room(kStill), options).film;
   CHECK(apart(moved, still) > 0.1);
   // With "left", both balls share a material, but each has its own coordinates.
   for (const char* right : {"right", "left"}) {

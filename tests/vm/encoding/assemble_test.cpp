@@ -61,9 +61,9 @@ TEST_CASE("a program may be written without any of the listing's columns", "[ass
       "min x -2.5\n");
   vm::Program expected;
   expected.locals = 1;
-  expected.append(vm::Opcode::Sphere, vm::kMoved, {0, 1, 0, 0.5}, {});
+  expected.append(vm::Opcode::Sphere, vm::kFusedTranslate, {0, 1, 0, 0.5}, {});
   expected.append(vm::Opcode::Tee, 0, {}, {});
-  expected.append(vm::Opcode::Sphere, vm::kJoined, {0.25}, {});
+  expected.append(vm::Opcode::Sphere, vm::kFusedMin, {0.25}, {});
   expected.append(vm::Opcode::Add, vm::operand_of({vm::Source::Stack, vm::Source::Local, 0}), {}, {});
   expected.append(vm::Opcode::Min, vm::operand_of({vm::Source::X, vm::Source::Constant, 0}), {-2.5}, {});
   expected.debug.clear();

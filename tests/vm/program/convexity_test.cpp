@@ -1,4 +1,4 @@
-// Compares the convexity radius that programs compute (vm/number/convex-inl.h) with the definition of a convex
+// Compares the convexity radius that programs compute (vm/number/convexity-inl.h) with the definition of a convex
 // function: no chord lies below the function.
 #include "vm/program/convexity.h"
 

@@ -27,9 +27,9 @@ std::vector<Row> rows_of(const vm::VerifiedProgram& program, vm::Form form) {
     const auto begin = static_cast<std::ptrdiff_t>(at);
     const auto end = begin + static_cast<std::ptrdiff_t>(vm::instruction_length(from.words[at]));
     row.code.words.assign(from.words.begin() + begin, from.words.begin() + end);
-    row.code.wide.assign(from.wide.begin() + begin, from.wide.begin() + end);
+    row.code.doubles.assign(from.doubles.begin() + begin, from.doubles.begin() + end);
     row.name = std::string(info.mnemonic);
-    for (std::size_t i = 1; i < row.code.wide.size(); ++i) row.name += " " + std::to_string(row.code.wide[i]);
+    for (std::size_t i = 1; i < row.code.doubles.size(); ++i) row.name += " " + std::to_string(row.code.doubles[i]);
     rows.push_back(std::move(row));
   }
   return rows;

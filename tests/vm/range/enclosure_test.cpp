@@ -52,7 +52,7 @@ std::vector<double> enlarged(compiler::Kind kind, std::vector<double> params, do
   return params;
 }
 
-// Enclosure of a program's values in a box.
+// FloatInterval of a program's values in a box.
 vm::Range range_in(const vm::VerifiedProgram& program, glm::vec3 lo, glm::vec3 hi) {
   vm::Workspace workspace;
   BoxSet boxes;

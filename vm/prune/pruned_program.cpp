@@ -1,11 +1,11 @@
-#include "vm/prune/part.h"
+#include "vm/prune/pruned_program.h"
 
 namespace fathom::vm {
 
-Part whole(const Code& code) {
-  Part part;
+PrunedProgram whole(const Code& code) {
+  PrunedProgram part;
   part.words.assign(code.words, code.words + code.size);
-  part.wide.assign(code.wide, code.wide + code.size);
+  part.doubles.assign(code.doubles, code.doubles + code.size);
   part.locals = code.locals, part.max_values = code.max_values, part.max_points = code.max_points;
   part.choices = code.choices;
   for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
@@ -15,21 +15,21 @@ Part whole(const Code& code) {
   return part;
 }
 
-void PartWriter::make_room(std::size_t words) {
+void PrunedProgramWriter::make_room(std::size_t words) {
   const auto grow = [](auto& list, std::size_t& at, std::size_t least) {
     const std::size_t more = list.size() + least + 64;
     list.insert(list.begin(), more, {});
     at += more;
   };
   std::size_t wide_at = at_;
-  grow(words_, at_, words), grow(wide_, wide_at, words), grow(sources_, source_at_, 1);
+  grow(words_, at_, words), grow(doubles_, wide_at, words), grow(sources_, source_at_, 1);
 }
 
-void PartWriter::finish(std::uint32_t locals, Part& out) const {
+void PrunedProgramWriter::finish(std::uint32_t locals, PrunedProgram& out) const {
   const auto tail = [](const auto& from, std::size_t at, auto& to) {
     to.assign(from.begin() + static_cast<std::ptrdiff_t>(at), from.end());
   };
-  tail(words_, at_, out.words), tail(wide_, at_, out.wide), tail(sources_, source_at_, out.sources);
+  tail(words_, at_, out.words), tail(doubles_, at_, out.doubles), tail(sources_, source_at_, out.sources);
   out.locals = locals, out.cost = cost_, out.choices = choices_;
   out.max_values = static_cast<std::uint32_t>(most_values_);
   out.max_points = static_cast<std::uint32_t>(most_points_);

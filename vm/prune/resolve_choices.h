@@ -1,4 +1,4 @@
-// Settles choices: finds the operands of a program's choices that pruning keeps, in sixteen boxes at once
+// Resolves choices: finds the operands of a program's choices that pruning keeps, in sixteen boxes at once
 // (vm/prune/specialise.h).
 // Tested by: tests/vm/prune/specialise_test.cpp
 #pragma once
@@ -26,29 +26,29 @@ struct ChoiceLink {
   Operand a, b;
 };
 
-// Range of interest of a choice's value. A value outside matters only by being outside, above or below. [box]
-struct Interest {
+// Demanded range of a choice's value. A value outside matters only by being outside, above or below. [box]
+struct DemandedRange {
   alignas(64) float lo[kEnclosedBoxes];
   alignas(64) float hi[kEnclosedBoxes];
 };
 
 // Operands of a choice that stay, one bit per box. Neither bit is set in boxes where the choice itself is not needed.
-struct KeptOperands {
+struct LiveOperands {
   std::uint16_t a, b;
 };
 
 inline constexpr std::uint32_t kNone = 0xffffffff;
 
-// Settles choices [0, count), in which users come after the choices they use. `root` is the choice whose value is the
+// Resolves choices [0, count), in which users come after the choices they use. `root` is the choice whose value is the
 // program's result, of interest within [least, most]. interest[choice] is scratch, kept[choice] the result. If
-// `error` is above 0, an operand only loses by more than `error` plus kSettleShare of both values, the maximum error
+// `error` is above 0, an operand only loses by more than `error` plus kResolveShare of both values, the maximum error
 // of f32.
-void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, float error, Interest* interest, KeptOperands* kept);
+void resolve_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
+                    float least, float most, float error, DemandedRange* demanded, LiveOperands* kept);
 
-inline constexpr float kSettleShare = 0x1p-18f;
+inline constexpr float kResolveShare = 0x1p-18f;
 
-// Settles each choice by itself, in one box: removes an operand if it loses to the other one. Results are in bit 0.
-void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept);
+// Resolves each choice by itself, in one box: removes an operand if it loses to the other one. Results are in bit 0.
+void resolve_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, LiveOperands* kept);
 
 }  // namespace fathom::vm

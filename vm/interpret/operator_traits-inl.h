@@ -1,9 +1,9 @@
 // The opcodes' definitions as functions, and their application to the interpreter's values and points.
-#if defined(FATHOM_VM_MEANINGS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_VM_MEANINGS_INL
-#undef FATHOM_VM_MEANINGS_INL
+#if defined(FATHOM_VM_OPERATOR_TRAITS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_OPERATOR_TRAITS_INL
+#undef FATHOM_VM_OPERATOR_TRAITS_INL
 #else
-#define FATHOM_VM_MEANINGS_INL
+#define FATHOM_VM_OPERATOR_TRAITS_INL
 #endif
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 #include "vm/interpret/domain-inl.h"
 #include "vm/interpret/outlines-inl.h"
-#include "vm/interpret/semantics-inl.h"
+#include "vm/interpret/operators-inl.h"
 #include "vm/interpret/solids-inl.h"
 #include "vm/program/opcode.h"
 

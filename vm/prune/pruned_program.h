@@ -13,9 +13,9 @@
 namespace fathom::vm {
 
 // A pruned program, and the position of its instructions in the whole program.
-struct Part {
+struct PrunedProgram {
   std::vector<std::uint32_t> words;
-  std::vector<double> wide;            // [word]
+  std::vector<double> doubles;            // [word]
   std::vector<std::uint32_t> sources;  // [instruction] offset of its opcode word in the whole program
   std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
   std::uint64_t cost = 0;  // multiply-adds per point, as vm/program/opcodes.def estimates
@@ -24,17 +24,17 @@ struct Part {
     return words.size() * (sizeof(std::uint32_t) + sizeof(double)) + sources.size() * sizeof(std::uint32_t);
   }
 
-  operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
+  operator Code() const { return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 
 // Returns the whole program as a part of itself.
-Part whole(const Code& code);
+PrunedProgram whole(const Code& code);
 
 // Writes a part of a program from the last instruction to the first, the order in which pruning visits them.
-class PartWriter {
+class PrunedProgramWriter {
  public:
   // Starts a part of `program`, which must live until finish().
-  void begin(const Part& program) {
+  void begin(const PrunedProgram& program) {
     program_ = &program;
     at_ = words_.size(), source_at_ = sources_.size();
     values_ = most_values_ = points_ = most_points_ = 1;  // heights of the stacks at the end of a program
@@ -64,15 +64,15 @@ class PartWriter {
   }
 
   // Copies the written instructions to `out`.
-  void finish(std::uint32_t locals, Part& out) const;
+  void finish(std::uint32_t locals, PrunedProgram& out) const;
 
  private:
   void write(std::uint32_t node, std::uint32_t word, std::uint32_t from, std::uint32_t count) {
     if (at_ < 1 + count || source_at_ == 0) make_room(1 + count);
     at_ -= 1 + count;
-    words_[at_] = word, wide_[at_] = 0;
+    words_[at_] = word, doubles_[at_] = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-      words_[at_ + 1 + k] = program_->words[from + k], wide_[at_ + 1 + k] = program_->wide[from + k];
+      words_[at_ + 1 + k] = program_->words[from + k], doubles_[at_ + 1 + k] = program_->doubles[from + k];
     }
     sources_[--source_at_] = program_->sources[node];
   }
@@ -80,9 +80,9 @@ class PartWriter {
   // Makes room for `words` words and one instruction before the written ones.
   void make_room(std::size_t words);
 
-  const Part* program_ = nullptr;
+  const PrunedProgram* program_ = nullptr;
   std::vector<std::uint32_t> words_;
-  std::vector<double> wide_;
+  std::vector<double> doubles_;
   std::vector<std::uint32_t> sources_;
   std::size_t at_ = 0, source_at_ = 0;  // begin of the written words and sources
   // Heights of the stacks before the instruction written last, and their maxima.

@@ -1,4 +1,4 @@
-// Skeletons: programs without their constants.
+// ProgramTemplates: programs without their constants.
 //
 // The interpreter runs one instruction for many points. If every cell of a scene has its own program
 // (runtime/field/regions.h), few points share a program. But programs pruned from one scene differ in little else
@@ -6,14 +6,14 @@
 // the point's own program, and the lanes are full again.
 //
 //     const Constants constants(whole);                       // of all programs that are pruned from `whole`
-//     std::uint32_t at = skeletons.pack(part, constants, pool);
-//     evaluate_skeleton(skeletons[pool[at]], constants, pool.data(), jobs, distance, workspace);
-//     skeletons.unpack(whole, constants, pool.data(), at, part);  // restores the part
+//     std::uint32_t at = templates.pack(part, constants, pool);
+//     evaluate_template(templates[pool[at]], constants, pool.data(), jobs, distance, workspace);
+//     templates.unpack(whole, constants, pool.data(), at, part);  // restores the part
 //
-// A skeleton has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
+// A template has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
 // become one instruction that evaluates a different shape in every lane. A part's frame holds the rest of the part.
 //
-// Tested by: tests/vm/prune/skeleton_test.cpp
+// Tested by: tests/vm/prune/program_template_test.cpp
 #pragma once
 
 #include <cstddef>
@@ -40,13 +40,13 @@ inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
 
 inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an integer number of quads
 
-// True if a shape can be laid out as any shape (kAnyShape): its translation, up to kAnyShapeImmediates immediates,
+// True if a shape can be laid out as a polymorphic shape (kPolymorphic): its translation, up to kPolymorphicImmediates immediates,
 // its opcode. A shape that costs nothing is a number of a formula.
-inline constexpr std::size_t kAnyShapeImmediates = 4;
-constexpr bool can_be_any_shape(std::string_view immediates, int cost) {
+inline constexpr std::size_t kPolymorphicImmediates = 4;
+constexpr bool can_be_polymorphic(std::string_view immediates, int cost) {
   constexpr int kMostCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
   const auto count = static_cast<std::size_t>(count_names(immediates));
-  return count > 0 && count <= kAnyShapeImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
+  return count > 0 && count <= kPolymorphicImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
          cost <= kMostCost;
 }
 
@@ -66,7 +66,7 @@ class Constants {
 
  private:
   Opcode laid_out(Opcode opcode) const;
-  void append_any_shape(std::uint32_t word, const std::uint32_t* immediates);
+  void append_polymorphic(std::uint32_t word, const std::uint32_t* immediates);
 
   bool round_boxes_ = false;
   std::vector<float> values_;
@@ -74,65 +74,65 @@ class Constants {
   std::vector<std::uint32_t> source_of_;  // [quad]
 };
 
-struct Skeleton {
+struct ProgramTemplate {
   std::vector<std::uint32_t> words;  // float immediates are 0
-  std::vector<double> wide;          // [word] constants of outlines, which belong to the skeleton; else empty
+  std::vector<double> doubles;          // [word] constants of outlines, which belong to the template; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
   std::vector<std::uint8_t> quads;  // number of quads of each instruction that has constants
 
-  operator Code() const { return {words.data(), wide.data(), words.size(), locals, max_values, max_points, choices}; }
+  operator Code() const { return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices}; }
 };
 
-// Skeletons and frames of many parts. A part in a pool consists of its skeleton's number, its frame's number, the
-// rows of constants of the skeleton's instructions that have constants, and the offsets in the whole program of the
+// ProgramTemplates and frames of many parts. A part in a pool consists of its template's number, its frame's number, the
+// rows of constants of the template's instructions that have constants, and the offsets in the whole program of the
 // part's other instructions.
-class Skeletons {
+class ProgramTemplates {
  public:
   // Appends the part to the pool. Returns the index of its first entry.
-  std::uint32_t pack(const Part& part, const Constants& constants, std::vector<std::uint32_t>& pool);
+  std::uint32_t pack(const PrunedProgram& part, const Constants& constants, std::vector<std::uint32_t>& pool);
   void unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool, std::uint32_t at,
-              Part& out) const;
-  // Renumbers a part that `others` packed, so that it refers to the skeletons and frames of this object.
-  void adopt(const Skeletons& others, std::uint32_t* pool, std::uint32_t at);
+              PrunedProgram& out) const;
+  // Renumbers a part that `others` packed, so that it refers to the templates and frames of this object.
+  void renumber(const ProgramTemplates& others, std::uint32_t* pool, std::uint32_t at);
 
-  // Prefetches the constants of the part that evaluate_skeleton() will read.
+  // Prefetches the constants of the part that evaluate_template() will read.
   void prefetch(const Constants& constants, const std::uint32_t* pool, std::uint32_t at) const {
-    const std::size_t rows = skeletons_[pool[at]].quads.size();
+    const std::size_t rows = templates_[pool[at]].quads.size();
     for (std::size_t i = 0; i < rows; ++i) __builtin_prefetch(constants.values() + kQuad * pool[at + 2 + i]);
   }
 
-  const Skeleton& operator[](std::uint32_t number) const { return skeletons_[number]; }
-  std::size_t size() const { return skeletons_.size(); }
+  const ProgramTemplate& operator[](std::uint32_t number) const { return templates_[number]; }
+  std::size_t size() const { return templates_.size(); }
   std::size_t bytes() const { return bytes_; }
 
  private:
-  struct Frame {
+  struct Remainder {
     std::vector<std::uint32_t> words;  // the part's, except that float immediates and tags' surfaces are 0
-    std::vector<double> wide;          // [word] constants of outlines; empty without outlines
+    std::vector<double> doubles;          // [word] constants of outlines; empty without outlines
     std::vector<std::uint32_t> place;  // [instruction] index of its entry in the pool, after the two numbers
-    std::uint32_t skeleton, locals, max_values, max_points, choices;
+    std::uint32_t program_template, locals, max_values, max_points, choices;
     std::uint64_t cost;
   };
   using Index = std::unordered_multimap<std::uint64_t, std::uint32_t>;  // by hash of the words
-  std::uint32_t frame_of(const Part& part);
-  std::uint32_t add(Frame&& frame);
-  std::uint32_t number_of(Skeleton&& skeleton);
+  std::uint32_t remainder_of(const PrunedProgram& part);
+  std::uint32_t add(Remainder&& frame);
+  std::uint32_t number_of(ProgramTemplate&& program_template);
 
-  std::vector<Skeleton> skeletons_;
-  std::vector<Frame> frames_;
-  Index skeleton_at_, frame_at_;
+  std::vector<ProgramTemplate> templates_;
+  std::vector<Remainder> remainders_;
+  Index template_at_, remainder_at_;
   std::size_t bytes_ = 0;
-  Frame looked_for_;
+  Remainder wanted_;
 };
 
 // A point to evaluate, and its program.
-struct alignas(32) SkeletonJob {
+struct alignas(32) TemplateJob {
   float x, y, z, most;
   std::uint32_t at, point;  // index of the program in the pool; index of the result in `distance`
 };
 // Computes distance[job.point] = min(distance of the job's program at x, y, z, job.most). All programs have the
-// skeleton `skeleton`.
-void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace);
+// template `template`.
+void evaluate_template(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
+                       std::span<const TemplateJob> jobs, float* distance, Workspace& workspace);
 
 }  // namespace fathom::vm

@@ -6,11 +6,11 @@
 // is at least convex - L |x - p|, or max(v(x), 0) equals a convex function, the same function for all such x. So a
 // ray that leaves a convex solid does not return to it, and a ray that approaches it does not hit it before the zero
 // of the line through two of its values.
-#if defined(FATHOM_VM_CONVEX_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_VM_CONVEX_INL
-#undef FATHOM_VM_CONVEX_INL
+#if defined(FATHOM_VM_CONVEXITY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_CONVEXITY_INL
+#undef FATHOM_VM_CONVEXITY_INL
 #else
-#define FATHOM_VM_CONVEX_INL
+#define FATHOM_VM_CONVEXITY_INL
 #endif
 
 #include "vm/number/number-inl.h"

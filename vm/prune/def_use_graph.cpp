@@ -1,4 +1,4 @@
-#include "vm/prune/expression.h"
+#include "vm/prune/def_use_graph.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace fathom::vm {
 
-bool Expression::read(const Code& code) {
+bool DefUseGraph::read(const Code& code) {
   begin(code);
   std::uint32_t self = 0;
   for (std::size_t at = 0; at < code.size; at += 1 + immediates_of(code.words[at])) {
@@ -17,7 +17,7 @@ bool Expression::read(const Code& code) {
   return true;
 }
 
-void Expression::begin(const Code& code) {
+void DefUseGraph::begin(const Code& code) {
   values_.resize(code.max_values + 1);
   height_ = 0;
   choices_.clear(), tees_.clear(), places_.clear(), place_of_.clear();
@@ -28,17 +28,17 @@ void Expression::begin(const Code& code) {
   locals_ = code.locals;
 }
 
-bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint32_t self) {
+bool DefUseGraph::read_instruction(const Code& code, std::uint32_t at, std::uint32_t self) {
   const std::uint32_t word = code.words[at];
   const OpcodeRow& row = row_of(word);
-  ExpressionNode node{at};
+  DefUseNode node{at};
   bool sound = true;
   switch (row.form) {
     case Form::Point:
       points_.push_back({self, place_after(code, at)});
       break;
     case Form::Shape:
-      if (operand_of(word) & kJoined) {
+      if (operand_of(word) & kFusedMin) {
         sound = take(node.a);
         node.b = self;
         enter_choice(node, self);
@@ -81,25 +81,25 @@ bool Expression::read_instruction(const Code& code, std::uint32_t at, std::uint3
   return sound;
 }
 
-void Expression::enter_choice(ExpressionNode& node, std::uint32_t self) {
+void DefUseGraph::enter_choice(DefUseNode& node, std::uint32_t self) {
   node.choice = static_cast<std::uint32_t>(choices_.size());
   choices_.push_back(self);
 }
 
 // Pops the top value. Returns false if the value was not computed at the top point.
-bool Expression::take(std::uint32_t& operand) {
+bool DefUseGraph::take(std::uint32_t& operand) {
   const Value value = values_[--height_];
   operand = value.node;
   return value.place == points_.back().place;
 }
 
-bool Expression::use_local(std::uint32_t local, std::uint32_t& operand) {
+bool DefUseGraph::use_local(std::uint32_t local, std::uint32_t& operand) {
   operand = defined_[local];
   return place_of_[operand] == points_.back().place;
 }
 
-std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
-  const Place place{points_.back().place, at};
+std::uint32_t DefUseGraph::place_after(const Code& code, std::uint32_t at) {
+  const PointChain place{points_.back().place, at};
   const auto next = static_cast<std::uint32_t>(places_.size());
   if (locals_ > 0) {  // without locals, no place occurs twice
     if (2 * places_.size() >= slots_.size()) grow_slots(code);
@@ -112,7 +112,7 @@ std::uint32_t Expression::place_after(const Code& code, std::uint32_t at) {
 }
 
 // Returns the index of the slot of an equal place, or of the free slot for `place`.
-std::size_t Expression::slot_of(const Code& code, const Place& place) const {
+std::size_t DefUseGraph::slot_of(const Code& code, const PointChain& place) const {
   const std::size_t length = instruction_length(code.words[place.at]);
   std::uint64_t hash = 0xcbf29ce484222325u ^ place.before;  // FNV-1a (Fowler, Noll, Vo, 1991)
   for (std::size_t i = 0; i < length; ++i) hash = (hash ^ code.words[place.at + i]) * 0x100000001b3u;
@@ -121,13 +121,13 @@ std::size_t Expression::slot_of(const Code& code, const Place& place) const {
     const std::size_t index = at & (slots_.size() - 1);
     const Slot& slot = slots_[index];
     if (slot.reading != reading_) return index;
-    const Place& other = places_[slot.place];
+    const PointChain& other = places_[slot.place];
     const std::uint32_t* words = code.words + place.at;
     if (other.before == place.before && std::equal(words, words + length, code.words + other.at)) return index;
   }
 }
 
-void Expression::grow_slots(const Code& code) {
+void DefUseGraph::grow_slots(const Code& code) {
   slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), Slot());
   for (std::uint32_t i = 1; i < places_.size(); ++i) slots_[slot_of(code, places_[i])] = {reading_, i};
 }

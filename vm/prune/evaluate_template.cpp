@@ -1,18 +1,18 @@
-// The evaluator of skeletons. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
+// The evaluator of templates. FATHOM_TARGET as in vm/interpret/evaluate.cpp.
 #include <algorithm>
 #include <numeric>
 
-#include "vm/prune/skeleton.h"
+#include "vm/prune/program_template.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "vm/prune/evaluate_skeleton.cpp"
+#define HWY_TARGET_INCLUDE "vm/prune/evaluate_template.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
-void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                    std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace);
+void skeleton_batch(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
+                    std::span<const TemplateJob> jobs, float* distance, Workspace& workspace);
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -29,7 +29,7 @@ HWY_INLINE float first_of(Batch numbers, BatchMask left) {
   return lanes[hn::FindFirstTrue(FloatLanes(), left.m)];
 }
 
-// Evaluates a shape that differs per lane (vm/prune/skeleton.h): each opcode once, for the lanes that have the
+// Evaluates a shape that differs per lane (vm/prune/template.h): each opcode once, for the lanes that have the
 // opcode.
 Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   Batch result = which;
@@ -46,7 +46,7 @@ Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
 #define OP_Machine(Name, ...)
 #define OP_Shape(Name, immediates, cost)                                           \
   case Opcode::Name:                                                               \
-    if constexpr (can_be_any_shape(immediates, cost)) {                            \
+    if constexpr (can_be_polymorphic(immediates, cost)) {                            \
       value = Name##Op::apply(p, k, static_cast<const std::uint32_t*>(nullptr));   \
     }                                                                              \
     break;
@@ -76,14 +76,14 @@ HWY_INLINE void turn_quad(const Row& row, std::size_t q, float* to) {
 // Transposes four registers as 4x4 matrices, one matrix per 128-bit block.
 HWY_INLINE void turn_blocks(hn::Vec<FloatLanes> (&v)[kQuad]) {
   const FloatLanes d;
-  const hn::RepartitionToWide<FloatLanes> wide;
-  const auto pairs = [&](auto a) HWY_ATTR { return hn::BitCast(wide, a); };
+  const hn::RepartitionToWide<FloatLanes> doubles;
+  const auto pairs = [&](auto a) HWY_ATTR { return hn::BitCast(doubles, a); };
   const auto low01 = pairs(hn::InterleaveLower(d, v[0], v[1])), high01 = pairs(hn::InterleaveUpper(d, v[0], v[1]));
   const auto low23 = pairs(hn::InterleaveLower(d, v[2], v[3])), high23 = pairs(hn::InterleaveUpper(d, v[2], v[3]));
-  v[0] = hn::BitCast(d, hn::InterleaveLower(wide, low01, low23));
-  v[1] = hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23));
-  v[2] = hn::BitCast(d, hn::InterleaveLower(wide, high01, high23));
-  v[3] = hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23));
+  v[0] = hn::BitCast(d, hn::InterleaveLower(doubles, low01, low23));
+  v[1] = hn::BitCast(d, hn::InterleaveUpper(doubles, low01, low23));
+  v[2] = hn::BitCast(d, hn::InterleaveLower(doubles, high01, high23));
+  v[3] = hn::BitCast(d, hn::InterleaveUpper(doubles, high01, high23));
 }
 
 // Loads `length` floats from quad q on of each of the lanes first, first + stride, ..., side by side into one
@@ -130,7 +130,7 @@ HWY_INLINE void turn_two_quads(const Row& row, std::size_t q, float* to) {
 // One register of points, each with the constants of its own program.
 class LanePrograms {
  public:
-  HWY_INLINE LanePrograms(std::span<const SkeletonJob> jobs)
+  HWY_INLINE LanePrograms(std::span<const TemplateJob> jobs)
       : jobs_(jobs.data()), count_(std::min(jobs.size(), kLanes)) {
     if (count_ == kLanes) return;
     std::copy_n(jobs_, count_, some_);
@@ -144,19 +144,19 @@ class LanePrograms {
   }
 
   // Writes the constants in the order in which the interpreter reads them, [constant][lane].
-  HWY_INLINE void put_constants(const Skeleton& skeleton, const float* constants, const std::uint32_t* pool,
+  HWY_INLINE void put_constants(const ProgramTemplate& program_template, const float* constants, const std::uint32_t* pool,
                                 float* to) const {
-    for (std::size_t place = 0; place < skeleton.quads.size(); ++place) {
+    for (std::size_t place = 0; place < program_template.quads.size(); ++place) {
       const std::uint32_t* const places = pool + 2 + place;
       const auto row = [&](std::size_t lane)
                            HWY_ATTR { return constants + std::size_t{places[jobs_[lane].at]} * kQuad; };
       std::size_t q = 0;
 #if HWY_TARGET != HWY_SCALAR
       if constexpr (kLanes > kQuad) {
-        for (; q + 2 <= skeleton.quads[place]; q += 2, to += 2 * kQuad * kLanes) turn_two_quads(row, q, to);
+        for (; q + 2 <= program_template.quads[place]; q += 2, to += 2 * kQuad * kLanes) turn_two_quads(row, q, to);
       }
 #endif
-      for (; q < skeleton.quads[place]; ++q, to += kQuad * kLanes) turn_quad(row, q, to);
+      for (; q < program_template.quads[place]; ++q, to += kQuad * kLanes) turn_quad(row, q, to);
     }
   }
 
@@ -168,19 +168,19 @@ class LanePrograms {
   }
 
  private:
-  const SkeletonJob* jobs_;
+  const TemplateJob* jobs_;
   std::size_t count_;
-  SkeletonJob some_[kLanes];
+  TemplateJob some_[kLanes];
   alignas(64) float rows_[kQuad * kLanes];  // x, y, z, most
 };
 
-void skeleton_batch(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                    std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace) {
-  const std::size_t quads = std::accumulate(skeleton.quads.begin(), skeleton.quads.end(), std::size_t{0});
-  Machine<Batch, Immediate::PerLane> machine(skeleton, workspace, 1, quads * kQuad * kLanes * sizeof(float));
+void skeleton_batch(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
+                    std::span<const TemplateJob> jobs, float* distance, Workspace& workspace) {
+  const std::size_t quads = std::accumulate(program_template.quads.begin(), program_template.quads.end(), std::size_t{0});
+  Interpreter<Batch, Immediate::PerLane> machine(program_template, workspace, 1, quads * kQuad * kLanes * sizeof(float));
   for (std::size_t first = 0; first < jobs.size(); first += kLanes) {
     LanePrograms lanes(jobs.subspan(first));
-    lanes.put_constants(skeleton, constants.values(), pool, machine.immediate_table());
+    lanes.put_constants(program_template, constants.values(), pool, machine.immediate_table());
     *machine.first_point() = lanes.points();
     machine.interpret();
     lanes.put_distances(*machine.result(), distance);
@@ -196,9 +196,9 @@ namespace fathom::vm {
 
 HWY_EXPORT(skeleton_batch);
 
-void evaluate_skeleton(const Skeleton& skeleton, const Constants& constants, const std::uint32_t* pool,
-                       std::span<const SkeletonJob> jobs, float* distance, Workspace& workspace) {
-  HWY_DYNAMIC_DISPATCH(skeleton_batch)(skeleton, constants, pool, jobs, distance, workspace);
+void evaluate_template(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
+                       std::span<const TemplateJob> jobs, float* distance, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(skeleton_batch)(program_template, constants, pool, jobs, distance, workspace);
 }
 
 }  // namespace fathom::vm

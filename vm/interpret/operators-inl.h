@@ -7,11 +7,11 @@
 // Formulas after Inigo Quilez, "Distance functions" (iquilezles.org), corrected where the gradient or the sign
 // failed, with derivations in the comments.
 // Tested by: tests/compiler/shapes/shapes_test.cpp, tests/vm/number/operators_test.cpp
-#if defined(FATHOM_VM_SEMANTICS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef FATHOM_VM_SEMANTICS_INL
-#undef FATHOM_VM_SEMANTICS_INL
+#if defined(FATHOM_VM_OPERATORS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef FATHOM_VM_OPERATORS_INL
+#undef FATHOM_VM_OPERATORS_INL
 #else
-#define FATHOM_VM_SEMANTICS_INL
+#define FATHOM_VM_OPERATORS_INL
 #endif
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 #include "vm/number/along-inl.h"
 #include "vm/number/batch-inl.h"
-#include "vm/number/convex-inl.h"
+#include "vm/number/convexity-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/interval_elementary-inl.h"
 #include "vm/number/noise-inl.h"

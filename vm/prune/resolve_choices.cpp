@@ -1,11 +1,11 @@
-// Settles choices; compiled once per instruction set (Highway's foreach_target).
-#include "vm/prune/settle.h"
+// Resolves choices; compiled once per instruction set (Highway's foreach_target).
+#include "vm/prune/resolve_choices.h"
 
 #include <limits>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "vm/prune/settle.cpp"
+#define HWY_TARGET_INCLUDE "vm/prune/resolve_choices.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "vm/number/batch-inl.h"
 
@@ -25,21 +25,21 @@ HWY_INLINE BatchMask mask_of(std::uint32_t bits) {
   return {hn::LoadMaskBits(FloatLanes(), bytes)};
 }
 
-class Settling {
+class ChoiceResolution {
  public:
-  HWY_INLINE Settling(const ChoiceLink* links, const ChoiceBounds* bounds, float error, Interest* interest,
-                      KeptOperands* kept)
-      : links_(links), bounds_(bounds), error_(error), interest_(interest), kept_(kept) {}
+  HWY_INLINE ChoiceResolution(const ChoiceLink* links, const ChoiceBounds* bounds, float error, DemandedRange* demanded,
+                      LiveOperands* kept)
+      : links_(links), bounds_(bounds), error_(error), demanded_(demanded), live_(kept) {}
 
   HWY_INLINE void reset(std::size_t count) {
     const Batch none = Batch::broadcast(kInfinity);
     for (std::size_t j = 0; j < count; ++j) {
       const bool always = links_[j].always;
-      // Until choice j is settled, kept_[j].a holds the boxes in which the choice is needed.
-      kept_[j] = {static_cast<std::uint16_t>(always ? 0xffff : 0), 0};
+      // Until choice j is resolved, live_[j].a holds the boxes in which the choice is needed.
+      live_[j] = {static_cast<std::uint16_t>(always ? 0xffff : 0), 0};
       for (std::size_t r = 0; r < kRegisters; ++r) {
-        (always ? -none : none).store(interest_[j].lo + r * kLanes);
-        (always ? none : -none).store(interest_[j].hi + r * kLanes);
+        (always ? -none : none).store(demanded_[j].lo + r * kLanes);
+        (always ? none : -none).store(demanded_[j].hi + r * kLanes);
       }
     }
   }
@@ -52,19 +52,19 @@ class Settling {
       lo = lo + less - error * (abs(lo) + abs(less));
       hi = hi + less + error * (abs(hi) + abs(less));
     }
-    Interest& to = interest_[operand.choice];
+    DemandedRange& to = demanded_[operand.choice];
     const Batch old_lo = Batch::load(to.lo + r * kLanes), old_hi = Batch::load(to.hi + r * kLanes);
     const BatchMask here = mask_of(bits);
     select(here, min(lo, old_lo), old_lo).store(to.lo + r * kLanes);
     select(here, max(hi, old_hi), old_hi).store(to.hi + r * kLanes);
-    std::uint16_t& needed = kept_[operand.choice].a;
+    std::uint16_t& needed = live_[operand.choice].a;
     needed = static_cast<std::uint16_t>(needed | bits << (r * kLanes));
   }
 
-  // Settles choice j, whose users are settled. Signs are changed so that the lesser operand always wins: the maximum
+  // Resolves choice j, whose users are resolved. Signs are changed so that the lesser operand always wins: the maximum
   // of a and b is minus the minimum of -a and -b.
   HWY_INLINE void settle(std::size_t j) {
-    const std::uint32_t needed = kept_[j].a;
+    const std::uint32_t needed = live_[j].a;
     if (needed == 0) return;
     const ChoiceLink& link = links_[j];
     std::uint32_t kept_a = 0, kept_b = 0;
@@ -80,7 +80,7 @@ class Settling {
       }
       kept_a |= a << (r * kLanes), kept_b |= b << (r * kLanes);
     }
-    kept_[j] = {static_cast<std::uint16_t>(kept_a), static_cast<std::uint16_t>(kept_b)};
+    live_[j] = {static_cast<std::uint16_t>(kept_a), static_cast<std::uint16_t>(kept_b)};
   }
 
  private:
@@ -93,9 +93,9 @@ class Settling {
     const Batch a_hi = turn_a ? -Batch::load(of.a_lo + at) : Batch::load(of.a_hi + at);
     const Batch b_lo = turn_b ? -Batch::load(of.b_hi + at) : Batch::load(of.b_lo + at);
     const Batch b_hi = turn_b ? -Batch::load(of.b_lo + at) : Batch::load(of.b_hi + at);
-    const Interest& interest = interest_[j];
-    const Batch lo = turn_a ? -Batch::load(interest.hi + at) : Batch::load(interest.lo + at);
-    const Batch hi = turn_a ? -Batch::load(interest.lo + at) : Batch::load(interest.hi + at);
+    const DemandedRange& demanded = demanded_[j];
+    const Batch lo = turn_a ? -Batch::load(demanded.hi + at) : Batch::load(demanded.lo + at);
+    const Batch hi = turn_a ? -Batch::load(demanded.lo + at) : Batch::load(demanded.hi + at);
     // A blend whose operands are both above T + 5/4 width is above T, because a blend is at most a quarter of its
     // width below the lesser operand.
     const Batch width = Batch::broadcast(link.width), reach = Batch::broadcast(link.width * 1.2501f);
@@ -114,7 +114,7 @@ class Settling {
 
   HWY_INLINE Batch error_of(Batch a, Batch b) const {
     if (error_ == 0) return Batch::broadcast(0.0f);
-    return Batch::broadcast(error_) + Batch::broadcast(kSettleShare) * (abs(a) + abs(b));
+    return Batch::broadcast(error_) + Batch::broadcast(kResolveShare) * (abs(a) + abs(b));
   }
   // True if a is above b by more than the margin. A rounded difference is above a float only if the exact one is.
   HWY_INLINE BatchMask is_over(Batch a, Batch b, Batch margin) const { return a - b > margin + error_of(a, b); }
@@ -122,13 +122,13 @@ class Settling {
   const ChoiceLink* links_;
   const ChoiceBounds* bounds_;
   const float error_;
-  Interest* interest_;
-  KeptOperands* kept_;
+  DemandedRange* demanded_;
+  LiveOperands* live_;
 };
 
 void settle_all(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                float least, float most, float error, Interest* interest, KeptOperands* kept) {
-  Settling settling(links, bounds, error, interest, kept);
+                float least, float most, float error, DemandedRange* demanded, LiveOperands* kept) {
+  ChoiceResolution settling(links, bounds, error, demanded, kept);
   settling.reset(count);
   for (std::size_t r = 0; r < kRegisters; ++r) {
     settling.pass_on(root, r, static_cast<std::uint32_t>((1ull << kLanes) - 1), Batch::broadcast(least),
@@ -145,12 +145,12 @@ namespace fathom::vm {
 
 HWY_EXPORT(settle_all);
 
-void settle_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, float error, Interest* interest, KeptOperands* kept) {
-  HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, error, interest, kept);
+void resolve_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
+                    float least, float most, float error, DemandedRange* demanded, LiveOperands* kept) {
+  HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, error, demanded, kept);
 }
 
-void settle_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, KeptOperands* kept) {
+void resolve_pairs(const ChoiceLink* links, const ChoiceRange* ranges, std::size_t count, LiveOperands* kept) {
   for (std::size_t j = 0; j < count; ++j) {
     const ChoiceLink& link = links[j];
     const ChoiceRange& of = ranges[j];
