@@ -19,7 +19,7 @@
 namespace fathom::catalogue::extremes_test {
 namespace {
 
-using tests::compiled_objects;
+using test::compiled_objects;
 
 std::string mandelbulb(int power, int iterations, const char* detail) {
   return R"({"type": "mandelbulb", "power": )" + std::to_string(power) + R"(, "iterations": )" +

@@ -188,7 +188,7 @@ struct Tally {
 };
 
 Tally tally(const Case& c, int count) {
-  const compiler::CompiledScene scene = tests::compiled_objects(c.node);
+  const compiler::CompiledScene scene = test::compiled_objects(c.node);
   CHECK(scene.certified);
   Random random(11);
   std::vector<Line> lines;

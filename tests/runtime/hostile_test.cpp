@@ -19,7 +19,7 @@ namespace fathom::hostile_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(FATHOM_SOURCE_DIR) / "tests/hostile";

@@ -33,7 +33,7 @@ const char* const kSpinning = R"({
 compiler::CompiledScene at(double time, const char* text = kSpinning) {
   compiler::CompileOptions options;
   options.definitions = {{"time", time}};
-  return tests::compiled(text, options);
+  return test::compiled(text, options);
 }
 
 // The scenes that a shutter sees while it is open for `open` seconds, and the options for them.

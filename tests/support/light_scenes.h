@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline std::string grey(double value) {
   const std::string number = std::to_string(value);
@@ -293,4 +293,4 @@ inline constexpr const char* kAreaLightRoom = R"("camera": {"position": [0, 1, 3
       {"type": "cylinder", "radius": 0.2, "half_height": 0.05, "rotate": [20, 0, 10], "translate": [0, 1.3, -1], "material": "lamp"},
       {"type": "torus", "major_radius": 0.2, "minor_radius": 0.04, "translate": [-0.4, 1.4, 0.4], "material": "lamp"}])";
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

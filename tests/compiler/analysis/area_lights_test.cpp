@@ -13,7 +13,7 @@ namespace fathom::compiler::lamps_test {
 namespace {
 
 CompiledScene lit(const std::string& objects) {
-  return tests::compiled(R"({"version": 1, "materials": {"dull": {"type": "diffuse"},
+  return test::compiled(R"({"version": 1, "materials": {"dull": {"type": "diffuse"},
       "glow": {"type": "emissive", "emission": [1, 2, 3]}, "dark": {"type": "emissive", "emission": [0, 0, 0]}},
       "objects": [)" + objects +
                          "]}");

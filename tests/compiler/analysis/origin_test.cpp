@@ -14,7 +14,7 @@
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -26,8 +26,8 @@ namespace {
 using compiler::Kind;
 using compiler::Scene;
 using glm::dvec3;
-using tests::compiled;
-using tests::compiled_objects;
+using test::compiled;
+using test::compiled_objects;
 
 Scene scene_of(std::uint64_t seed) {
   Random random(seed);
@@ -67,7 +67,7 @@ dvec3 origin_of(const std::string& objects, const std::string& camera = "[0, 0, 
 }  // namespace
 
 TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[origin]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, seed % 2 ? 3 : 30);
@@ -86,7 +86,7 @@ TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[ori
 }
 
 TEST_CASE("origin: a scene moved far off and back is as it was, to what a double holds there", "[origin]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e6);
@@ -107,7 +107,7 @@ TEST_CASE("origin: a scene moved far off and back is as it was, to what a double
 TEST_CASE("origin: float errors of a scene brought back from far are within the bound", "[origin][bounds]") {
   vm::Workspace workspace;
   int fine = 0;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e5);
     const Scene scene = optimised(compiler::moved(compiler::moved(scene_of(seed), -origin), origin));
@@ -132,7 +132,7 @@ TEST_CASE("origin: float errors of a scene brought back from far are within the 
     }
   }
   INFO(fine << " of 400 are as exact as near zero");
-  CHECK(fine > few(300));
+  CHECK(fine > scaled_cases(300));
 }
 
 TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {

@@ -13,7 +13,7 @@
 #include "compiler/artefact/programs.h"
 #include "tests/support/compiled.h"
 #include "tests/support/draw_small.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
 #include "tests/support/sealed_file.h"
 #include "vm/interpret/evaluate.h"
@@ -106,17 +106,17 @@ TEST_CASE("every shipped scene reads back from its bytes and from its listing", 
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
     // Scenes of ten thousand copies of a node show the sanitizers no more than the scene d1000 does.
-    const bool few_cases = few(8) < 8;
+    const bool few_cases = scaled_cases(8) < 8;
     if (few_cases && entry.file_size() > 500'000) continue;
     INFO(entry.path().string());
-    check_round_trips(tests::compiled(tests::read_file(entry.path())));
+    check_round_trips(test::compiled(test::read_file(entry.path())));
     ++count;
   }
   CHECK(count >= 20);
 }
 
 TEST_CASE("all that a scene can say reads back, with and without places and text", "[artefact]") {
-  const CompiledScene scene = tests::compiled(kEverything);
+  const CompiledScene scene = test::compiled(kEverything);
   REQUIRE(scene.media.size() == 1);
   REQUIRE(scene.area_lights.size() == 1);
   REQUIRE(scene.formulas.size() == 1);
@@ -139,18 +139,18 @@ TEST_CASE("all that a scene can say reads back, with and without places and text
 
 TEST_CASE("two scenes have one digest only when they render alike", "[artefact]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
-  const vm::Digest digest = compiler::scene_digest(tests::compiled_objects(ball));
-  CHECK(compiler::scene_digest(tests::compiled_objects("  " + ball)) == digest);
-  CHECK_FALSE(compiler::scene_digest(tests::compiled_objects(R"({"type": "sphere", "radius": 1.0000001})")) ==
+  const vm::Digest digest = compiler::scene_digest(test::compiled_objects(ball));
+  CHECK(compiler::scene_digest(test::compiled_objects("  " + ball)) == digest);
+  CHECK_FALSE(compiler::scene_digest(test::compiled_objects(R"({"type": "sphere", "radius": 1.0000001})")) ==
               digest);
-  CHECK_FALSE(compiler::scene_digest(tests::compiled(
+  CHECK_FALSE(compiler::scene_digest(test::compiled(
                   R"({"version": 1, "camera": {"position": [0, 0, 6]}, "objects": [)" + ball + "]}")) == digest);
   CHECK_FALSE(compiler::scene_digest(
-                  tests::compiled(R"({"version": 1, "render": {"spp": 17}, "objects": [)" + ball + "]}")) == digest);
+                  test::compiled(R"({"version": 1, "render": {"spp": 17}, "objects": [)" + ball + "]}")) == digest);
 }
 
 TEST_CASE("a file that was cut or changed anywhere is refused", "[artefact]") {
-  const Bytes bytes = compiler::write_file(tests::compiled(kEverything));
+  const Bytes bytes = compiler::write_file(test::compiled(kEverything));
   for (std::size_t size = 0; size < bytes.size(); size += size < 300 ? 1 : 37) {
     CAPTURE(size);
     REQUIRE_FALSE(reason_of({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}).empty());
@@ -168,7 +168,7 @@ TEST_CASE("a file that was cut or changed anywhere is refused", "[artefact]") {
 
 // An attacker who changes a file can also correct its digests.
 TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]") {
-  const Sections parts = without_text(compiler::write_file(tests::compiled(kEverything)));
+  const Sections parts = without_text(compiler::write_file(test::compiled(kEverything)));
   vm::Workspace workspace;
   int accepted = 0;
   const auto try_one = [&](Sections changed) {
@@ -192,7 +192,7 @@ TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]
     }
     if (accepted % 16 == 0) draw_small(good->scene);
   };
-  const std::size_t stride = few(8) == 8 ? 1 : 8;
+  const std::size_t stride = scaled_cases(8) == 8 ? 1 : 8;
   for (std::size_t at = 0; at < parts.code.size(); at += stride) {
     CAPTURE(at);
     Sections changed = parts;
@@ -209,7 +209,7 @@ TEST_CASE("a sealed file with any byte changed is refused or sound", "[artefact]
 }
 
 TEST_CASE("each section says what is wrong with it", "[artefact]") {
-  const Bytes good = compiler::write_file(tests::compiled(kEverything), {true, false});
+  const Bytes good = compiler::write_file(test::compiled(kEverything), {true, false});
   const Sections parts = sections_of(good);
   CHECK((sealed(parts) == good));
   const auto with = [&](auto change) {
@@ -278,7 +278,7 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
 }
 
 TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
-  const std::string good = compiler::write_listing(tests::compiled(kEverything));
+  const std::string good = compiler::write_listing(test::compiled(kEverything));
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     const std::size_t at = text.find(from);
@@ -322,7 +322,7 @@ TEST_CASE("a program alone becomes a scene of one surface, of which nothing is p
 }
 
 TEST_CASE("a listing may come from a system that ends lines in two characters", "[artefact]") {
-  const std::string listing = compiler::write_listing(tests::compiled(kEverything));
+  const std::string listing = compiler::write_listing(test::compiled(kEverything));
   std::string other;
   for (const char c : listing) other += c == '\n' ? "\r\n" : std::string(1, c);
   FileContents contents, same;
@@ -332,13 +332,13 @@ TEST_CASE("a listing may come from a system that ends lines in two characters", 
 
 TEST_CASE("names of any length and with any printable characters read back", "[artefact]") {
   const std::string odd = R"(; \" @3:4 | } program x { )" + std::string(70000, 'n') + "\u00e4";
-  const CompiledScene scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1, "name": ")" + odd + R"("})");
+  const CompiledScene scene = test::compiled_objects(R"({"type": "sphere", "radius": 1, "name": ")" + odd + R"("})");
   check_round_trips(scene);
 }
 
 // Each pattern uses the previous pattern twice, so each doubles the work per point.
 TEST_CASE("patterns that share others may not make a point arbitrarily expensive", "[artefact]") {
-  CompiledScene scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1})");
+  CompiledScene scene = test::compiled_objects(R"({"type": "sphere", "radius": 1})");
   scene.textures = {glm::dvec3(1)};
   const auto add = [&] {
     const auto last = static_cast<std::uint32_t>(scene.textures.size() - 1);

@@ -45,7 +45,7 @@ std::string opcode_table() {
 
 // Returns the tables of a ball of glass, as the listing of a compiled scene has them.
 std::string tables_of_ball() {
-  const CompiledScene scene = tests::compiled(R"({"version": 1, "params": {"r": {"default": 0.5, "min": 0}},
+  const CompiledScene scene = test::compiled(R"({"version": 1, "params": {"r": {"default": 0.5, "min": 0}},
       "materials": {"glass": {"type": "principled", "preset": "glass"}},
       "objects": [{"name": "ball", "type": "sphere", "radius": "r", "material": "glass"}]})");
   return "```json\n" + print_tables(tables_of(scene)) + "\n```\n";
@@ -63,7 +63,7 @@ std::string with_part(const std::string& document, const std::string& mark, cons
 
 TEST_CASE("docs/reference/bytecode.md has the table of opcodes and the tables of a scene", "[golden]") {
   const std::string path = FATHOM_SOURCE_DIR "/docs/reference/bytecode.md";
-  const std::string document = tests::read_file(path);
+  const std::string document = test::read_file(path);
   const std::string expected = with_part(with_part(document, "opcodes", opcode_table()), "tables", tables_of_ball());
   if (std::getenv("FATHOM_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(path) << expected;

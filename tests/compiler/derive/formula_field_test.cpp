@@ -12,7 +12,7 @@
 
 #include "compiler/frontend/read_scene.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/random/random_scene.h"
 
@@ -31,7 +31,7 @@ Scene scene_of(const std::string& object) {
   options.stop_after = "graph";
   Scene graph;
   options.on_pass = [&](std::string_view, const Scene& scene) { graph = scene; };
-  tests::compiled_objects(object, options);
+  test::compiled_objects(object, options);
   return graph;
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
 
 // Formulas of hundreds of pieces. The specialised parts that prove the bound hold a few pieces each.
 TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
-  for (int seed = 0; seed < few(6); ++seed) {
+  for (int seed = 0; seed < scaled_cases(6); ++seed) {
     Random random(seed);
     std::string formula = "1";
     double steepest = 0;

@@ -107,7 +107,7 @@ TEST_CASE("emitted C++ gives the machine's bits for scene files", "[emit]") {
     CAPTURE(path);
     std::stringstream text;
     text << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
-    const Differing result = differing(tests::compiled(text.str()), in_float, in_double);
+    const Differing result = differing(test::compiled(text.str()), in_float, in_double);
     CHECK(result.floats == 0);
     CHECK(result.doubles == 0);
   };

@@ -15,7 +15,7 @@ namespace fathom::bounds_test {
 namespace {
 
 using namespace fathom;
-using fathom::tests::compiled_objects;
+using fathom::test::compiled_objects;
 
 // Max |float - double| relative to d_f, at random points near the surface within `size` of the origin.
 double largest_error(const compiler::CompiledScene& scene, double size) {

@@ -10,7 +10,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/make_node.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"
@@ -91,7 +91,7 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
   for (const Sort sort : {Sort::Solid, Sort::Outline}) {
     for (const Kind kind : primitive_kinds(sort, false)) {
       int tried = 0;
-      for (int seed = 0; seed < few(600); ++seed) {
+      for (int seed = 0; seed < scaled_cases(600); ++seed) {
         Random random(seed);
         const auto params = stretched(kind, random);
         if (!params) continue;
@@ -99,7 +99,7 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
         INFO(compiler::spec(kind).name << ", seed " << seed);
         CHECK(largest_error(single(kind, *params), sort == Sort::Outline, random, 20) <= 1);
       }
-      CHECK(tried > few(50));
+      CHECK(tried > scaled_cases(50));
     }
   }
 }
@@ -116,7 +116,7 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
       REQUIRE(!maker.complaint(kind, params, child));
       scene.root = maker.make(kind, params, child);
       INFO(compiler::spec(kind).name);
-      CHECK(largest_error(scene, false, random, few(3000)) <= 1);
+      CHECK(largest_error(scene, false, random, scaled_cases(3000)) <= 1);
     };
     check(Kind::Revolve, {-far}, Kind::Polygon, {far + 1.25, 0, far + 2.75, 0, far + 2, 1});
     check(Kind::Mirror, {1, 0, 0, far}, Kind::Triangle,

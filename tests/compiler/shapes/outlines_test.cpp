@@ -12,7 +12,7 @@
 #include "compiler/shapes/make_node.h"
 #include "compiler/shapes/node_table.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge_geometry.h"
 #include "tests/support/judge/judge_outlines.h"
@@ -230,7 +230,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
   for (const std::vector<double>& points : outlines) {
     for (const double offset : {0.0, 0.25, -0.25}) {
       INFO(points.size() / 2 << " corners, offset " << offset);
-      for (int i = 0; i < few(20); ++i) {
+      for (int i = 0; i < scaled_cases(20); ++i) {
         const compiler::NodeFacts known = check_on_axis(Kind::Polygon, points, offset, random);
         REQUIRE(known.outside == Exactness::Exact);
         REQUIRE(known.inside == Exactness::Exact);
@@ -243,7 +243,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
 TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[outlines]") {
   vm::Workspace workspace;
   const auto at = [&](const std::string& solid, dvec3 p) {
-    return vm::evaluate_distance(tests::compiled_objects(solid).distance, p, workspace);
+    return vm::evaluate_distance(test::compiled_objects(solid).distance, p, workspace);
   };
   const std::string rectangle = R"({"type": "rectangle", "half_size": [1, 2], "translate": [1, 0, 0]})";
   const std::string turned =

@@ -11,7 +11,7 @@
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge.h"
@@ -99,7 +99,7 @@ TEST_CASE("random shapes are valid", "[shapes]") {
 TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judge]") {
   for_each_primitive([](const NodeSpec& row) {
     if (!exact(row)) return;
-    for (int seed = 0; seed < few(8); ++seed) {
+    for (int seed = 0; seed < scaled_cases(8); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const auto truth = brute_force(row, s.params);
@@ -162,14 +162,14 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
   };
   for_each_primitive([&](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (int seed = 0; seed < few(16); ++seed) {
+    for (int seed = 0; seed < scaled_cases(16); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       INFO(s.name << ", seed " << seed);
       check(s.scene, random, 60);
     }
   });
-  for (int seed = 0; seed < few(240); ++seed) {
+  for (int seed = 0; seed < scaled_cases(240); ++seed) {
     Random random(seed);
     const compiler::Scene scene = random_scene(random);
     INFO("random graph, seed " << seed);
@@ -179,7 +179,7 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
 
 TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
-    for (int seed = 0; seed < few(80); ++seed) {
+    for (int seed = 0; seed < scaled_cases(80); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);
@@ -197,7 +197,7 @@ TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
 TEST_CASE("a primitive's box is tight", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (int seed = 0; seed < few(16); ++seed) {
+    for (int seed = 0; seed < scaled_cases(16); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);

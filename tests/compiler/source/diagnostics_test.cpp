@@ -26,9 +26,9 @@ namespace {
 
 using namespace fathom::compiler;
 namespace fs = std::filesystem;
-using fathom::tests::check_golden;
-using fathom::tests::golden_files;
-using fathom::tests::read_file;
+using fathom::test::check_golden;
+using fathom::test::golden_files;
+using fathom::test::read_file;
 
 Definitions definitions_in(const std::string& scene) {
   Definitions definitions;
@@ -51,7 +51,7 @@ Diagnostics diagnose(Source& source) {
   CompileOptions options;
   options.definitions = definitions_in(source.text());
   options.lint = true;
-  options.imports = tests::imports_from(fs::path(FATHOM_SOURCE_DIR) / "tests/golden/imports");
+  options.imports = test::imports_from(fs::path(FATHOM_SOURCE_DIR) / "tests/golden/imports");
   options.on_source = [&](const Source& whole) {
     if (!whole.imports().empty()) source = whole;
   };

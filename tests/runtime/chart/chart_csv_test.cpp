@@ -7,7 +7,7 @@
 namespace fathom::runtime::chart_csv_test {
 namespace {
 
-using tests::kProvenance;
+using test::kProvenance;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -68,7 +68,7 @@ TEST_CASE("chart csv: the columns of pictures and their values", "[chart]") {
 
 TEST_CASE("chart csv: a line a row", "[chart]") {
   CHECK(lines_of(rays_csv({}, kProvenance)).size() == 1);
-  const auto rows = tests::sample_rays();
+  const auto rows = test::sample_rays();
   CHECK(lines_of(rays_csv(rows, kProvenance)).size() == rows.size() + 1);
 }
 

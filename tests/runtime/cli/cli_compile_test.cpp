@@ -4,7 +4,7 @@
 
 #include "tests/support/program.h"
 
-namespace fathom::tests::cli_compile_test {
+namespace fathom::test::cli_compile_test {
 namespace {
 
 using Catch::Matchers::Contains;
@@ -254,4 +254,4 @@ TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {
   CHECK(folder.run("eval ball.fbc --at 0,0,3").out.starts_with("2 "));
 }
 
-}  // namespace fathom::tests::cli_compile_test
+}  // namespace fathom::test::cli_compile_test

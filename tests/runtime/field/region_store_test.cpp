@@ -23,7 +23,7 @@ compiler::CompiledScene balls(double first, double light = 1) {
     objects += std::string(i > 0 ? "," : "") + R"({"type": "sphere", "radius": 0.3, "translate": [)" +
                std::to_string(x) + "," + std::to_string(i / 7 % 7) + "," + std::to_string(i / 49) + "]}";
   }
-  return tests::compiled(
+  return test::compiled(
       R"({"version": 1, "camera": {"position": [3, 3, 20], "target": [3, 3, 3]}, "film": {"width": 32, "height": 24},
     "render": {"spp": 16}, "background": [)" +
       std::to_string(light) + R"(, 1, 1], "objects": [)" + objects + "]}");

@@ -13,7 +13,7 @@
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::adaptive_test {
 namespace {
@@ -184,14 +184,14 @@ TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance the
     return options;
   };
   RenderOptions options = uniform(options_of(LightSampling::Nee));
-  options.spp = test::few(512);
+  options.spp = test::scaled_cases(512);
   const Film truth = render(scene, options).film;
   options = options_of(LightSampling::Bsdf);
   const Tiles tiles({0, 0, 64, 48}, 8);
   std::vector<Sum> cells(48);
   Sum pixel;
   double said = 0;
-  const int seeds = test::few(200);
+  const int seeds = test::scaled_cases(200);
   for (int seed = 0; seed < seeds; ++seed) {
     options.seed = static_cast<std::uint64_t>(seed) + 1;
     const Film film = render(scene, options).film;
@@ -226,13 +226,13 @@ TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][
   const auto scene = floor_and_area_light();
   constexpr double kThreshold = 0.25;
   constexpr int kMost = 256;
-  RenderOptions options = uniform(adaptive_options(8, 8, test::few(40000)));
+  RenderOptions options = uniform(adaptive_options(8, 8, test::scaled_cases(40000)));
   options.max_depth = 1;
   options.light_sampling = LightSampling::Nee;
   const PixelRect area{0, 0, 8, 8};
   const double expected = mean_of(render(scene, options).film, area).y;
   Sum ours, naive, samples;
-  for (int seed = 0; seed < test::few(2000); ++seed) {
+  for (int seed = 0; seed < test::scaled_cases(2000); ++seed) {
     options.light_sampling = LightSampling::Bsdf;
     options.seed = static_cast<std::uint64_t>(seed) + 1;
     options.threads = 1;
@@ -325,9 +325,9 @@ TEST_CASE("adaptive: quiet tiles end early, and a render below its threshold say
 TEST_CASE("adaptive: with too few samples to share out all pixels have as many", "[render]") {
   const auto scene = floor_and_sky();
   RenderOptions options = adaptive_options(16, 16, kMinAdaptiveSpp - 1);
-  const RenderResult few = render(scene, options);
-  CHECK_FALSE(few.settings.noise_threshold);
-  CHECK(few.film.hash() == render(scene, uniform(options)).film.hash());
+  const RenderResult scaled_cases = render(scene, options);
+  CHECK_FALSE(scaled_cases.settings.noise_threshold);
+  CHECK(scaled_cases.film.hash() == render(scene, uniform(options)).film.hash());
   options = adaptive_options(16, 16, kMinAdaptiveSpp);
   CHECK(render(scene, options).settings.noise_threshold);
   options.uniform = true;
@@ -389,11 +389,11 @@ TEST_CASE("adaptive: a caustic has less error than with as many samples everywhe
                   {"type": "sphere", "radius": 0.5, "translate": [-2, 6, 0], "material": "lamp"}])");
   RenderOptions options = adaptive_options(128, 80, 32);
   RenderOptions truth_options = uniform(options);
-  truth_options.spp = test::few(4096);
+  truth_options.spp = test::scaled_cases(4096);
   truth_options.seed = 999;
   const Film truth = render(scene, truth_options).film;
   double adaptive = 0, even = 0;
-  for (int seed = 0; seed < test::few(8); ++seed) {
+  for (int seed = 0; seed < test::scaled_cases(8); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     adaptive += relative_error(render(scene, options).film, truth);
     even += relative_error(render(scene, uniform(options)).film, truth);

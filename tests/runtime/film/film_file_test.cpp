@@ -57,7 +57,7 @@ FilmLayers every_layer() {
 }
 
 TEST_CASE("film files: what is written is read back, with every layer or none, of one stage or four") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const FilmLayers layers : {FilmLayers{}, every_layer(), FilmLayers{.first_hit = false, .halves = true}}) {
     for (const bool adaptive : {false, true}) {
       const FilmFile wrote = small_file(layers, adaptive);
@@ -82,7 +82,7 @@ TEST_CASE("film files: what is written is read back, with every layer or none, o
 }
 
 TEST_CASE("film files: every flipped bit and every truncation is found") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const FilmFile wrote = small_file(every_layer(), true);
   const std::string path = folder.file("a.film");
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, path));
@@ -107,7 +107,7 @@ TEST_CASE("film files: every flipped bit and every truncation is found") {
 
 // Heads forged to make the reader fail, with checksums that fit.
 TEST_CASE("film files: a head that makes no sense is refused although its checksum fits") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, path));
@@ -146,7 +146,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
 
 // A scene's names can have any length.
 TEST_CASE("film files: what can be written can be read, however long") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
   const std::string text(std::size_t{3} << 20, 'x');
@@ -162,7 +162,7 @@ TEST_CASE("film files: what can be written can be read, however long") {
 }
 
 TEST_CASE("film files: more rows of an identity than are ever written are refused") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   wrote.header.identity.assign(10000, {"", ""});
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
@@ -172,7 +172,7 @@ TEST_CASE("film files: more rows of an identity than are ever written are refuse
 }
 
 TEST_CASE("film files: what a head becomes is counted before it is made") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   for (int i = 0; i < 10000; ++i) wrote.header.attributes[std::to_string(i)] = 0;
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
@@ -185,7 +185,7 @@ TEST_CASE("film files: what a head becomes is counted before it is made") {
 }
 
 TEST_CASE("film files: sums that take more memory than is allowed are not read") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string path = folder.file("a.film");
   const FilmFile wrote = small_file({});
   PartialRender large{Film(200, 100, FilmLayers{}), std::vector<Coverage>(1), {}};
@@ -200,7 +200,7 @@ TEST_CASE("film files: sums that take more memory than is allowed are not read")
 
 // The reader checks the blocks for overlaps without tidying them, which would take quadratic time.
 TEST_CASE("film files: blocks that overlap are refused as fast as they are read") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmHeader header = small_file({}).header;
   header.width = header.height = 300;
   PartialRender render{Film(300, 300, FilmLayers{}), std::vector<Coverage>(1), {}};
@@ -216,7 +216,7 @@ TEST_CASE("film files: blocks that overlap are refused as fast as they are read"
 }
 
 TEST_CASE("film files: what is no film, or not there, is said to be so") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_bytes(folder.file("a.film"), "{\"version\": 1}                 ");
   const auto other = read_film(folder.file("a.film"));
   REQUIRE(std::holds_alternative<FilmReadError>(other));

@@ -74,7 +74,7 @@ void write(const std::string& path, Storage storage, Imf::Compression compressio
 }
 
 TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compression", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FieldSamples samples = random_samples();
   for (const Storage storage : {Storage::Lines, Storage::Tiles, Storage::Mipmap}) {
     for (const Imf::Compression compression :
@@ -101,7 +101,7 @@ TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compress
 }
 
 TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FieldSamples samples = random_samples();
   const auto problem_of = [&](const std::vector<std::uint8_t>& bytes) {
     const auto read = decode_exr(bytes);

@@ -31,7 +31,7 @@ Film ramp() {
 }
 
 // Returns the largest error of channels R, G, B of a layer that was written and read.
-double error_of(const tests::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
+double error_of(const test::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
   const Film film = ramp();
   const LayerValues values = layer_of(film, layer);
   REQUIRE(write_layer(values, {{}, bits}, folder.file(name)) == std::nullopt);
@@ -54,7 +54,7 @@ double error_of(const tests::TemporaryFolder& folder, const std::string& name, L
 }
 
 TEST_CASE("image_read: what is written comes back as exactly as its format says", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   // Half a step of 8 or 16 bits, times the steepest slope of the sRGB decoding, 2.3 at white.
   CHECK(error_of(folder, "a.png", Layer::Beauty) <= 2.3 / 255 / 2);
   CHECK(error_of(folder, "b.png", Layer::Beauty, 16) <= 2.3 / 65535 / 2 + 1e-7);
@@ -68,7 +68,7 @@ TEST_CASE("image_read: what is written comes back as exactly as its format says"
 }
 
 TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   ByteImage picture{256, 1, {}};
   for (int i = 0; i < 256; ++i) picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(i));
   for (const char* name : {"a.png", "a.bmp"}) {
@@ -89,7 +89,7 @@ std::string bytes_of(std::string_view digits) {
   return bytes;
 }
 
-FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
+FloatImage image_of(const test::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
   std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes_of(digits);
   const auto read = read_image(folder.file(std::string(name)));
   if (const auto* unread = std::get_if<ImageReadError>(&read)) FAIL(unread->problem);
@@ -97,7 +97,7 @@ FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name,
 }
 
 TEST_CASE("image_read: every kind of png", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   using Values = std::vector<std::vector<float>>;
   CHECK(image_of(
             folder, "grey-of-1-bit.png",
@@ -129,7 +129,7 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
 
 // libpng accepts the first three as whole images and leaves the pixels without data black.
 TEST_CASE("image_read: a png whose data ends before its picture is refused", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto problem_of = [&](std::string_view digits) {
     std::ofstream(folder.file("a.png"), std::ios::binary) << bytes_of(digits);
     const auto read = read_image(folder.file("a.png"));
@@ -161,7 +161,7 @@ TEST_CASE("image_read: a png whose data ends before its picture is refused", "[r
 
 // R, G and B are each a copy of grey.
 TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string png = bytes_of(
       "89504e470d0a1a0a0000000d4948445200000003000000010100000000339b29190000000a4944415478da6358000000a200a1"
       "7105cb410000000049454e44ae426082");
@@ -177,7 +177,7 @@ TEST_CASE("image_read: the memory of a grey picture is counted before it is take
 }
 
 TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.file("a.pfm"), std::ios::binary)
       << "PF\n1 2\n1.0\n"
       << std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
@@ -188,7 +188,7 @@ TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
 }
 
 TEST_CASE("image_read: what cannot be read is refused with its name and a reason", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto problem = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder.file(name), std::ios::binary) << text;
     const auto read = read_image(folder.file(name));

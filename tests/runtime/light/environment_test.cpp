@@ -9,7 +9,7 @@
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"
 
@@ -46,7 +46,7 @@ void check_density(const Environment& environment, const LightSampleContext& que
     }
   }
   CHECK(mass == Approx(1).epsilon(0.01));
-  const int n = test::few(40000);
+  const int n = test::scaled_cases(40000);
   for (int i = 0; i < n; ++i) {
     Sampler sampler(5, static_cast<std::uint32_t>(i), 0, 0);
     const float choice = sampler.next();
@@ -165,7 +165,7 @@ TEST_CASE("environment: rays that hit a small disc find its irradiance", "[light
 TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[lights]") {
   const Environment lit(scene_with(disc_of(10)), nullptr);
   test::ChiSquareSetup setup;
-  setup.samples = test::few(100000);
+  setup.samples = test::scaled_cases(100000);
   // The pole points at the disc's centre and the rows span 5 degrees: the disc's rim is a cell border.
   setup.pole = glm::normalize(glm::vec3(1, 2, 1));
   setup.rows = 36;

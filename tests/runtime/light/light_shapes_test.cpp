@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/area_light_patches.h"
 
 namespace fathom::runtime::light_shapes_test {
@@ -37,7 +37,7 @@ std::optional<dvec3> meet(const AreaLightShape& shape, dvec3 from, dvec3 w) {
 }
 
 TEST_CASE("light shapes: points fall as their density says", "[lights]") {
-  const int n = test::few(40000);
+  const int n = test::scaled_cases(40000);
   for (const test::NamedAreaLight& c : test::kAreaLights) {
     const AreaLightShape shape(c.area_light);
     for (const dvec3 from : test::kShadingPoints) {

@@ -11,7 +11,7 @@
 #include "runtime/base/color.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::light_test {
 namespace {
@@ -172,7 +172,7 @@ TEST_CASE("lights: lights of all kinds together give the sum of each", "[lights]
   const Lights lights(scene);
   const double ball = M_PI * 2 * 0.25 / 14 * (3 / std::sqrt(14.0)), point = 5.0 / 17 * (4 / std::sqrt(17.0));
   const double truth = ball + point + 0.5 + std::sqrt(0.5);
-  const Mean e = irradiance(lights, {{0, 0, 0}, {0, 1, 0}}, test::few(100000));
+  const Mean e = irradiance(lights, {{0, 0, 0}, {0, 1, 0}}, test::scaled_cases(100000));
   CAPTURE(e.value, truth, e.error);
   CHECK(std::abs(e.value - truth) < 4 * e.error);
 }
@@ -217,7 +217,7 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
       truth += 2 * y * y / (d2 * d2) * 16 / (kSteps * kSteps);
     }
   }
-  const Mean e = irradiance(lights, query, test::few(60000));
+  const Mean e = irradiance(lights, query, test::scaled_cases(60000));
   CAPTURE(e.value, truth, e.error);
   CHECK(std::abs(e.value - truth) < 4 * e.error + 1e-3 * truth);
   // The error is small enough to detect the middle being counted twice.

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/sample_bins.h"
 
 namespace fathom::runtime::light_tree_test {
@@ -47,7 +47,7 @@ TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[light
         sum += expected.back();
       }
       std::vector<double> counts(count + 1);
-      const int n = test::few(20000);
+      const int n = test::scaled_cases(20000);
       double worst = 0;
       for (int i = 0; i < n; ++i) {
         const auto choice = tree.sample(query, Sampler(3, static_cast<std::uint32_t>(i), 0, 0).next());

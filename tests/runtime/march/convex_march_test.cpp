@@ -11,7 +11,7 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/catalogue/departures.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::convex_march_test {
@@ -73,9 +73,9 @@ void compare(const std::vector<RayHit>& found, const std::vector<RayHit>& exact,
 TEST_CASE("convex fields: rays end where the search in double ends them, sooner", "[march][convexity]") {
   Tally led, plain;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const compiler::CompiledScene compiled = tests::compiled(scene(seed));
+    const compiler::CompiledScene compiled = test::compiled(scene(seed));
     Field field = make_field(compiled);
-    for (const RaySet& set : make_ray_sets(compiled, field, test::few(240), seed)) {
+    for (const RaySet& set : make_ray_sets(compiled, field, test::scaled_cases(240), seed)) {
       const std::vector<RayHit> exact = march(field, set.rays, {.method = Method::Certified}).ray_hits;
       field.convex = true;
       compare(march(field, set.rays).ray_hits, exact, led);
@@ -84,7 +84,7 @@ TEST_CASE("convex fields: rays end where the search in double ends them, sooner"
     }
   }
   CAPTURE(led.rays, led.wrong, plain.wrong, led.off, plain.off, led.evaluations, plain.evaluations);
-  CHECK(led.rays > test::few(6000));
+  CHECK(led.rays > test::scaled_cases(6000));
   CHECK(led.wrong <= plain.wrong);
   CHECK(led.off <= plain.off);
   CHECK(led.evaluations < 0.85 * static_cast<double>(plain.evaluations));
@@ -94,10 +94,10 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
   Tally skipping, plain;
   int clear = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const compiler::CompiledScene compiled = tests::compiled(scene(seed));
+    const compiler::CompiledScene compiled = test::compiled(scene(seed));
     const Field field = make_field(compiled);
     const catalogue::Places places =
-        catalogue::places(compiled, make_ray_sets(compiled, field, test::few(480), seed)[0].rays);
+        catalogue::places(compiled, make_ray_sets(compiled, field, test::scaled_cases(480), seed)[0].rays);
     test::Random random(seed);
     std::vector<Ray> rays, without;
     for (std::size_t i = 0; i < places.hits.size(); ++i) {

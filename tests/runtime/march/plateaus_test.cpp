@@ -16,7 +16,7 @@
 #include "runtime/march/certified_search.h"
 #include "runtime/measure/ray_sets.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::runtime::plateaus_test {
@@ -305,7 +305,7 @@ TEST_CASE("plateaus: a solid ends where the field stays 0, not where two solids 
 
 TEST_CASE("plateaus: rays pass what is 0 over a volume, and leave solids there", "[march]") {
   Tally tally;
-  try_scenes(1, test::few(12), 30, tally);
+  try_scenes(1, test::scaled_cases(12), 30, tally);
   CAPTURE(tally.rays, tally.hits, tally.near_misses, tally.lost, tally.lost_in_double, tally.false_hits,
           tally.false_in_double, tally.differ, tally.evaluations, tally.searched);
   INFO(tally.report);

@@ -10,7 +10,7 @@
 
 #include "runtime/sampling/sampler.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/materials.h"
 
 namespace fathom::runtime::bsdf_test {
@@ -28,7 +28,7 @@ struct Albedo {
 
 float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
-const int kAlbedoSamples = test::few(20000);
+const int kAlbedoSamples = test::scaled_cases(20000);
 
 Albedo albedo(const Case& c, float cos, int n) {
   const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
@@ -150,7 +150,7 @@ void check_densities(int samples, int rows) {
 }
 
 TEST_CASE("bsdf: every material passes a chi-square test against its density", "[runtime]") {
-  check_densities(test::few(20000), 12);
+  check_densities(test::scaled_cases(20000), 12);
 }
 
 TEST_CASE("bsdf: every material passes a chi-square test of two hundred thousand samples", "[runtime][heavy]") {

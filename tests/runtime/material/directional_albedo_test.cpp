@@ -10,7 +10,7 @@
 #include "runtime/material/fresnel.h"
 #include "runtime/material/microfacet.h"
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::energy_test {
 namespace {
@@ -41,7 +41,7 @@ TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[
 }
 
 TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the mean", "[runtime]") {
-  const int n = test::few(100);
+  const int n = test::scaled_cases(100);
   std::array<double, 4> worst{}, squares{};
   Sampler sampler(5, 0, 0, 0);
   for (int i = 0; i < n; ++i) {

@@ -17,7 +17,7 @@ using glm::vec3;
 using Type = MaterialType;
 
 CompiledScene scene_of(const std::string& material, const std::string& translate = "[0, 0, 0]") {
-  return tests::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +
+  return test::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +
                          R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m", "translate": )" +
                          translate + "}]}");
 }
@@ -150,7 +150,7 @@ TEST_CASE("material: noise is evaluated at the scene's own coordinates, whatever
 }
 
 TEST_CASE("material: light and priority are known without a place", "[material]") {
-  const CompiledScene scene = tests::compiled(R"~({"version": 1, "materials": {
+  const CompiledScene scene = test::compiled(R"~({"version": 1, "materials": {
       "lamp": {"type": "emissive"}, "glow": {"type": "principled", "emission_luminance": "max(y, 0)"},
       "glass": {"type": "transparent", "priority": 4}},
     "objects": [{"type": "sphere", "radius": 1, "material": "lamp"},

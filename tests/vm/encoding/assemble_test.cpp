@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
 #include "vm/encoding/disassemble.h"
@@ -36,7 +36,7 @@ void refused(const std::string& text, const std::string& at, const std::string& 
 }  // namespace
 
 TEST_CASE("random programs read back from their listings", "[assemble]") {
-  const int count = few(10000);
+  const int count = scaled_cases(10000);
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 60);

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "vm/interpret/evaluate.h"
@@ -18,7 +18,7 @@ namespace fathom::test::trace_test {
 
 TEST_CASE("a trace's last value is the program's, and its stacks are as high as the verifier says", "[trace]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 40);
     const glm::dvec3 point = random.in_box(2);

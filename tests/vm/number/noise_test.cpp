@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge_noise.h"
 #include "tests/vm/range/boxes.h"
 #include "vm/number/noise_bounds.h"
@@ -175,7 +175,7 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
   const vm::VerifiedProgram program = noise_program();
   double worst = 0;
   for (const double reach : {2.0, 40.0, 1000.0, 4e6}) {
-    const Cloud cloud = noise_points(random, reach, static_cast<std::size_t>(few(40000)));
+    const Cloud cloud = noise_points(random, reach, static_cast<std::size_t>(scaled_cases(40000)));
     const std::vector<float> values = distances(program, cloud, workspace);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const dvec3 p(cloud.x[i], cloud.y[i], cloud.z[i]);
@@ -215,7 +215,7 @@ TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[
   vm::Workspace workspace;
   Random random(2);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(2000); ++n) {
+  for (int n = 0; n < scaled_cases(2000); ++n) {
     dvec3 p = random.in_box(20), step(0);
     const int axis = random.below(3);
     p[axis] = std::round(p[axis]);
@@ -237,7 +237,7 @@ TEST_CASE("the gradient of noise is the slope of its values", "[noise]") {
   vm::Workspace workspace;
   Random random(3);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(2000); ++n) {
+  for (int n = 0; n < scaled_cases(2000); ++n) {
     const dvec3 p = random.in_box(50);
     const dvec3 gradient = vm::evaluate_surface(program, p, workspace).gradient;
     for (int axis = 0; axis < 3; ++axis) {
@@ -316,7 +316,7 @@ TEST_CASE("what is said of noise over boxes holds, and of small ones it is close
   Random random(5);
   const vm::VerifiedProgram program = noise_program();
   double width = 0, spread = 0, said = 0, met = 0;
-  for (int n = 0; n < few(6000); ++n) {
+  for (int n = 0; n < scaled_cases(6000); ++n) {
     static const double kSides[] = {0, 1e-3, 0.03, 0.03, 0.5, 1.5};
     dvec3 lo = random.in_box(30), hi;
     const double side = kSides[n % 6];
@@ -358,7 +358,7 @@ TEST_CASE("enclosures of noise hold every float, and of small boxes they are sma
   vm::Workspace workspace;
   Random random(6);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(400); ++n) {
+  for (int n = 0; n < scaled_cases(400); ++n) {
     BoxSet boxes = random_boxes(random);
     for (std::size_t i = 0; i < kEnclosedBoxes; i += 4) {
       for (int axis = 0; axis < 3; ++axis) {

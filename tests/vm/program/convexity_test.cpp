@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compiler/shapes/bounds.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"
@@ -67,7 +67,7 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
 TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
   vm::Workspace workspace;
   int far_reaching = 0, tried = 0;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     GraphOptions options;
     options.depth = 3;
@@ -97,8 +97,8 @@ TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
       CHECK(f[1] <= chord + 1e-8);
     }
   }
-  CHECK(tried > few(4000));
-  CHECK(far_reaching > few(2000));
+  CHECK(tried > scaled_cases(4000));
+  CHECK(far_reaching > scaled_cases(2000));
 }
 
 TEST_CASE("convexity: distances beside it have the same bits, and it has them on every instruction set",

@@ -1,7 +1,7 @@
 // Checks the opcodes without Fact::Expansive: their result never changes faster than their point moves.
 #include <set>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/range/boxes.h"
 #include "vm/program/opcode_rows.h"
 
@@ -72,7 +72,7 @@ TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosu
       for (const Row& row : rows_of(sampled.program, form)) {
         seen.insert(static_cast<Opcode>(row.code.words[0] & 0xff));
         const auto parts = parts_of(row, form);
-        for (int i = 0; i < few(40); ++i) {
+        for (int i = 0; i < scaled_cases(40); ++i) {
           const double far = random.chance(0.2) ? random.length(1, 1e3) : 1;
           const glm::dvec3 p = random.in_box(3) * far, q = p + random.direction() * random.length(1e-5, 10) * far;
           const glm::dvec3 from = image_of(parts, p, workspace), to = image_of(parts, q, workspace);

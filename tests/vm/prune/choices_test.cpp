@@ -83,7 +83,7 @@ TEST_CASE("enclosures of fused programs are those of plain ones, choice for choi
     {"type": "subtraction", "of": [{"type": "torus", "major_radius": 2, "minor_radius": 0.3}, {"type": "sphere", "radius": 2}]})";
   compiler::CompileOptions plain;
   plain.stop_after = std::string(compiler::pass_names()[compiler::pass_names().size() - 2]);
-  const auto a = tests::compiled_objects(objects).distance, b = tests::compiled_objects(objects, plain).distance;
+  const auto a = test::compiled_objects(objects).distance, b = test::compiled_objects(objects, plain).distance;
   REQUIRE(a.instructions() < b.instructions());
   REQUIRE(a.choices() == b.choices());
   for (int i = 0; i < 20; ++i) {

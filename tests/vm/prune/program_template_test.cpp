@@ -127,7 +127,7 @@ TEST_CASE("skeletons: small shapes are one, whichever they are and whatever surf
                  std::to_string(at) + ", " + std::to_string(at * at - 1) + ", " + std::to_string(1 - at) + "]}";
     }
   }
-  const compiler::CompiledScene scene = tests::compiled("{\"version\": 1, \"objects\": [" + objects + "]}");
+  const compiler::CompiledScene scene = test::compiled("{\"version\": 1, \"objects\": [" + objects + "]}");
   Random random(1);
   const std::vector<vm::PrunedProgram> parts = parts_of(scene.surface, random);
   const Packed packed(scene.surface, parts);

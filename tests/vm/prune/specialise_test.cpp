@@ -12,7 +12,7 @@
 
 #include "compiler/lower/fuse.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/random/random_scene.h"
@@ -190,7 +190,7 @@ void random_range(Random& random, float& lo, float& hi) {
 
 TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
   Tally tally;
-  for (int seed = 0; seed < few(200); ++seed) {
+  for (int seed = 0; seed < scaled_cases(200); ++seed) {
     Random random(seed);
     const vm::VerifiedProgram plain = plain_lowering(random_scene(random));
     auto fused = vm::verify(compiler::fuse(plain.program()));
@@ -201,8 +201,8 @@ TEST_CASE("specialise: parts of random scenes give the whole programs' bits in t
     cut(std::get<vm::VerifiedProgram>(fused), random, tally);
     CHECK(tally.wrong == before);
   }
-  CHECK(tally.compared > static_cast<std::size_t>(few(250'000)));
-  CHECK(tally.cut > static_cast<std::size_t>(few(5'000)));
+  CHECK(tally.compared > static_cast<std::size_t>(scaled_cases(250'000)));
+  CHECK(tally.cut > static_cast<std::size_t>(scaled_cases(5'000)));
 }
 
 TEST_CASE("specialise: parts by bounds of the exact function equal it, in double and in float",
@@ -347,7 +347,7 @@ TEST_CASE("a program that drops a point at which nothing was computed is no expr
 TEST_CASE("any sound program can be read as an expression or is refused", "[specialise]") {
   vm::DefUseGraph expression;
   int expressions = 0;
-  for (int seed = 0; seed < few(4000); ++seed) {
+  for (int seed = 0; seed < scaled_cases(4000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 30);
     if (!expression.read(program)) continue;

@@ -14,7 +14,7 @@
 #include "compiler/frontend/records/records.h"
 #include "compiler/frontend/syntax/json.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::elaborate_test {
 
@@ -306,7 +306,7 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
   CHECK(of_objects(nested(4000, R"({"type": "onion", "thickness": 1, "of": )", "}")).scene.graph.size() == 4002);
 
   std::string chain = R"("a0": {"type": "sphere", "radius": 1, "material": "red"})";
-  const int length = few(100000);
+  const int length = scaled_cases(100000);
   for (int i = 1; i <= length; ++i) chain += fmt::format(R"(, "a{}": {{"use": "a{}"}})", i, i - 1);
   const ElaboratedScene e =
       of_objects(fmt::format(R"({{"use": "a{}"}})", length), kRedBlue + R"(, "nodes": {)" + chain + "}");
@@ -315,7 +315,7 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
 
 TEST_CASE("a long cycle is found without deep recursion", "[elaborate]") {
   std::string text = R"({"version": 1, "objects": [{"use": "a0"}], "nodes": {)";
-  const int length = few(100000);
+  const int length = scaled_cases(100000);
   for (int i = 0; i < length; ++i)
     text += fmt::format(R"({}"a{}": {{"use": "a{}"}})", i ? "," : "", i, (i + 1) % length);
   const Source source("scene.json", text + "}}");

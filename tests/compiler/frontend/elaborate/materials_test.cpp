@@ -74,7 +74,7 @@ struct DocumentedProperty {
 
 // Returns the rows of the table of principled materials in docs/reference/materials.md.
 std::map<std::string, DocumentedProperty> documented_properties() {
-  std::istringstream page(tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/materials.md"));
+  std::istringstream page(test::read_file(FATHOM_SOURCE_DIR "/docs/reference/materials.md"));
   std::string line;
   while (std::getline(page, line) && line != "| property | short | default | meaning |") continue;
   std::getline(page, line);

@@ -3,13 +3,13 @@
 #include <string>
 
 #include "runtime/film/film_file.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_frames_test {
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 // A ball that moves to the right, under a static camera.
@@ -296,7 +296,7 @@ TEST_CASE("cli frames: runs of other frames may share a journal") {
 // A render whose frames take long enough to be interrupted by a signal.
 std::string slow(int samples = 2000) {
   std::string text = kHop;
-  const std::string spp = std::to_string(fathom::test::few(samples));
+  const std::string spp = std::to_string(fathom::test::scaled_cases(samples));
   text.replace(text.find("spp = 2"), 7, "spp = " + spp);
   return text;
 }

@@ -12,9 +12,9 @@ namespace {
 
 using Catch::Contains;
 using fathom::runtime::FloatImage;
-using fathom::tests::Folder;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 FloatImage read(const Folder& folder, const std::string& name) {
   const auto image = fathom::runtime::read_image(folder.path() / name);

@@ -11,7 +11,7 @@ namespace fathom::test {
 
 // Returns `n`, or n / 8 under the sanitizers and on emulated processors (FATHOM_FEW_CASES), where every case takes
 // ten times as long. The errors that those runs look for show in few cases as well as in many.
-inline int few(int n) {
+inline int scaled_cases(int n) {
   static const bool all = __asan_init == nullptr && std::getenv("FATHOM_FEW_CASES") == nullptr;
   return all ? n : (n + 7) / 8;
 }
