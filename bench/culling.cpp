@@ -71,7 +71,7 @@ class Scene {
     }
   }
 
-  void compare(const std::string& name, double least_gain, int rounds) const {
+  void compare(const std::string& name, double min_gain, int rounds) const {
     for (std::size_t i = 0; i < sets_.size(); ++i) {
       const runtime::RaySet& set = sets_[i];
       if (set.ray_class == "grazing") continue;
@@ -79,7 +79,7 @@ class Scene {
       add({.name = name + ", " + set.ray_class,
            .unit = "ns a ray",
            .per_unit = 1e9 / rays,
-           .most = 1 / least_gain,
+           .most = 1 / min_gain,
            .rounds = rounds,
            .ours = [&] { march_each(cut_, set.rays); },
            .theirs = [this, i] { march_each(whole_, shares_[i]); },

@@ -14,7 +14,7 @@ std::vector<SampleRange> split_into_rounds(SampleRange samples, std::uint32_t fi
     const std::uint32_t end = begin + std::min(size, samples.last - begin);
     rounds.push_back({begin, end});
     begin = end;
-    size = std::min(begin - samples.first, kMostInRound);
+    size = std::min(begin - samples.first, kMaxInRound);
   }
   return rounds;
 }

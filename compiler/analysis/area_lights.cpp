@@ -107,8 +107,8 @@ class Finder {
     count_uses(scene);
     const Affine identity{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
     tasks_.push_back({scene.root, identity, std::nullopt});
-    const std::size_t most_visits = graph_.size() + kMaxVisits;
-    for (std::size_t i = 0; i < most_visits && !tasks_.empty() && area_lights_.size() < kMaxAreaLights; ++i) {
+    const std::size_t max_visits = graph_.size() + kMaxVisits;
+    for (std::size_t i = 0; i < max_visits && !tasks_.empty() && area_lights_.size() < kMaxAreaLights; ++i) {
       const Task task = tasks_.back();
       tasks_.pop_back();
       visit(task);

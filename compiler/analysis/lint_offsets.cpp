@@ -71,7 +71,7 @@ class OffsetLinter {
 
   bool measures(NodeId id) const {
     return (kind(id) == Kind::Round || kind(id) == Kind::Onion || is_blend(kind(id))) &&
-           field_.graph().params(id)[0] > kLeastBlend;
+           field_.graph().params(id)[0] > kMinBlend;
   }
 
   // True if the transform keeps the axes at right angles, as a scale does and a shear does not.

@@ -41,7 +41,7 @@ bool rearranges(Kind kind) {
 }
 
 // Returns the box's smallest side greater than 0. An outline has no extent along z.
-double least_extent(const Box& box) {
+double min_extent(const Box& box) {
   double least = kInfinity;
   for (int i = 0; i < 3; ++i) {
     const double extent = box.hi[i] - box.lo[i];
@@ -241,7 +241,7 @@ class Linter {
     const double moved = kind(id) <= Kind::SmoothSubtraction ? width / 4 : width / 2;
     const bool adds = hard(kind(id)) == Kind::Union;
     for (const NodeId operand : graph_.children(id)) {
-      const double extent = adds ? greatest_extent(box(operand)) : least_extent(box(operand));
+      const double extent = adds ? greatest_extent(box(operand)) : min_extent(box(operand));
       if (moved <= extent / 2) continue;
       const std::string_view name = spec(kind(id)).params[0].name;
       warn("W0505", id, fmt::format("the blend is too wide for the {}", word(operand)),
@@ -355,7 +355,7 @@ void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgr
 
 double thickness(const Graph& graph, NodeId id, const Box& box) {
   const Kind kind = graph.kind(id);
-  double least = spec(kind).category == Category::Primitive ? least_extent(box) : kInfinity;
+  double least = spec(kind).category == Category::Primitive ? min_extent(box) : kInfinity;
   for (const NamedParam& param : named_params(kind, graph.params(id))) {
     if (param.name == "thickness" || param.name == "half_depth") least = std::min(least, 2 * param.values[0]);
   }

@@ -142,7 +142,7 @@ class Probing {
     const std::uint64_t most = first ? allowed : std::min(allowed, left_ / (points + kLowering));
     const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), most);
     const std::uint64_t length = program ? program->debug.size() : 0;
-    if (first) left_ = std::max(options_.least_work, points * length);
+    if (first) left_ = std::max(options_.min_work, points * length);
     // Lowering visits all nodes up to this one.
     if (!first) take(id + (program ? (points + kLowering) * length : kLowering * most));
     if (!program) return;

@@ -131,7 +131,7 @@ Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
   for (NodeId id = 0; id <= field.root(); ++id) {
     if (!field.reached(id) || !field.estimates(id)) continue;
     Estimate& estimate = report.estimates.emplace_back(Estimate{field.place(id), std::nullopt});
-    if (report.estimates.size() <= Report::kMostSearched) estimate.operation = field.unbounded_operation(id);
+    if (report.estimates.size() <= Report::kMaxSearched) estimate.operation = field.unbounded_operation(id);
   }
   return report;
 }

@@ -40,12 +40,12 @@ struct ObjectReport {
 
 // A node whose constant is not proved, although the constants of its children are.
 struct Estimate : Place {
-  // For a formula, the operation whose slope has no bound. Only the first kMostSearched estimates have one.
+  // For a formula, the operation whose slope has no bound. Only the first kMaxSearched estimates have one.
   std::optional<Span> operation;
 };
 
 struct Report {
-  static constexpr std::size_t kMostSearched = 20;
+  static constexpr std::size_t kMaxSearched = 20;
 
   std::vector<ObjectReport> objects;
   bool certified = true;  // true if every constant is proved

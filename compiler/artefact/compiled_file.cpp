@@ -18,7 +18,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint64_t kMostText = 1 << 30;  // bytes of a scene and its imports, whose places have 32 bits
+constexpr std::uint64_t kMaxText = 1 << 30;  // bytes of a scene and its imports, whose places have 32 bits
 
 // Sections, in the order of the file.
 enum Section { kCode, kTables, kDebug, kText, kSections };
@@ -245,7 +245,7 @@ bool add_import(Source& source, const std::string& path, std::string text) {
   const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
   const bool known = std::ranges::find(source.imports(), path, &Import::path) != source.imports().end();
   if (path.empty() || normal.is_absolute() || normal.generic_string() != path || known) return false;
-  if (source.size() + text.size() > kMostText) return false;
+  if (source.size() + text.size() > kMaxText) return false;
   source.import(path, path, std::move(text));
   return true;
 }

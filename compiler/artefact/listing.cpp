@@ -166,13 +166,13 @@ class ListingReader {
 
   // Names as many surfaces as the tags of a program alone need.
   bool name_surfaces(CompiledScene& scene) {
-    constexpr std::size_t kMostSurfaces = 65536;
-    const std::size_t named = std::min(surfaces_named(scene.distance), kMostSurfaces);
+    constexpr std::size_t kMaxSurfaces = 65536;
+    const std::size_t named = std::min(surfaces_named(scene.distance), kMaxSurfaces);
     for (std::size_t i = 0; i < named; ++i) scene.surfaces.push_back({fmt::format("surface {}", i), 0, false});
     const auto fault = check_tags(scene);
     if (!fault) return true;
     return report(line_of_word(0, text_.size(), fault->word),
-                  fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
+                  fmt::format("a program alone has {} surfaces at most", kMaxSurfaces));
   }
 
   // Reads all "program NAME {" ... "}" and the text, which begin at the start of a line.

@@ -144,7 +144,7 @@ enum class Kind : std::uint8_t {
 inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;
 
 // A blend narrower than this changes no float, so the compiler treats it as no blend.
-inline constexpr double kLeastBlend = 1e-30;
+inline constexpr double kMinBlend = 1e-30;
 
 using NodeId = std::uint32_t;
 

@@ -34,7 +34,7 @@ Scene fold(const Scene& scene) {
     const Kind kind = scene.graph.kind(id);
     if (is_blend(kind)) {
       if (children.size() == 1) return children[0];
-      if (params[0] <= kLeastBlend) return out.add(hard(kind), {}, children, scene.graph.origin(id));
+      if (params[0] <= kMinBlend) return out.add(hard(kind), {}, children, scene.graph.origin(id));
       return keep(scene, out, id, children);
     }
     switch (kind) {

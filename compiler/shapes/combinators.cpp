@@ -70,13 +70,13 @@ NodeFacts steeper(NodeFacts k, std::size_t operands) {
   return k;
 }
 NodeFacts know_round_union(Params params, std::span<const NodeFacts> children) {
-  return steeper(know_edge_union(params, children), params[0] > kLeastBlend ? children.size() : 1);
+  return steeper(know_edge_union(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
 NodeFacts know_round_intersection(Params params, std::span<const NodeFacts> children) {
-  return steeper(know_smooth_intersection(params, children), params[0] > kLeastBlend ? children.size() : 1);
+  return steeper(know_smooth_intersection(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
 NodeFacts know_round_subtraction(Params params, std::span<const NodeFacts> children) {
-  return steeper(know_smooth_subtraction(params, children), params[0] > kLeastBlend ? children.size() : 1);
+  return steeper(know_smooth_subtraction(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
 
 // Outside the operands, xor is the union of the points in one operand alone, which is exact because its boundaries
@@ -116,7 +116,7 @@ Code subtraction_code(Params) {
 // A width of 0 blends nothing. The optimiser replaces the node by the hard operator, but unoptimised code must not
 // divide by the width.
 std::vector<double> blend_immediates(Params params) {
-  return {params[0], params[0] > kLeastBlend ? 0.25 / params[0] : 0};
+  return {params[0], params[0] > kMinBlend ? 0.25 / params[0] : 0};
 }
 Code smooth_subtraction_code(Params params) {
   Code code = code_of<Opcode::SmoothSubtract, blend_immediates>(params);
@@ -128,7 +128,7 @@ Code smooth_subtraction_code(Params params) {
 // Returns the instructions of an edge, which is the hard operator if the width is 0.
 template <Opcode Join, Opcode Hard, std::vector<double> (*Immediates)(Params)>
 std::vector<Instruction> edge(Params params) {
-  if (!(params[0] > kLeastBlend)) return {{Hard}};
+  if (!(params[0] > kMinBlend)) return {{Hard}};
   return {{Join, Immediates(params)}};
 }
 std::vector<double> same(Params params) { return {params.begin(), params.end()}; }

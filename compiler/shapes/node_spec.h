@@ -65,7 +65,7 @@ struct Code {
 };
 
 // Most corners of a polygon.
-inline constexpr std::size_t kMostCorners = 4096;
+inline constexpr std::size_t kMaxCorners = 4096;
 
 // Facts about a primitive in addition to its box.
 struct PrimitiveFacts {

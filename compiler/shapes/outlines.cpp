@@ -150,7 +150,7 @@ Corners polygon_corners(Params p) {
 ErrorText check_polygon(Params p) {
   const std::size_t n = p.size() / 2;
   if (n < 3) return fmt::format("`points` has {}; an outline needs at least 3", n);
-  if (n > kMostCorners) return fmt::format("`points` has {}; at most {} are possible", n, kMostCorners);
+  if (n > kMaxCorners) return fmt::format("`points` has {}; at most {} are possible", n, kMaxCorners);
   const auto at = [&](std::size_t i) { return vec2_at(p, 2 * (i % n)); };
   double area = 0, size = 0;
   for (std::size_t i = 0; i < n; ++i) {

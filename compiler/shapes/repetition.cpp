@@ -22,8 +22,8 @@ using vm::Opcode;
 // plane through the middle of the nearest copy. Derived after them: the child's reach and box.
 
 constexpr double kAll = -1;
-constexpr double kMostCells = 8388608;  // 2^23: a float can still count the cells
-constexpr int kMostCopies = 512;
+constexpr double kMaxCells = 8388608;  // 2^23: a float can still count the cells
+constexpr int kMaxCopies = 512;
 
 struct RepeatedAxis {
   double period, count, jitter;
@@ -33,8 +33,8 @@ struct RepeatedAxis {
   bool repeated() const { return period > 0; }
   bool endless() const { return count == 0; }
   double half() const { return !endless() && std::fmod(count, 2) == 0 ? 0.5 : 0; }
-  double first() const { return endless() ? -kMostCells : -std::floor(count / 2); }
-  double last() const { return endless() ? kMostCells - 1 : first() + count - 1; }
+  double first() const { return endless() ? -kMaxCells : -std::floor(count / 2); }
+  double last() const { return endless() ? kMaxCells - 1 : first() + count - 1; }
   double position(double number) const { return (number + half()) * period; }
   // Number of copies evaluated at each point: a whole number, which exceeds any `int` if the period is next to
   // nothing.
@@ -112,11 +112,11 @@ ErrorText check_repetition_child(Params p, std::span<const NodeFacts> children) 
   }
   const Repeated r = repeated(spec(Kind::Repetition).with_derived(p, children));
   const double copies = r.axes[0].copies() * r.axes[1].copies() * r.axes[2].copies();
-  if (copies <= kMostCopies) return std::nullopt;
+  if (copies <= kMaxCopies) return std::nullopt;
   return fmt::format(
       "the node reaches across so many cells that {} copies count at every point; at most {} are "
       "evaluated: make `period` larger or the node smaller",
-      copies, kMostCopies);
+      copies, kMaxCopies);
 }
 
 NodeFacts know_repetition(Params p, std::span<const NodeFacts> children) {
@@ -265,11 +265,11 @@ ErrorText check_polar(Params p) {
 ErrorText check_polar_child(Params p, std::span<const NodeFacts> children) {
   if (ErrorText complaint = check_bounded_about_y(children, "a polar repetition")) return complaint;
   const double sides = derive_polar(p, children)[0], copies = sides == kAll ? p[0] : 2 * sides;
-  if (copies <= kMostCopies) return std::nullopt;
+  if (copies <= kMaxCopies) return std::nullopt;
   return fmt::format(
       "{} copies count at every point, for the node reaches across them; at most {} are evaluated: use "
       "fewer or move the node further from the axis",
-      copies, kMostCopies);
+      copies, kMaxCopies);
 }
 
 NodeFacts know_polar(Params p, std::span<const NodeFacts> children) {

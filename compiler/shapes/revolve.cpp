@@ -24,7 +24,7 @@ using glm::dvec3;
 
 constexpr double kRounding = 1e-12;  // of places after transforms, as a share of the largest coordinate
 // maximum nodes of an outline that are rebuilt; a shared node counts once per use
-constexpr int kMostNodes = 256;
+constexpr int kMaxNodes = 256;
 
 // Removes the edges of a polygon on the axis and beyond. At least one corner is at x > rounding.
 class PolygonTrimmer {
@@ -101,7 +101,7 @@ class OutlineTrimmer {
   // `place` maps the node's plane to the plane of the revolve, whose y axis is the axis of revolution.
   Trimmed trim(NodeId id, const Affine& place) {
     if (is_clear(id, place)) return {id, true};
-    if (++visited_ > kMostNodes) return {id, false};
+    if (++visited_ > kMaxNodes) return {id, false};
     switch (maker_.graph().kind(id)) {
       case Kind::Transform: {
         const Affine up = inverse(Affine::from_params(maker_.graph().params(id)));
@@ -151,15 +151,15 @@ class OutlineTrimmer {
     const auto corners_of = spec(maker_.graph().kind(id)).corners;
     if (corners_of == nullptr) return {id, false};
     std::vector<dvec2> corners = corners_of(maker_.graph().params(id));
-    double largest = std::abs(place.translation.x), least_x = largest, most_x = -largest;
+    double largest = std::abs(place.translation.x), min_x = largest, max_x = -largest;
     for (dvec2& q : corners) {
       q = dvec2(place(dvec3(q, 0)));
       largest = std::max({largest, std::abs(q.x), std::abs(q.y)});
-      least_x = std::min(least_x, q.x), most_x = std::max(most_x, q.x);
+      min_x = std::min(min_x, q.x), max_x = std::max(max_x, q.x);
     }
     const double rounding = kRounding * largest;
-    if (most_x <= rounding) return {id, false};
-    if (least_x > rounding) return {id, true};
+    if (max_x <= rounding) return {id, false};
+    if (min_x > rounding) return {id, true};
     if (maker_.graph().kind(id) == Kind::Rectangle && (place.rows[0].x == 0 || place.rows[0].y == 0)) {
       return {mirrored_rectangle(id, place), true};
     }
@@ -167,7 +167,7 @@ class OutlineTrimmer {
   }
 
   Trimmed polygon(NodeId id, const Affine& place, const std::vector<dvec2>& corners) {
-    if (corners.size() < 3 || corners.size() > kMostCorners) return {id, false};
+    if (corners.size() < 3 || corners.size() > kMaxCorners) return {id, false};
     const Affine back = inverse(place);
     std::vector<double> points;
     for (const dvec2 q : corners) {

@@ -33,7 +33,7 @@ constexpr const char* kCheckExamples =
     "fathom check --frames 0:192 hop.fathom         # each frame of an animation\n"
     "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
 
-constexpr int kMostProbes = 100'000'000;
+constexpr int kMaxProbes = 100'000'000;
 
 struct CheckRequest {
   SceneArguments scene;
@@ -51,7 +51,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   add_scene_arguments(arguments, request.scene, request.paths);
   arguments.option("--probe", "N",
                    "Compare gradients and differences at N points with the constants that the compiler proved",
-                   whole(request.probes, 1, kMostProbes));
+                   whole(request.probes, 1, kMaxProbes));
   arguments.option("--threads", "N", "Number of threads of --probe (one per processor)",
                    whole(request.threads, 1, 1024));
   add_frame_options(arguments, request.frames);

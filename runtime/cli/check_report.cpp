@@ -116,12 +116,12 @@ std::string certificate(const compiler::Report& report, const compiler::Source& 
   std::string nodes, operations;
   std::size_t listed = 0;
   for (const compiler::Estimate& estimate : report.estimates) {
-    if (++listed > compiler::Report::kMostSearched) continue;
+    if (++listed > compiler::Report::kMaxSearched) continue;
     nodes += fmt::format("{}the {}", listed > 1 ? ", " : "", text(estimate, source));
     if (estimate.operation) operations += describe_operation(*estimate.operation, source);
   }
-  if (listed > compiler::Report::kMostSearched) {
-    nodes += fmt::format(", and {} more", listed - compiler::Report::kMostSearched);
+  if (listed > compiler::Report::kMaxSearched) {
+    nodes += fmt::format(", and {} more", listed - compiler::Report::kMaxSearched);
   }
   return fmt::format("not certified: nothing is proved of {}\n{}", nodes, operations);
 }

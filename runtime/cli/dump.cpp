@@ -174,7 +174,7 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
 
 std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const DumpRequest& request,
                                      const Streams& streams) {
-  if (!request.run || trace_work(program_of(scene, request)) <= kMostTraceWork) return std::nullopt;
+  if (!request.run || trace_work(program_of(scene, request)) <= kMaxTraceWork) return std::nullopt;
   return fail(streams, kUsage, "the program is too long to be run once for each of its instructions",
               {"--region lists the few of them that matter in the region at a point"});
 }

@@ -149,7 +149,7 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
                             grid.width, grid.height));
   }
   if (!too_many_units(grid)) return std::nullopt;
-  return fail(streams, kUsage, fmt::format("a plan has {:.0f} units at most", kMostUnits),
+  return fail(streams, kUsage, fmt::format("a plan has {:.0f} units at most", kMaxUnits),
               {"cut fewer tiles or larger blocks of samples, or let --unit-time say how many"});
 }
 

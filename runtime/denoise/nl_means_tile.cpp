@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, kMostLanes>;
+using Lanes = hn::CappedTag<float, kMaxLanes>;
 using V = hn::Vec<Lanes>;
 
 HWY_INLINE V k(float value) { return hn::Set(Lanes(), value); }

@@ -17,7 +17,7 @@ namespace fathom::runtime {
 inline constexpr int kWindow = 8;  // averaged pixels to each side
 inline constexpr int kPatch = 2;   // compared pixels to each side
 
-inline constexpr int kMostLanes = 16;  // maximum number of floats in a register
+inline constexpr int kMaxLanes = 16;  // maximum number of floats in a register
 
 // A plane with a margin of zeros, so that the inner loops need not test for the image's border. A register may be
 // loaded from any place in the plane.
@@ -25,7 +25,7 @@ class PaddedPlane {
  public:
   PaddedPlane() = default;
   PaddedPlane(const Plane& plane, int width, int height) : stride_(width + 2 * kMargin) {
-    values_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * kMargin) + kMostLanes);
+    values_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * kMargin) + kMaxLanes);
     for (int y = 0; y < height; ++y) {
       std::copy_n(plane.begin() + static_cast<std::ptrdiff_t>(y) * width, width, values_.data() + at(y));
     }
@@ -58,12 +58,12 @@ struct NlMeansFiltered {
   std::array<Plane, kCandidates> errors;
 };
 
-inline constexpr int kTile = 32;  // a multiple of kMostLanes
+inline constexpr int kTile = 32;  // a multiple of kMaxLanes
 
 // Buffers of one thread, kept from tile to tile.
 struct TileBuffers {
   using Row = std::array<float, kTile>;
-  using PaddedTile = std::array<std::array<float, kTile + kMostLanes>, kTile + 2 * kPatch>;
+  using PaddedTile = std::array<std::array<float, kTile + kMaxLanes>, kTile + 2 * kPatch>;
   using Sums = std::array<std::array<Row, 4>, kTile>;  // [y][red, green, blue, weight][x]
 
   std::array<PaddedTile, 2> distances;  // by the colours of each copy

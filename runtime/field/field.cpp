@@ -65,12 +65,12 @@ const compiler::Box& contents_of(const Field& field, const compiler::CompiledFie
 // Returns RegionOptions::room. A ray may go far from the bounded parts of an unbounded scene, and should find cells
 // there. Cells finer than a float resolves would be of no use (kCellMargin in region_splitter.h).
 int room_of(const Field& field, const compiler::CompiledField& compiled) {
-  constexpr int kLeastRoom = 3, kMostRoom = 6;
+  constexpr int kMinRoom = 3, kMaxRoom = 6;
   if (field.bound.finite() || compiled.contents.empty()) return 0;
   const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
   const double edge = std::max({extents.x, extents.y, extents.z});
-  int room = kLeastRoom;
-  while (room < kMostRoom && edge * (1 << room) < 2 * field.far) ++room;
+  int room = kMinRoom;
+  while (room < kMaxRoom && edge * (1 << room) < 2 * field.far) ++room;
   return room;
 }
 

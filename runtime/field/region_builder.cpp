@@ -15,16 +15,16 @@ using Kind = Regions::Kind;
 
 // A grid replaces at most this many of the top levels. The grid takes at most a kGridShare-th of the memory, and no
 // more bytes than everything else together.
-constexpr int kMostGridLevel = 6;
+constexpr int kMaxGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
 // Bytes per word of the whole program, as a part and as rows of constants.
 constexpr std::size_t kBytesPerWord = 24;
 // Bytes needed for cutting a program (vm/prune/specialise.h), per choice and per instruction of the program,
 // measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
-// kMostWork: maximum number of instructions evaluated by intervals, half a minute's.
+// kMaxWork: maximum number of instructions evaluated by intervals, half a minute's.
 // kEvaluationsPerEnclosure: cost of evaluating an instruction by intervals, in evaluations of the instruction.
-constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
+constexpr double kMaxWork = 3e7, kEvaluationsPerEnclosure = 4096;
 // Leaves may be n times longer than normal if the whole program has at least n times this many choices.
 constexpr std::uint32_t kWorthShorter = 64;
 // Distance outside the root up to which rays are followed, in edges of the root.
@@ -35,9 +35,9 @@ std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::si
   return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
 }
 
-std::size_t most_work(const RegionPlan& plan, const RegionOptions& options) {
+std::size_t max_work(const RegionPlan& plan, const RegionOptions& options) {
   return static_cast<std::size_t>(
-      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
+      std::min(kMaxWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, co
     : options_(options),
       plan_(plan),
       program_(program),
-      budget_{options.memory, most_work(plan, options)},
+      budget_{options.memory, max_work(plan, options)},
       regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
   regions_->far_ = plan.far;
@@ -75,8 +75,8 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 // much as many instructions of the whole program.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
-  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.most_work /= 2) {
-    if (plan_.instructions > budget_.most_work) return false;  // needed for the root alone
+  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.max_work /= 2) {
+    if (plan_.instructions > budget_.max_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->templates_ = {};
     regions_->summary_ = {};
@@ -179,7 +179,7 @@ void RegionBuilder::choose_grid() {
   const std::size_t rest = budget_.bytes,
                     most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
   const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
-  int level = std::min(kMostGridLevel, regions_->tree_.levels);
+  int level = std::min(kMaxGridLevel, regions_->tree_.levels);
   while (level > 0 && bytes(level) > most) --level;
   regions_->tree_.grid_level = level;
 }

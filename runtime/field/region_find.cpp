@@ -110,7 +110,7 @@ class TreeDescent {
   }
 
   template <class T>
-  using PerPoint = std::array<T, kMostPoints>;
+  using PerPoint = std::array<T, kMaxPoints>;
 
   const RegionTree& tree_;
   alignas(64) PerPoint<std::uint32_t> cell_[3];  // in finest cells

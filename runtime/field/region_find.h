@@ -21,7 +21,7 @@ struct RegionTree {
 };
 
 // Maximum number of points per call, as many as a thread advances at once (lane_rows.h).
-inline constexpr std::size_t kMostPoints = 768;
+inline constexpr std::size_t kMaxPoints = 768;
 
 inline constexpr std::uint32_t kOutside = 0xffffffff;      // in place of a leaf's word, for points outside the root
 inline constexpr std::uint32_t kFirstNear = 0x80000000u;   // smaller words are those of inner cells and far leaves

@@ -9,10 +9,10 @@ namespace {
 
 // Maximum number of choices in the program of a leaf of normal length.
 constexpr std::uint32_t kLeafChoices = 4;
-// A cell becomes a leaf after more than kMostIdle levels in a row at which its part kept at least this share of its
+// A cell becomes a leaf after more than kMaxIdle levels in a row at which its part kept at least this share of its
 // length.
 constexpr double kShorterPart = 0.9;
-constexpr int kMostIdle = 2;
+constexpr int kMaxIdle = 2;
 // Cells down to this level are divided among the threads.
 constexpr int kShared = 2;
 
@@ -59,7 +59,7 @@ void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, i
 void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
                            std::uint32_t node) {
   const int unshortened = shorter < kShorterPart || level <= rules_.options.room ? 0 : unshortened_levels + 1;
-  if (unshortened > kMostIdle) return make_leaf(child, limit, node);
+  if (unshortened > kMaxIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {
     budget_.pending_bytes += child.bytes();
     piece_->pending.push_back({at, level, limit, unshortened, std::move(child), node});

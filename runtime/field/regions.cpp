@@ -34,7 +34,7 @@ Regions::RegionLookup Regions::find(float x, float y, float z) const {
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
   static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
-  CHECK(count <= kMostPoints, "a batch of points is too large");
+  CHECK(count <= kMaxPoints, "a batch of points is too large");
   LookupResult found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
   std::fill_n(s.instructions.data(), count, 0);
   s.counters.far += count - found.near;
@@ -145,8 +145,8 @@ Regions::Region Regions::region(glm::dvec3 p) const {
 
 void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out,
                                vm::Workspace& workspace) const {
-  CHECK(count <= kMostHits, "a batch of hits is too large");
-  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // {word of the leaf, point}
+  CHECK(count <= kMaxHits, "a batch of hits is too large");
+  std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxHits> leaves;  // {word of the leaf, point}
   for (std::uint32_t i = 0; i < count; ++i) {
     leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
@@ -163,8 +163,8 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
 // surface at all, is evaluated by the whole program.
 void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
-  alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz, convex;
-  alignas(64) std::array<std::uint32_t, kMostHits> surface;
+  alignas(64) std::array<float, kMaxHits> x, y, z, d, gx, gy, gz, convex;
+  alignas(64) std::array<std::uint32_t, kMaxHits> surface;
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];

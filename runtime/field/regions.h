@@ -58,7 +58,7 @@ struct RegionCounters {
 // Memory that a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
-  using PerPoint = std::array<T, kMostPoints + 16>;  // whole registers are read and written
+  using PerPoint = std::array<T, kMaxPoints + 16>;  // whole registers are read and written
   PerPoint<std::uint32_t> point, ref;                // of the points in no far leaf: index, word of the leaf
   PerPoint<float> limit;
   std::vector<std::vector<vm::TemplateJob>> jobs;  // [template]
@@ -105,9 +105,9 @@ class Regions {
   };
   Region region(glm::dvec3 point) const;
 
-  // Compute gradients and surfaces of points near the surface, equal to the whole program's. At most kMostHits points
+  // Compute gradients and surfaces of points near the surface, equal to the whole program's. At most kMaxHits points
   // per call.
-  static constexpr std::size_t kMostHits = 256;
+  static constexpr std::size_t kMaxHits = 256;
   void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
   vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
   vm::SurfaceShares evaluate_shares(glm::dvec3 point, RealScratch& scratch) const;

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kBadHeader = "its head makes no sense";
 // Max rows of an identity, about ten times the number that a render writes: comparing identities takes quadratic
 // time.
-constexpr std::size_t kMostRows = 256;
+constexpr std::size_t kMaxRows = 256;
 
 // Layers of a film, by bit from the lowest.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
@@ -140,7 +140,7 @@ bool makes_sense(const FilmFile& head) {
   const FilmHeader& header = head.header;
   const auto side = [](int length) { return length >= 1 && length <= compiler::kMaxSide; };
   return side(header.width) && side(header.height) && is_range(header.samples) &&
-         std::int64_t{header.width} * header.height <= kMostPixels &&
+         std::int64_t{header.width} * header.height <= kMaxPixels &&
          is_within(head.shape.area, {0, 0, header.width, header.height}) &&
          (head.shape.stages == 1 || head.shape.stages == 2);
 }
@@ -190,7 +190,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
 std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   FilmHeader& header = head.header;
   header.identity.resize(in.count(8));
-  if (header.identity.size() > kMostRows) return kBadHeader;
+  if (header.identity.size() > kMaxRows) return kBadHeader;
   for (auto& [name, value] : header.identity) {
     name = text_of(in);
     value = text_of(in);

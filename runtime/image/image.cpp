@@ -21,7 +21,7 @@ Word to_whole(double value) {
 class SrgbBytes {
  public:
   SrgbBytes() {
-    for (std::size_t i = 0; i < least_.size(); ++i) least_[i] = least_of(static_cast<int>(i) + 1);
+    for (std::size_t i = 0; i < least_.size(); ++i) least_[i] = min_of(static_cast<int>(i) + 1);
   }
   std::uint8_t operator()(double linear) const {
     if (!(linear > 0)) return 0;
@@ -29,7 +29,7 @@ class SrgbBytes {
   }
 
  private:
-  static double least_of(int byte) {
+  static double min_of(int byte) {
     double below = 0, enough = 1;
     while (true) {
       const double middle = (below + enough) / 2;

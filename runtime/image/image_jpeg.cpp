@@ -19,7 +19,7 @@ constexpr const char* kTooEarly = "it ends too early";
 constexpr double kSamplesInBlock = 64, kBitsOfBlock = 2, kBitsOfProgressiveBlock = 1;
 constexpr double kBytesOfCoefficients = kSamplesInBlock * sizeof(JCOEF);
 // Each scan visits all blocks, and may consist of only a few bytes. Encoders write about ten scans.
-constexpr int kMostScans = 100;
+constexpr int kMaxScans = 100;
 
 // True if libjpeg, after this warning, goes on without a part of the image.
 bool loses_samples(int warning) {
@@ -95,7 +95,7 @@ class JpegReader {
     image_.height = static_cast<int>(jpeg_.image_height);
     image_.components = grey ? 1 : 3;
     const double pixels = static_cast<double>(image_.width) * image_.height;
-    if (pixels > static_cast<double>(kMostPixels)) return fail("it is too large");
+    if (pixels > static_cast<double>(kMaxPixels)) return fail("it is too large");
     const double coefficients = jpeg_has_multiple_scans(&jpeg_) ? blocks() * kBytesOfCoefficients : 0;
     const double file_size = static_cast<double>(bytes_.size());
     const double needed = file_size + pixels * (image_.components + 3 * sizeof(float)) + coefficients;
@@ -134,7 +134,7 @@ class JpegReader {
     int scans = 0;
     for (int got = JPEG_REACHED_SOS; got != JPEG_REACHED_EOI; got = jpeg_consume_input(&jpeg_)) {
       if (got != JPEG_REACHED_SOS) continue;
-      if (++scans > kMostScans) return fail("it has more than 100 scans, as no program writes");
+      if (++scans > kMaxScans) return fail("it has more than 100 scans, as no program writes");
       for (int i = 0; i < jpeg_.comps_in_scan && jpeg_.Ss == 0; ++i) {
         has_mean[static_cast<std::size_t>(jpeg_.cur_comp_info[i]->component_index)] = true;
       }

@@ -123,7 +123,7 @@ class PngReader {
   bool reserve() noexcept try {
     const double pixels = static_cast<double>(image_.width) * image_.height,
                  samples = pixels * image_.components;
-    if (pixels > static_cast<double>(kMostPixels)) {
+    if (pixels > static_cast<double>(kMaxPixels)) {
       problem_ = "it is too large";
       return false;
     }
@@ -134,7 +134,7 @@ class PngReader {
       problem_ = too_much_memory(needed, memory_);
       return false;
     }
-    const double least = image_.height * (1 + row_bytes_) / kMostDeflated;
+    const double least = image_.height * (1 + row_bytes_) / kMaxDeflated;
     if (least > file_size_) {
       problem_ = too_few_bytes(image_.width, image_.height, least, file_size_);
       return false;

@@ -103,7 +103,7 @@ constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSou
 using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
 
 // BMP, uncompressed: the header, whose length is its first number, holds the bits per pixel.
-double least_of_bmp(const Bytes& bytes, double width, double height) {
+double min_of_bmp(const Bytes& bytes, double width, double height) {
   const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
   const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
   return width * height * std::max(1.0, bits) / 8;
@@ -111,14 +111,14 @@ double least_of_bmp(const Bytes& bytes, double width, double height) {
 
 // Radiance: a row begins with four bytes, and each of its four components stores a run of up to 127 in two bytes.
 // Very short and very long rows have no runs, nor have older files.
-double least_of_hdr(const Bytes&, double width, double height) {
+double min_of_hdr(const Bytes&, double width, double height) {
   const bool runs = width >= 8 && width < 32768;
   return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
 }
 
 // Returns the reason why stb may not decode an image, judging by its header. stb's output takes `sample` bytes per
 // number, and the image made of it a float per number.
-std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes least_of) {
+std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes min_of) {
   int width = 0, height = 0, components = 0;
   // Reading from memory, stb sees the end.
   if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
@@ -126,11 +126,11 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
     return reason != nullptr ? reason : "its content makes no sense";
   }
   if (width < 1 || height < 1) return "it has no pixels";
-  if (std::int64_t{width} * height > kMostPixels) return "it is too large";
+  if (std::int64_t{width} * height > kMaxPixels) return "it is too large";
   const double numbers = static_cast<double>(width) * height * std::max(3, components);
   const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
   if (needed > memory) return too_much_memory(needed, memory);
-  const double least = least_of(bytes, width, height), has = static_cast<double>(bytes.size());
+  const double least = min_of(bytes, width, height), has = static_cast<double>(bytes.size());
   if (least > has) return too_few_bytes(width, height, least, has);
   return std::nullopt;
 }
@@ -194,7 +194,7 @@ DecodeResult decode_display(const Bytes& bytes, double memory) {
   // before it reads the chunk, and invents the missing end of a JPEG.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
   if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
-  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, least_of_bmp)) return std::move(*problem);
+  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, min_of_bmp)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
   const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
@@ -214,7 +214,7 @@ DecodeResult decode_hdr(const Bytes& bytes, double memory) {
   // stb would otherwise decode any other image to linear light.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   if (!ends_hdr_header(bytes)) return "its header does not end";
-  if (auto problem = stb_problem(bytes, sizeof(float), memory, least_of_hdr)) return std::move(*problem);
+  if (auto problem = stb_problem(bytes, sizeof(float), memory, min_of_hdr)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes, '\xff'};  // longer than any run
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
@@ -256,7 +256,7 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
     return "it has no header of a portable float map";
   }
   const int components = grey ? 1 : 3;
-  if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
+  if (std::int64_t{*width} * *height > kMaxPixels) return "it is too large";
   const std::size_t count =
       static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
   if (text.size() - at < count * 4) return "it ends too early";

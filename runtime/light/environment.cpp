@@ -19,7 +19,7 @@ constexpr float kPiFloat = std::numbers::pi_v<float>;
 constexpr double kRounding = 0x1p-24;
 // Minimum angle of a disc, degrees. Directions in float would make the disc larger by kRounding all round: at this
 // angle by 0.03 % of its area.
-constexpr double kLeastDisc = 0.02;
+constexpr double kMinDisc = 0.02;
 
 // Turns a direction about y, counter-clockwise as seen from above.
 glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
@@ -96,7 +96,7 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
 
 // A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
 void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
-  const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * vm::real::kDegree), sin2 = sine * sine;
+  const double sine = vm::real::sin(std::max(degrees, kMinDisc) * vm::real::kDegree), sin2 = sine * sine;
   if (!(luminance(irradiance) > 0)) return;
   const double height = sin2 / (1 + std::sqrt(1 - sin2));
   discs_.push_back({direction, height, std::sqrt(2 * height) + kRounding,

@@ -19,9 +19,9 @@ float cosine_of_difference(float cos_a, float cos_b) {
   return cos_a * cos_b + sine(cos_a) * sine(cos_b);
 }
 
-// kSlack: for lights that shine past the edge of their cone by rounding. kLeastFacing: keeps lights at the edge of
+// kSlack: for lights that shine past the edge of their cone by rounding. kMinFacing: keeps lights at the edge of
 // their cone from being sampled too rarely.
-constexpr float kSlack = 1e-4f, kLeastFacing = 0.05f;
+constexpr float kSlack = 1e-4f, kMinFacing = 0.05f;
 
 bool everywhere(const LightBounds& light) { return light.cos_spread <= -1; }
 
@@ -83,7 +83,7 @@ float importance(const LightBounds& light, const LightSampleContext& context) {
   if (light.two_sided) leaving = std::abs(leaving);
   leaving = cosine_of_difference(cosine_of_difference(leaving, light.cos_spread), cos_ball);
   if (leaving < light.cos_emission - kSlack) return 0;
-  return strength * arriving * std::max(leaving, kLeastFacing);
+  return strength * arriving * std::max(leaving, kMinFacing);
 }
 
 LightTree::LightTree(std::vector<LightBounds> lights) : lights_(std::move(lights)) {
@@ -96,11 +96,11 @@ LightTree::LightTree(std::vector<LightBounds> lights) : lights_(std::move(lights
 }
 
 // The recursion's depth is the logarithm of the number of lights.
-void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf) {
+void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t max_in_leaf) {
   const std::span<std::uint32_t> members = std::span(order_).subspan(first, count);
   const std::size_t self = nodes_.size();
   nodes_.push_back({merge(members, lights_), first, count});
-  if (count <= most_in_leaf) return;
+  if (count <= max_in_leaf) return;
   compiler::Box centres;
   for (const std::uint32_t member : members)
     centres = unite(centres, {lights_[member].centre, lights_[member].centre});
@@ -110,9 +110,9 @@ void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t most
   std::nth_element(members.begin(), members.begin() + half, members.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::tuple(lights_[a].centre[axis], a) < std::tuple(lights_[b].centre[axis], b);
   });
-  build(first, half, most_in_leaf);
+  build(first, half, max_in_leaf);
   nodes_[self].second_child = static_cast<std::uint32_t>(nodes_.size());
-  build(first + half, count - half, most_in_leaf);
+  build(first + half, count - half, max_in_leaf);
 }
 
 std::optional<LightTree::SampledLight> LightTree::sample(const LightSampleContext& context, float u) const {

@@ -66,7 +66,7 @@ class LightTree {
     std::uint32_t first, count;
     std::uint32_t second_child = 0;  // 0: a leaf
   };
-  void build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf);
+  void build(std::uint32_t first, std::uint32_t count, std::size_t max_in_leaf);
   float total_importance_of(const Node& leaf, const LightSampleContext& context) const;
 
   std::vector<LightBounds> lights_;

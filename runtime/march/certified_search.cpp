@@ -39,10 +39,10 @@ constexpr std::uint32_t kMinIntervalPeriod = 16, kIntervalPeriodShare = 4;
 constexpr double kReach = 0.995, kLargestSlope = 0.9;
 // Near a root, a step has this length relative to the way to the root.
 constexpr double kOvershoot = 1.1;
-constexpr int kMostRounds = 200;  // per bracket
+constexpr int kMaxRounds = 200;  // per bracket
 // In a solid, g within kLevelRoundings rounding errors of 0 is a surface if it stays there for longer than
-// kLeastLevel max(1, |p|). Otherwise two parts of the solid touch there.
-constexpr double kLevelRoundings = 4, kLeastLevel = 0x1p-20;
+// kMinLevel max(1, |p|). Otherwise two parts of the solid touch there.
+constexpr double kLevelRoundings = 4, kMinLevel = 0x1p-20;
 
 }  // namespace
 
@@ -182,7 +182,7 @@ bool CertifiedSearch::is_flat(const Segment& s) const {
 // True if a free segment of a solid may be at the rounding level of 0 for long, next to an end at that level.
 bool CertifiedSearch::may_hide_end(const Segment& s) const {
   const double level = kLevelRoundings * rounding_;
-  if (side_ > 0 || (s.ga > level && s.gb > level) || s.b - s.a <= kLeastLevel * scale(s.a)) return false;
+  if (side_ > 0 || (s.ga > level && s.gb > level) || s.b - s.a <= kMinLevel * scale(s.a)) return false;
   return s.ga > level || s.gb > level || !is_flat(s);
 }
 
@@ -195,7 +195,7 @@ bool CertifiedSearch::ends_solid(const Segment& s, bool flat) {
     above_ = s.a, g_above_ = s.ga;
   } else if (flat) {
     if (std::isnan(level_begin_)) level_begin_ = s.a, g_level_ = s.ga;
-    if (s.b - level_begin_ <= kLeastLevel * scale(level_begin_)) return false;
+    if (s.b - level_begin_ <= kMinLevel * scale(level_begin_)) return false;
     leave_solid(level);
     return true;
   }
@@ -262,7 +262,7 @@ CertifiedSearch::IntervalOutcome CertifiedSearch::narrow(Segment& s, RealScratch
     const bool empty = line->value.lo >= -flat;
     if (side_ > 0) {
       free = empty;
-    } else if (empty && (s.gb >= 0 || length > kLeastLevel * scale(s.a))) {
+    } else if (empty && (s.gb >= 0 || length > kMinLevel * scale(s.a))) {
       free = true;
       s.fall = s.rise = 0;
     } else {
@@ -285,7 +285,7 @@ void CertifiedSearch::find_root(const Segment& s, double width) {
 void CertifiedSearch::continue_bracket() {
   const Bracket& b = bracket_;
   const double width = b.hi - b.lo, least = 0.25 * kResolution * scale(b.hi);
-  if (width <= 2 * least || b.g_hi == 0 || b.rounds == kMostRounds) return hit(b.g_hi == 0 ? b.hi : b.lo, b.hi);
+  if (width <= 2 * least || b.g_hi == 0 || b.rounds == kMaxRounds) return hit(b.g_hi == 0 ? b.hi : b.lo, b.hi);
   const double secant = b.lo + width * (b.rounds % 8 == 7 ? 0.5 : b.g_lo / (b.g_lo - b.g_hi));
   request(std::clamp(secant, b.lo + least, b.hi - least), Purpose::Root);
 }

@@ -21,14 +21,14 @@ namespace fathom::runtime {
 
 class Marcher {
  public:
-  static constexpr int kMostRays = RayBlock::kCapacity;
+  static constexpr int kMaxRays = RayBlock::kCapacity;
 
   explicit Marcher(const Field& field);
   virtual ~Marcher() = default;
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  // Maximum number of rays under way, up to kMostRays: high with regions, so that many points need one template.
+  // Maximum number of rays under way, up to kMaxRays: high with regions, so that many points need one template.
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
   int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }

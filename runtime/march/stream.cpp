@@ -38,7 +38,7 @@ constexpr double kBracketMargin = 0x1p-14;
 
 // Number of lanes for a field without regions: a block of the machine.
 constexpr int kBlock = 256;
-static_assert(Lanes<float>::kCapacity <= kMostPoints);
+static_assert(Lanes<float>::kCapacity <= kMaxPoints);
 
 }  // namespace
 
@@ -48,13 +48,13 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
       takes_slope_hint_(!info(rules_.method).uses_epsilon),
-      most_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
+      max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
       use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
-  while (rays.count > 0 && live_ < most_lanes_) {
+  while (rays.count > 0 && live_ < max_lanes_) {
     const std::size_t i = --rays.count;
     if (enters(rays, i)) start_lane(rays, i);
   }

@@ -92,9 +92,9 @@ struct OutsideAlbedo {
 // Slices are spaced by s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Slices lie close
 // near s = 0, where the reflectance at the horizon goes from 0 to 1.
 constexpr int kSlices = 32;
-constexpr float kMostS = (kMostEta - 1) / (kMostEta + 1);
+constexpr float kMaxS = (kMaxEta - 1) / (kMaxEta + 1);
 constexpr float slice_s(int slice) {
-  return kMostS * static_cast<float>(slice * slice) / ((kSlices - 1) * (kSlices - 1));
+  return kMaxS * static_cast<float>(slice * slice) / ((kSlices - 1) * (kSlices - 1));
 }
 float slice_eta(int slice) { return (1 + slice_s(slice)) / (1 - slice_s(slice)); }
 
@@ -123,8 +123,8 @@ enum class Between { Indices, Reflectances };
 // Interpolates the rows `row_at(slice, node)`. Requires eta >= 1.
 template <typename RowAt>
 DirectionalAlbedo interpolate(float alpha, float eta, Between between, RowAt&& row_at) {
-  const float s = std::min((eta - 1) / (eta + 1), kMostS);
-  const int slice = std::clamp(static_cast<int>(std::sqrt(s / kMostS) * (kSlices - 1)), 0, kSlices - 2);
+  const float s = std::min((eta - 1) / (eta + 1), kMaxS);
+  const int slice = std::clamp(static_cast<int>(std::sqrt(s / kMaxS) * (kSlices - 1)), 0, kSlices - 2);
   const float low = slice_s(slice), high = slice_s(slice + 1);
   const float way = (s - low) / (high - low) * (between == Between::Indices ? 1 : (s + low) / (high + low));
   const float share = std::clamp(way, 0.0f, 1.0f);

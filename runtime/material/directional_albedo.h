@@ -6,7 +6,7 @@
 //     lost.at(cos_o), lost.average()
 //
 // The numbers come from tables made by quadrature. The first thread that asks for the row of a roughness (and index)
-// makes the row. A new material takes some milliseconds, rough glass some forty. Indices go up to kMostEta. Compared
+// makes the row. A new material takes some milliseconds, rough glass some forty. Indices go up to kMaxEta. Compared
 // with the integrals, rows err by at most 5e-3, and by 1e-3 in the mean, mostly at the horizon of nearly smooth
 // surfaces.
 // Tested by: tests/runtime/material/directional_albedo_test.cpp
@@ -17,7 +17,7 @@
 namespace fathom::runtime {
 
 // Maximum index: an index further from 1 than this, or than its inverse, is clamped to it.
-inline constexpr float kMostEta = 4;
+inline constexpr float kMaxEta = 4;
 
 // A function of the cosine in [0,1], by its values where cos^(1/4) = 0, 1/23 ... 1, with cubics between them.
 // (Near the horizon of a smooth surface the function changes within cosines of a few alpha.)

@@ -13,13 +13,13 @@ namespace {
 constexpr float kInversePi = 0.318309886183790672f;
 constexpr float kUniformHemispherePdf = kInversePi / 2;  // uniform density over a hemisphere
 // An interface of less roughness is a mirror: no image resolves a lobe a twentieth of a degree wide.
-constexpr float kLeastAlpha = 1e-3f;
+constexpr float kMinAlpha = 1e-3f;
 // Indices nearer to each other count as equal, except for their reflectance (1/40000): light is not bent enough to
 // blur anything.
-constexpr float kLeastBend = 0.01f;
-constexpr float kLeastCos = 1e-6f;
+constexpr float kMinBend = 0.01f;
+constexpr float kMinCos = 1e-6f;
 // Minimum probability of a lobe that light may take.
-constexpr float kLeastChance = 0.01f;
+constexpr float kMinChance = 0.01f;
 // Stands for an index: facets reflect all light.
 constexpr float kReflectsAll = INFINITY;
 constexpr float kBelowOne = 0x1.fffffep-1f;
@@ -73,15 +73,15 @@ float weighted_eta(float eta, float weight) {
 }  // namespace
 
 Principled::Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool inside)
-    : wo_(wo.x, wo.y, std::max(wo.z, kLeastCos)),
+    : wo_(wo.x, wo.y, std::max(wo.z, kMinCos)),
       eta_(weighted_eta(m.thin_walled ? std::max(eta, 1 / eta) : eta, m.specular_weight)),
       opacity_(std::clamp(m.opacity, 0.0f, 1.0f)),
       inside_(inside),
       thin_(m.thin_walled),
       ggx_(std::min(m.roughness * m.roughness, 1.0f)) {
-  smooth_metal_ = ggx_.alpha() < kLeastAlpha;
-  smooth_interface_ = smooth_metal_ || std::abs(eta_ - 1) < kLeastBend;
-  if (!smooth_interface_) eta_ = std::clamp(eta_, 1 / kMostEta, kMostEta);
+  smooth_metal_ = ggx_.alpha() < kMinAlpha;
+  smooth_interface_ = smooth_metal_ || std::abs(eta_ - 1) < kMinBend;
+  if (!smooth_interface_) eta_ = std::clamp(eta_, 1 / kMaxEta, kMaxEta);
   if (m.coat_weight > 0) add_coat(m, eta);
   if (m.metalness > 0) add_metal(m);
   if (m.metalness < 1) add_interface(m);
@@ -93,10 +93,10 @@ Principled::Principled(const MaterialPoint& m, glm::vec3 wo, float eta, bool ins
 void Principled::add_coat(const MaterialPoint& m, float eta) {
   const float around = inside_ && m.has_interior() ? m.ior * eta : m.ior / eta;
   const float ratio = m.coat_ior / around;
-  coat_eta_ = std::clamp(std::max(ratio, 1 / ratio), 1.0f, kMostEta);
+  coat_eta_ = std::clamp(std::max(ratio, 1 / ratio), 1.0f, kMaxEta);
   coat_weight_ = m.coat_weight;
   coat_ggx_ = Ggx(std::min(m.coat_roughness * m.coat_roughness, 1.0f));
-  smooth_coat_ = coat_ggx_.alpha() < kLeastAlpha;
+  smooth_coat_ = coat_ggx_.alpha() < kMinAlpha;
   coat_albedo_ = smooth_coat_ ? smooth_albedo(coat_eta_) : reflection_albedo(coat_ggx_.alpha(), coat_eta_);
   const glm::vec3 twice = glm::mix(glm::vec3(1), m.coat_color, coat_weight_);
   const float darkens = coat_weight_ * m.coat_darkening;
@@ -194,7 +194,7 @@ void Principled::set_lobe_probabilities() {
   if (metal_ > 0) lobe_probability_[kMetal] = coat_transmittance_o_ * metal_ * max_of(coat_tint_ * metal_tint_(wo_.z));
   lobe_probability_[kInterface] = coat_transmittance_o_ * (max_of(coat_tint_ * glossy) + max_of(interface_transmittance(1 - reflected)));
   // Facets may let through light that the surface itself reflects totally.
-  if (glass_ > 0 && !smooth_interface_) lobe_probability_[kInterface] = std::max(lobe_probability_[kInterface], kLeastChance * glass_);
+  if (glass_ > 0 && !smooth_interface_) lobe_probability_[kInterface] = std::max(lobe_probability_[kInterface], kMinChance * glass_);
   lobe_probability_[kDiffuse] = max_of(diffuse_albedo_);
   lobe_probability_[kCompensation] = max_of(metal_compensation_.albedo() + glass_compensation_.albedo());
   lobe_probability_[kTransmittedCompensation] = away * max_of(transmitted_compensation_.albedo());

@@ -12,12 +12,12 @@ namespace fathom::runtime {
 namespace {
 
 // The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
-constexpr float kLeastCosine = 1e-4f;
+constexpr float kMinCosine = 1e-4f;
 // A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large
 // numbers cancel d_f's bound is loose, and twice it is enough.
 constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
 // ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
-constexpr float kMostOffset = 32;
+constexpr float kMaxOffset = 32;
 
 // Of what is known to be clear so much is trusted: a ray must not begin where rounding may put the next surface.
 constexpr float kTrusted = 0.98f;
@@ -34,9 +34,9 @@ FacingNormal facing_normal(glm::vec3 gradient, const Hit& hit) {
   const glm::vec3 normal = gradient * (static_cast<float>(hit.side) / length);
   const float cosine = glm::dot(normal, hit.wo);
   if (cosine > 0) return {normal, true};
-  const glm::vec3 turned = normal + (kLeastCosine - cosine) * hit.wo;
+  const glm::vec3 turned = normal + (kMinCosine - cosine) * hit.wo;
   const float squared = glm::dot(turned, turned);
-  return {squared > kLeastCosine * kLeastCosine ? turned / std::sqrt(squared) : hit.wo, false};
+  return {squared > kMinCosine * kMinCosine ? turned / std::sqrt(squared) : hit.wo, false};
 }
 
 // How far from the hit nothing comes in the way of rays that leave a convex solid.
@@ -68,7 +68,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
     const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
-    const float most = kMostOffset * field.band;
+    const float most = kMaxOffset * field.band;
     if (least > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
       const vm::SurfaceValue exact = field.regions

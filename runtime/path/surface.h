@@ -64,12 +64,12 @@ inline glm::dvec3 spawn_origin(const Hit& hit, const SurfacePoint& point, bool t
 // The ray that leaves from there into `direction`, of unit length. Here, so that it stays in registers.
 inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
   // Nearly along the surface it might meet it again by the normal's error.
-  constexpr float kLeastLeaving = 0x1p-6f;
+  constexpr float kMinLeaving = 0x1p-6f;
   Ray ray{spawn_origin(hit, point, through), direction};
   const float cosine = glm::dot(point.normal, glm::vec3(direction));
   ray.side = through ? -hit.side : hit.side;
   ray.slope = std::abs(cosine);
-  ray.clear = !through && cosine > kLeastLeaving ? point.clear : 0;
+  ray.clear = !through && cosine > kMinLeaving ? point.clear : 0;
   return ray;
 }
 

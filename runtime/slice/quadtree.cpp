@@ -16,7 +16,7 @@ constexpr int kEdges[] = {256, 64, 16};
 constexpr int kLevels = 3, kTilesAcross = 4;
 static_assert(kTilesAcross * kTilesAcross == vm::kEnclosedBoxes);
 // With fewer choices, evaluating row by row is as fast.
-constexpr std::size_t kLeastChoices = 24;
+constexpr std::size_t kMinChoices = 24;
 
 struct Tile {
   int x, y;  // first pixel
@@ -136,7 +136,7 @@ class QuadtreeWorker {
 bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
                           std::vector<float>& field) {
   vm::DefUseGraph expression;
-  if (!expression.read(distance) || expression.choices().size() < kLeastChoices) return false;
+  if (!expression.read(distance) || expression.choices().size() < kMinChoices) return false;
   const vm::PrunedProgram part = vm::whole(distance);
   const int step = kEdges[0] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;

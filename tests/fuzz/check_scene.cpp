@@ -20,7 +20,7 @@ using compiler::Diagnostics;
 using compiler::Source;
 
 void check_cheap(const vm::VerifiedProgram& program, test::Random& random, double reach) {
-  if (program.cost() <= kMostCost) check_program(program, random, reach);
+  if (program.cost() <= kMaxCost) check_program(program, random, reach);
 }
 
 // Checks that a written file reads back as the same scene.
@@ -72,7 +72,7 @@ void check_scene(const std::string& text) {
 void check_stored(const compiler::CompiledScene& scene) {
   test::Random random(scene.distance.instructions());
   for (const compiler::NamedProgram& row : compiler::programs_of(scene)) {
-    if (row.program->cost() > kMostCost) continue;
+    if (row.program->cost() > kMaxCost) continue;
     check_evaluation(*row.program, random, 4);
     vm::DefUseGraph().read(*row.program);
   }

@@ -14,7 +14,7 @@ namespace fathom::fuzz {
 namespace {
 
 constexpr runtime::ReadLimits kFilmLimits{64e6};
-constexpr std::size_t kMostSums = 1 << 20;  // bytes; a header that asks for more gets the sums in the input
+constexpr std::size_t kMaxSums = 1 << 20;  // bytes; a header that asks for more gets the sums in the input
 
 void put_checked(vm::ByteWriter& out, Bytes bytes) {
   const vm::Digest digest = vm::digest(bytes);
@@ -43,7 +43,7 @@ Input sealed_film(Bytes head, vm::ByteReader sums) {
   put_checked(out, head);
   vm::ByteReader reader(head);
   runtime::FilmFile file;
-  if (!runtime::read_shape(reader, file) && runtime::sums_size(file.shape) <= kMostSums) {
+  if (!runtime::read_shape(reader, file) && runtime::sums_size(file.shape) <= kMaxSums) {
     put_sums(out, file.shape, sums);
   } else {
     out.raw(sums.raw(sums.left()));

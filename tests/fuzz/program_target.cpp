@@ -53,7 +53,7 @@ void run_bare_program(Bytes input) {
   const auto size = static_cast<std::ptrdiff_t>(reader.offset());
   promise(writer.bytes() == Input(input.begin(), input.begin() + size), "what is written is what was read");
   test::Random random(input.size());
-  if (program->cost() <= kMostCost) check_evaluation(*program, random);
+  if (program->cost() <= kMaxCost) check_evaluation(*program, random);
 }
 
 }  // namespace

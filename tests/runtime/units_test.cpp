@@ -11,7 +11,7 @@ TEST_CASE("units: rounds follow one another, short at first, and never long") {
     for (const SampleRange round : split_into_rounds(samples)) {
       CHECK(round.first == at);
       CHECK(round.last > round.first);
-      CHECK(round.size() <= kMostInRound);
+      CHECK(round.size() <= kMaxInRound);
       at = round.last;
     }
     CHECK(at == samples.last);

@@ -44,10 +44,10 @@ inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an int
 // its opcode. A shape that costs nothing is a number of a formula.
 inline constexpr std::size_t kPolymorphicImmediates = 4;
 constexpr bool can_be_polymorphic(std::string_view immediates, int cost) {
-  constexpr int kMostCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
+  constexpr int kMaxCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
   const auto count = static_cast<std::size_t>(count_names(immediates));
   return count > 0 && count <= kPolymorphicImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
-         cost <= kMostCost;
+         cost <= kMaxCost;
 }
 
 // Constants of a whole program by instruction, in the layout that lanes load. In a program with both spheres and

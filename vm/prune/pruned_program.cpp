@@ -31,8 +31,8 @@ void PrunedProgramWriter::finish(std::uint32_t locals, PrunedProgram& out) const
   };
   tail(words_, at_, out.words), tail(doubles_, at_, out.doubles), tail(sources_, source_at_, out.sources);
   out.locals = locals, out.cost = cost_, out.choices = choices_;
-  out.max_values = static_cast<std::uint32_t>(most_values_);
-  out.max_points = static_cast<std::uint32_t>(most_points_);
+  out.max_values = static_cast<std::uint32_t>(max_values_);
+  out.max_points = static_cast<std::uint32_t>(max_points_);
 }
 
 }  // namespace fathom::vm

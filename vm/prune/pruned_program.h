@@ -37,7 +37,7 @@ class PrunedProgramWriter {
   void begin(const PrunedProgram& program) {
     program_ = &program;
     at_ = words_.size(), source_at_ = sources_.size();
-    values_ = most_values_ = points_ = most_points_ = 1;  // heights of the stacks at the end of a program
+    values_ = max_values_ = points_ = max_points_ = 1;  // heights of the stacks at the end of a program
     cost_ = 0, choices_ = 0;
   }
 
@@ -50,7 +50,7 @@ class PrunedProgramWriter {
     const StackEffect effect = effect_of(word);
     cost_ += instruction_cost(word), choices_ += is_choice(word);
     values_ -= effect.values_change, points_ -= effect.points_change;
-    most_values_ = std::max(most_values_, values_), most_points_ = std::max(most_points_, points_);
+    max_values_ = std::max(max_values_, values_), max_points_ = std::max(max_points_, points_);
   }
 
   // Like put(), for a Unary or Binary, the most frequent instructions of a formula. `row` is the row of `word`.
@@ -60,7 +60,7 @@ class PrunedProgramWriter {
     const Sources sources = sources_of(word);
     cost_ += static_cast<std::uint64_t>(row.cost), choices_ += row.choice != Choice::None;
     values_ += (sources.a == Source::Stack) + (row.form == Form::Binary && sources.b == Source::Stack) - 1;
-    most_values_ = std::max(most_values_, values_);
+    max_values_ = std::max(max_values_, values_);
   }
 
   // Copies the written instructions to `out`.
@@ -86,7 +86,7 @@ class PrunedProgramWriter {
   std::vector<std::uint32_t> sources_;
   std::size_t at_ = 0, source_at_ = 0;  // begin of the written words and sources
   // Heights of the stacks before the instruction written last, and their maxima.
-  std::int64_t values_ = 1, most_values_ = 1, points_ = 1, most_points_ = 1;
+  std::int64_t values_ = 1, max_values_ = 1, points_ = 1, max_points_ = 1;
   std::uint64_t cost_ = 0;
   std::uint32_t choices_ = 0;
 };

@@ -24,7 +24,7 @@ OptionResult read_frames(std::string_view text, FrameOptions& options) {
   std::size_t count = 0;
   for (std::string_view rest = text;; ++count) {
     const std::size_t end = std::min(rest.find(':'), rest.size());
-    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMostFrames, parts[count]))
+    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMaxFrames, parts[count]))
       return wrong();
     if (end == rest.size()) break;
     rest.remove_prefix(end + 1);
@@ -41,8 +41,8 @@ OptionResult read_fps(std::string_view text, double& fps) {
   const std::optional<double> number = to_number(text.substr(0, over));
   const std::optional<double> divisor = over == text.npos ? 1 : to_number(text.substr(over + 1));
   const double value = number && divisor ? *number / *divisor : 0;
-  if (!(value >= compiler::kLeastFps && value <= compiler::kMostFps)) {
-    return OptionError{fmt::format("`{}` is not a number from {} to {}", text, compiler::kLeastFps, compiler::kMostFps),
+  if (!(value >= compiler::kMinFps && value <= compiler::kMaxFps)) {
+    return OptionError{fmt::format("`{}` is not a number from {} to {}", text, compiler::kMinFps, compiler::kMaxFps),
                      "frames a second, as 24, 23.976 or 30000/1001"};
   }
   fps = value;

@@ -13,7 +13,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::int64_t kMostUnit = std::int64_t{1} << 40;
+constexpr std::int64_t kMaxUnit = std::int64_t{1} << 40;
 
 // Environment variables in which queues pass a task's number, and the number of the first task.
 struct QueueVariable {
@@ -37,7 +37,7 @@ OptionResult read_unit(std::string_view text, UnitOptions& options) {
   options.unit.reset();
   if (options.from_queue) return std::nullopt;
   std::int64_t number = 0;
-  if (auto error = read_whole(text, 0, kMostUnit, number)) {
+  if (auto error = read_whole(text, 0, kMaxUnit, number)) {
     return OptionError{error->problem, "the first unit is 0; env takes the number from a queue's variable"};
   }
   options.unit = static_cast<std::uint64_t>(number);
@@ -50,7 +50,7 @@ std::variant<std::uint64_t, ExitCode> queue_number(const Streams& streams) {
     const char* text = std::getenv(row.name);
     if (text == nullptr || *text == 0 || std::string_view(text) == "undefined") continue;
     std::int64_t number = 0;
-    if (const auto error = read_whole(text, row.first, kMostUnit, number)) {
+    if (const auto error = read_whole(text, row.first, kMaxUnit, number)) {
       return fail(streams, kUsage, fmt::format("--unit env: {}={}: {}", row.name, text, error->problem));
     }
     return static_cast<std::uint64_t>(number - row.first);
@@ -76,7 +76,7 @@ void add_unit_options(Arguments& arguments, UnitOptions& options) {
                    [&options](std::string_view text) { return read_units(text, options.ranges); });
   arguments.option("--per-task", "N", "--unit is the number of a task of N units", [&options](std::string_view text) {
     std::int64_t number = 0;
-    const OptionResult error = read_whole(text, 1, kMostUnit, number);
+    const OptionResult error = read_whole(text, 1, kMaxUnit, number);
     if (!error) options.per_task = static_cast<std::uint64_t>(number);
     return error;
   });
@@ -136,10 +136,10 @@ OptionResult read_units(std::string_view text, std::vector<UnitRange>& ranges) {
     const std::string_view part = rest.substr(0, end);
     const std::size_t mark = part.find_first_of(":-");
     std::int64_t first = 0, last = 0;
-    if (read_whole(part.substr(0, mark), 0, kMostUnit, first)) return wrong;
+    if (read_whole(part.substr(0, mark), 0, kMaxUnit, first)) return wrong;
     last = first + 1;
     if (mark != part.npos) {
-      if (read_whole(part.substr(mark + 1), 0, kMostUnit, last)) return wrong;
+      if (read_whole(part.substr(mark + 1), 0, kMaxUnit, last)) return wrong;
       last += part[mark] == '-';
     }
     if (last <= first) return wrong;

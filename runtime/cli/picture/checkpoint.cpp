@@ -13,7 +13,7 @@ namespace fathom::cli {
 namespace {
 
 // Maximum fraction of the time spent on writing, because threads that finish a unit wait for the write.
-constexpr double kMostShare = 0.05;
+constexpr double kMaxShare = 0.05;
 
 std::string text_of(runtime::PixelRect area) {
   return fmt::format("{},{},{},{}", area.x0, area.y0, area.x1, area.y1);
@@ -133,7 +133,7 @@ void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOp
       },
       streams);
   const double took = std::chrono::duration<double>(Clock::now() - start).count();
-  due_ = seconds + took + std::max(interval_, took / kMostShare);
+  due_ = seconds + took + std::max(interval_, took / kMaxShare);
 }
 
 bool Checkpoint::write(const runtime::FilmHeader& header, const runtime::PartialRender& render,

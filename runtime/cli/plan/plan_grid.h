@@ -25,7 +25,7 @@ struct PlanGrid {
   std::uint64_t units() const { return frame_count() * units_of_frame(); }
 };
 
-constexpr double kMostUnits = 1e9;
+constexpr double kMaxUnits = 1e9;
 bool too_many_units(const PlanGrid& grid);  // computes in double: the number may exceed 64 bits
 
 struct PlanUnit {

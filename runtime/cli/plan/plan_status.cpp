@@ -13,7 +13,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::size_t kMostFaults = 10;
+constexpr std::size_t kMaxFaults = 10;
 
 bool exists(const std::string& path) {
   std::error_code error;
@@ -66,7 +66,7 @@ std::variant<PlanStatus, ExitCode> status_of(const RenderPlan& plan, const std::
     add(status.left, number / per_task);
     if (!fault->empty()) {
       ++status.broken;
-      if (status.faults.size() < kMostFaults) status.faults.emplace_back(number, *fault);
+      if (status.faults.size() < kMaxFaults) status.faults.emplace_back(number, *fault);
     } else {
       status.begun += exists(file + kCheckpointEnding);
     }

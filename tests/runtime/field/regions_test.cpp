@@ -113,14 +113,14 @@ Differences compare(const vm::VerifiedProgram& program, const Regions& regions, 
   vm::Workspace workspace;
   RegionScratch scratch;
   RealScratch real_scratch;
-  std::vector<float> whole(kMostPoints), level(kMostPoints), cut(kMostPoints);
-  vm::evaluate_distance(program, at.points(), kMostPoints, whole.data(), workspace);
+  std::vector<float> whole(kMaxPoints), level(kMaxPoints), cut(kMaxPoints);
+  vm::evaluate_distance(program, at.points(), kMaxPoints, whole.data(), workspace);
   level = whole;
-  regions.far_levels().apply(at.points(), kMostPoints, level.data());
-  regions.evaluate(at.points(), kMostPoints, cut.data(), scratch, workspace);
+  regions.far_levels().apply(at.points(), kMaxPoints, level.data());
+  regions.evaluate(at.points(), kMaxPoints, cut.data(), scratch, workspace);
   Differences found;
   const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-  for (std::size_t i = 0; i < kMostPoints; ++i) {
+  for (std::size_t i = 0; i < kMaxPoints; ++i) {
     const glm::dvec3 p(static_cast<double>(at.x[i]), static_cast<double>(at.y[i]), static_cast<double>(at.z[i]));
     std::uint64_t instructions = 0;
     const double real = regions.far_levels()(vm::evaluate_distance(program, p, workspace), at.x[i], at.y[i], at.z[i]);
@@ -144,7 +144,7 @@ TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float
       Differences all;
       for (int seed = 0; seed < test::scaled_cases(24); ++seed) {
         // Inside, around, and far outside.
-        const Sample at = sample(kMostPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
+        const Sample at = sample(kMaxPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
         const Differences some = compare(scene.distance, *field.regions, at);
         all.single += some.single, all.real += some.real;
         all.exact += some.exact, all.rounded += some.rounded, all.far += some.far;
@@ -177,9 +177,9 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
     if (!regions) continue;
     ++built;
     for (const double reach : {1.05, 8.0}) {  // some points lie outside
-      Sample at = sample(kMostPoints, reach, seed);
+      Sample at = sample(kMaxPoints, reach, seed);
       const glm::dvec3 middle = (box.lo + box.hi) / 2.0, half = (box.hi - box.lo) / 2.0;
-      for (std::size_t i = 0; i < kMostPoints; ++i) {
+      for (std::size_t i = 0; i < kMaxPoints; ++i) {
         at.x[i] = static_cast<float>(middle.x) + at.x[i] * static_cast<float>(half.x);
         at.y[i] = static_cast<float>(middle.y) + at.y[i] * static_cast<float>(half.y);
         at.z[i] = static_cast<float>(middle.z) + at.z[i] * static_cast<float>(half.z);
@@ -224,7 +224,7 @@ TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]"
 
 TEST_CASE("regions: the same tree for any number of threads, the same values on every instruction set", "[regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
-  const Sample at = sample(kMostPoints, 1.1, 5);
+  const Sample at = sample(kMaxPoints, 1.1, 5);
   std::vector<std::uint32_t> expected;
   const std::string before(vm::isa_name());
   for (const std::string_view isa : vm::available_isas()) {
@@ -233,8 +233,8 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
       const Field field = with_regions(scene, {.threads = threads});
       vm::Workspace workspace;
       RegionScratch scratch;
-      std::vector<float> values(kMostPoints);
-      field.regions->evaluate(at.points(), kMostPoints, values.data(), scratch, workspace);
+      std::vector<float> values(kMaxPoints);
+      field.regions->evaluate(at.points(), kMaxPoints, values.data(), scratch, workspace);
       std::vector<std::uint32_t> bits;
       for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value + 0.0f));
       const Regions::Summary& summary = field.regions->summary();

@@ -55,7 +55,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
     const AreaLightShape shape(c.area_light);
     for (const dvec3 from : test::kShadingPoints) {
       int good = 0;
-      double worst = 0, off = 0, least_facing = 1, unseen = 0;
+      double worst = 0, off = 0, min_facing = 1, unseen = 0;
       for (std::uint32_t i = 0; i < 500; ++i) {
         Sampler sampler(2, i, 0, 0);
         const ShapeSample s = shape.sample(from, sampler.next2());
@@ -64,7 +64,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
         worst = std::max(worst, std::abs(shape.pdf(from, s.position) / s.pdf - 1));
         off = std::max(off, shape.distance(s.position));
         const dvec3 w = glm::normalize(s.position - from);
-        least_facing = std::min(least_facing, -glm::dot(w, s.normal));
+        min_facing = std::min(min_facing, -glm::dot(w, s.normal));
         const std::optional<dvec3> hit = meet(shape, from, w);
         unseen += !hit || glm::length(*hit - s.position) > 1e-4 * (1 + shape.radius() / -glm::dot(w, s.normal));
       }
@@ -72,7 +72,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
       CHECK(good > 150);
       CHECK(worst < 1e-6);
       CHECK(off < 1e-6);
-      CHECK(least_facing > -1e-6);
+      CHECK(min_facing > -1e-6);
       CHECK(unseen <= 2);  // rounding near an edge
     }
   }

@@ -92,7 +92,7 @@ double most_of_directions(const Bounds (&v)[3]) {
 // weight times the two largest of |p - corner|. The bound is the value at the piece's centre plus what the
 // derivatives can add on the way from there. The derivatives are summed over the corners first, because near a
 // maximum most of the sum cancels.
-double most_value(const Piece& piece) {
+double max_value(const Piece& piece) {
   const AxisWeights axes[3] = {weights(piece.at[0]), weights(piece.at[1]), weights(piece.at[2])};
   Bounds rises[3] = {{0, 0}, {0, 0}, {0, 0}};
   double middle = 0, half[3], middle_weights[3][2], middle_from[3][2];
@@ -133,7 +133,7 @@ double most_value(const Piece& piece) {
 // Upper bound of the derivative along a direction on a piece. Along s the derivative is the sum over corners of g .
 // ((s . grad w) (p - corner) + w s). Its maximum over g is convex in s, so over a square of directions it is largest
 // in a corner of the square.
-double most_slope(const Piece& piece) {
+double max_slope(const Piece& piece) {
   const AxisWeights x = weights(piece.at[0]), y = weights(piece.at[1]), z = weights(piece.at[2]);
   double most = 0;
   for (int end = 0; end < 4; ++end) {
@@ -190,11 +190,11 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
 }
 
 TEST_CASE("noise is within its range, and no steeper than its slope, whatever the hash", "[noise][released]") {
-  CHECK(is_proved({}, kNoiseRange, false, 3'000'000, most_value));
-  CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, most_slope));
+  CHECK(is_proved({}, kNoiseRange, false, 3'000'000, max_value));
+  CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, max_slope));
   // The bounds are nearly tight: in the middle of a cell the gradients can be such that the slope is 3.75.
-  CHECK_FALSE(is_proved({}, 1.0363, false, 100'000, most_value));
-  CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, most_slope));
+  CHECK_FALSE(is_proved({}, 1.0363, false, 100'000, max_value));
+  CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, max_slope));
 }
 
 TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", "[noise][heavy]") {
@@ -205,7 +205,7 @@ TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", 
       Piece piece;
       piece.at[axis] = {static_cast<double>(i) / 16, static_cast<double>(i + 1) / 16};
       CAPTURE(i, axis);
-      CHECK(is_proved(piece, vm::kNoiseSlopes[i], true, 8'000'000, most_slope));
+      CHECK(is_proved(piece, vm::kNoiseSlopes[i], true, 8'000'000, max_slope));
       CHECK(vm::noise_slope(piece.at[axis].hi) == vm::kNoiseSlopes[i]);
     }
   }
